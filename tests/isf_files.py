@@ -6,7 +6,7 @@ import json
 from typing import Any
 
 import numpy as np
-from halation.custom_nodes import Code, Written, node_type
+from halation.custom_nodes import Code, CustomNode, node_type
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
 
@@ -20,17 +20,17 @@ def isf(body: str, *inputs: dict[str, Any], **head: Any) -> str:
     return f"/*{json.dumps({'ISFVSN': '2', 'INPUTS': list(inputs), **head})}*/\n{code}\n"
 
 
-def shader(text: str, vertex: str = "", file: str = "") -> type[Written]:
+def shader(text: str, vertex: str = "", file: str = "") -> type[CustomNode]:
     """The class of its nodes."""
     return node_type(Code("isf", text, file, vertex))
 
 
-def node(body: str, *inputs: dict[str, Any], values: dict[str, Any] | None = None, **head: Any) -> Written:
+def node(body: str, *inputs: dict[str, Any], values: dict[str, Any] | None = None, **head: Any) -> CustomNode:
     """A node that computes with linear light, straight."""
     return shader(isf(body, *inputs, **head))(**{"light": "linear", **(values or {})})
 
 
-def alone(item: Written, size: tuple[int, int], frames: tuple[int, int] = (1, 9), rate: float = 24.0) -> Graph:
+def alone(item: CustomNode, size: tuple[int, int], frames: tuple[int, int] = (1, 9), rate: float = 24.0) -> Graph:
     """A graph of one node; its pictures are inputs by their own names."""
     graph = Graph(settings=Settings(size, frames, rate)).add("shader", item).add_output("out", Output(Kind.IMAGE, 4))
     for name, socket in item.inputs.items():

@@ -68,7 +68,7 @@ def explain(
     if as_json:
         print_json(compiler.as_json(plan))
     else:
-        print(compiler.dot(plan) if dot else compiler.explain(plan))
+        print(compiler.write_dot(plan) if dot else compiler.explain(plan))
     return 0
 
 

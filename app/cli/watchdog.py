@@ -77,14 +77,14 @@ def needs_watchdog(graph: Graph, timeout: float) -> bool:
 
 def has_loops(graph: Graph) -> bool:
     """True if a node has code with loops, or one in a group has: only those can run for ever."""
-    from ..custom_nodes import Written
+    from ..custom_nodes import CustomNode
     from ..glsl import words
     from ..graph import Group
 
     return any(
         has_loops(item.graph)
         if isinstance(item, Group)
-        else isinstance(item, Written) and bool({"for", "while", "do"} & words(item.code.text, item.code.vertex))
+        else isinstance(item, CustomNode) and bool({"for", "while", "do"} & words(item.code.text, item.code.vertex))
         for item in graph.nodes.values()
     )
 

@@ -7,18 +7,18 @@ plans for a part of a picture, or by tiles. `planner` runs them and remembers wh
 
 from __future__ import annotations
 
-from .areas import Region, scaled
-from .explain import as_json, dot, explain
+from .areas import Region, scale_size
+from .explain import as_json, explain, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
-from .library import Library, installed
-from .lowering.named import named_files
+from .library import Library, installed_library
+from .lowering.named import find_named_files
 from .lowering.upstream import Upstream
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
 from .request import Request
 from .target import NULL, Form, Precision, Target
-from .tiling.tiles import Stage, Tiling
-from .tiling.tiling import tile_plan
+from .tiling.tiles import TileStage, Tiling
+from .tiling.tiling import plan_tile
 from .working import library_for
 
 __all__ = [
@@ -36,22 +36,22 @@ __all__ = [
     "Region",
     "Request",
     "Shader",
-    "Stage",
     "StoredResult",
     "Surface",
     "Target",
+    "TileStage",
     "Tiling",
     "Upload",
     "Upstream",
     "as_json",
     "compile_graph",
-    "dot",
     "examine",
     "explain",
+    "find_named_files",
     "graph_library",
-    "installed",
+    "installed_library",
     "library_for",
-    "named_files",
-    "scaled",
-    "tile_plan",
+    "plan_tile",
+    "scale_size",
+    "write_dot",
 ]

@@ -49,14 +49,14 @@ class Region(Struct, frozen=True):
     def down(self) -> Span:
         return (self.y, self.y + self.height)
 
-    def with_(self, other: Region) -> Region:
+    def union(self, other: Region) -> Region:
         """The smallest one that holds both."""
         spans = zip((self.across, self.down), (other.across, other.down), strict=True)
         across, down = ((min(one[0], two[0]), max(one[1], two[1])) for one, two in spans)
         return Region.of(across, down)
 
 
-class Around(Struct, frozen=True):
+class Neighborhood(Struct, frozen=True):
     """Where a function reads a picture: `matrix` leads from the middle of its own pixel to a place, and it looks at
     pixels up to `radius` away from the one there, along each axis."""
 
@@ -64,11 +64,11 @@ class Around(Struct, frozen=True):
     radius: tuple[float, float]
 
     @staticmethod
-    def pixel(own: Size, read: Size, radius: tuple[float, float]) -> Around:
+    def pixel(own: Size, read: Size, radius: tuple[float, float]) -> Neighborhood:
         """Around the same pixel; in a picture of another size, around the one at the same part of it."""
-        return Around((read[0] / own[0], 0.0, 0.0, 0.0, read[1] / own[1], 0.0), radius)
+        return Neighborhood((read[0] / own[0], 0.0, 0.0, 0.0, read[1] / own[1], 0.0), radius)
 
-    def read(self, region: Region) -> tuple[Span, Span]:
+    def find_spans(self, region: Region) -> tuple[Span, Span]:
         """What is read for a region, beyond the edges of the picture too."""
         a, b, x, c, d, y = self.matrix
         corners = [
@@ -77,17 +77,17 @@ class Around(Struct, frozen=True):
             for j in (region.y + 0.5, region.y + region.height - 0.5)
         ]
         return (
-            _reached([a * i + b * j + x for i, j in corners], self.radius[0]),
-            _reached([c * i + d * j + y for i, j in corners], self.radius[1]),
+            _find_span([a * i + b * j + x for i, j in corners], self.radius[0]),
+            _find_span([c * i + d * j + y for i, j in corners], self.radius[1]),
         )
 
 
-def scaled(size: Size, scale: float) -> Size:
+def scale_size(size: Size, scale: float) -> Size:
     """The size of a picture at a scale, at least a pixel."""
     return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
 
 
-def inside(span: Span, length: int, edge: Edge) -> Span:
+def clip_span(span: Span, length: int, edge: Edge) -> Span:
     """The pixels of a row of `length` that are read where a span beyond its ends is asked for."""
     first, end = span
     if first >= 0 and end <= length:
@@ -105,7 +105,7 @@ def inside(span: Span, length: int, edge: Edge) -> Span:
     return low, high
 
 
-def _reached(places: list[float], radius: float) -> Span:
+def _find_span(places: list[float], radius: float) -> Span:
     low, high = min(places) - radius, max(places) + radius
     if not (low > -_FAR and high < _FAR):  # or no number at all
         return (-_FAR, _FAR)

@@ -33,21 +33,21 @@ Of a Hopper chip's processing clusters two can draw (NVIDIA H100 Tensor Core GPU
 """
 
 
-class Chosen(Struct, frozen=True):
+class FormChoice(Struct, frozen=True):
     """A form, and in a few words who chose it and why."""
 
     form: Form
     why: str
 
 
-class Measured(Struct, frozen=True):
+class FormTimings(Struct, frozen=True):
     """Seconds that the same passes took in either form; infinite where the driver refused them."""
 
     compute: float
     fragment: float
 
     @property
-    def telling(self) -> bool:
+    def is_usable(self) -> bool:
         """True if the numbers can be compared: clocks of some drivers stand still."""
         return min(self.compute, self.fragment) > 0.0 and math.isfinite(min(self.compute, self.fragment))
 
@@ -57,7 +57,9 @@ def is_software(renderer: str) -> bool:
     return _SOFTWARE.search(renderer) is not None
 
 
-def choose(renderer: str, version: int, asked: Form | None, measure: Callable[[], Measured | None]) -> Chosen:
+def choose_form(
+    renderer: str, version: int, asked: Form | None, measure: Callable[[], FormTimings | None]
+) -> FormChoice:
     """The form of passes on a device. `measure` is called only where neither a person nor the table says.
 
     Raises DeviceError for compute passes on an OpenGL without them.
@@ -68,20 +70,20 @@ def choose(renderer: str, version: int, asked: Form | None, measure: Callable[[]
             f"{renderer} offers OpenGL {number}, but compute passes need {COMPUTE / 100:.1f}: use fragment passes"
         )
     if asked:
-        return Chosen(asked, "asked for")
+        return FormChoice(asked, "asked for")
     if version < COMPUTE:
-        return Chosen("fragment", f"by the table: OpenGL {number} has no compute passes")
+        return FormChoice("fragment", f"by the table: OpenGL {number} has no compute passes")
     for words, form, why in _TABLE:
         if words.search(renderer):
-            return Chosen(form, f"by the table: {why}")
+            return FormChoice(form, f"by the table: {why}")
     found = measure()
-    if found is None or not found.telling:
-        return Chosen("compute", "by the table: nothing could be measured, and blurs load less in compute passes")
+    if found is None or not found.is_usable:
+        return FormChoice("compute", "by the table: nothing could be measured, and blurs load less in compute passes")
     form = "compute" if found.compute <= found.fragment else "fragment"
-    return Chosen(form, f"measured: {_compared(found, form)}")
+    return FormChoice(form, f"measured: {_compare_timings(found, form)}")
 
 
-def _compared(found: Measured, form: Form) -> str:
+def _compare_timings(found: FormTimings, form: Form) -> str:
     better, worse = sorted((found.compute, found.fragment))
     other = "fragment" if form == "compute" else "compute"
     if math.isinf(worse):

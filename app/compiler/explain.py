@@ -115,24 +115,24 @@ def as_json(plan: Plan) -> dict[str, object]:
     }
 
 
-def dot(plan: Plan) -> str:
+def write_dot(plan: Plan) -> str:
     """The plan as a Graphviz graph: boxes are passes, edges are surfaces with their format and slot."""
     lines = ["digraph plan {", '  rankdir=LR; node [shape=box, fontname="sans-serif"]; edge [fontname="sans-serif"];']
     makers: dict[int, str] = {}
     for upload in plan.uploads:
         makers[upload.surface] = f"upload{upload.surface}"
-        lines.append(f'  upload{upload.surface} [shape=folder, label="{_quoted(upload.picture.path)}"];')
+        lines.append(f'  upload{upload.surface} [shape=folder, label="{_escape(upload.picture.path)}"];')
     for index, one in enumerate(plan.passes):
-        lines.append(f'  pass{index} [label="{index}: {_quoted(_label(one))}"];')
+        lines.append(f'  pass{index} [label="{index}: {_escape(_label(one))}"];')
         for number in one.targets:
             makers[number] = f"pass{index}"
         lines += [
-            f'  {makers[number]} -> pass{index} [label="{_quoted(_surface(number, plan.surfaces[number]))}"];'
+            f'  {makers[number]} -> pass{index} [label="{_escape(_surface(number, plan.surfaces[number]))}"];'
             for number in one.textures
         ]
     for name, number in plan.outputs.items():
-        lines.append(f'  "out_{_quoted(name)}" [shape=ellipse, label="{_quoted(name)}"];')
-        lines.append(f'  {makers[number]} -> "out_{_quoted(name)}";')
+        lines.append(f'  "out_{_escape(name)}" [shape=ellipse, label="{_escape(name)}"];')
+        lines.append(f'  {makers[number]} -> "out_{_escape(name)}";')
     return "\n".join([*lines, "}"])
 
 
@@ -146,5 +146,5 @@ def _surface(number: int, surface: Surface) -> str:
     return f"#{number} {width}x{height} {surface.texel} slot {surface.slot} ({size_text(surface.nbytes)})"
 
 
-def _quoted(text: str) -> str:
+def _escape(text: str) -> str:
     return text.replace("\\", "\\\\").replace('"', '\\"')

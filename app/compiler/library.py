@@ -15,7 +15,7 @@ from halation.shaders import folder
 from msgspec import field
 
 from ..errors import ShaderError
-from ..glsl import Function, Text, parse
+from ..glsl import GlslFunction, Text, parse
 from ..resources.record import Record
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
@@ -29,10 +29,10 @@ ASKED = frozenset({"proxy", "frame"})
 Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
 """Lines of the files that a pass includes before and after its own functions; the files; words that matter in them."""
 
-KEPT = 1024
+MAX_REMEMBERED_PASSES = 1024
 """Passes of which the files that they include are known."""
 
-LARGER = 8
+MAX_DERIVED_LIBRARIES = 8
 """Libraries kept that hold code of graphs as well: more than are open at once."""
 
 
@@ -52,14 +52,14 @@ class Library(Record, frozen=True):
         {"_closures", "_light", "_used", "_uniforms", "_digests", "_lines", "_larger"}
     )
 
-    def including(self, texts: Iterable[Text]) -> Library:
+    def with_texts(self, texts: Iterable[Text]) -> Library:
         """This library with the code of a graph, whose names say what it holds."""
         added = {text.name: text for text in texts}
         if not added:
             return self
         return self._with(added, frozenset(added))
 
-    def replacing(self, text: Text, mark: str) -> Library:
+    def with_replacement(self, text: Text, mark: str) -> Library:
         """This library with another file in place of the one of that name; `mark` says what it holds."""
         return self._with({text.name: text}, frozenset({text.name, mark}))
 
@@ -67,7 +67,7 @@ class Library(Record, frozen=True):
         """What messages call a file."""
         return self.texts[shader].file if shader in self.texts else f"shaders/{shader}.glsl"
 
-    def function(self, shader: str, name: str, asker: str) -> Function:
+    def function(self, shader: str, name: str, asker: str) -> GlslFunction:
         """A function of a file, or a ShaderError that names who asked."""
         text = self._text(shader, asker)
         if name not in text.functions:
@@ -90,12 +90,12 @@ class Library(Record, frozen=True):
     def remember_lines(self, key: Hashable, find: Callable[[], Lines]) -> Lines:
         """The lines of files for a pass, which `find` finds the first time. `key` is all that they depend on."""
         if key not in self._lines:
-            if len(self._lines) >= KEPT:
+            if len(self._lines) >= MAX_REMEMBERED_PASSES:
                 self._lines.pop(next(iter(self._lines)))
             self._lines[key] = find()
         return self._lines[key]
 
-    def light(self, shader: str, function: str, asker: str) -> bool:
+    def is_light(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that reads pictures itself, without loops, of a file that holds nothing but functions.
 
         It costs little, and may stand in a pass several times under different names.
@@ -120,11 +120,11 @@ class Library(Record, frozen=True):
             self._digests[names] = blake2b(bodies.encode(), digest_size=16).hexdigest()
         return self._digests[names]
 
-    def cheap(self, shader: str, function: str, asker: str) -> bool:
+    def is_cheap(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
         return self._words(shader, function, asker).isdisjoint(_DEAR)
 
-    def straight(self, shader: str, function: str, asker: str) -> bool:
+    def is_straight(self, shader: str, function: str, asker: str) -> bool:
         """True for a function without loops."""
         return self._words(shader, function, asker).isdisjoint(_LOOPS)
 
@@ -143,7 +143,7 @@ class Library(Record, frozen=True):
             yield text.name, called
 
     def _is_light(self, shader: str, function: str, asker: str) -> bool:
-        if self._text(shader, asker).outside or not self.straight(shader, function, asker):
+        if self._text(shader, asker).outside or not self.is_straight(shader, function, asker):
             return False
         lent = (words for name, words in self._uses(shader, function, asker) if name != shader)
         return not any(_ACCESSOR.fullmatch(word) for words in lent for word in words)
@@ -151,9 +151,9 @@ class Library(Record, frozen=True):
     def _with(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
         """This library with other files over its own, known by what `key` says of them."""
         if key not in self._larger:
-            if len(self._larger) >= LARGER:
+            if len(self._larger) >= MAX_DERIVED_LIBRARIES:
                 self._larger.pop(next(iter(self._larger)))
-            self._larger[key] = Library(Layered(added, self.texts))
+            self._larger[key] = Library(OverlaidTexts(added, self.texts))
         return self._larger[key]
 
     def _text(self, name: str, asker: str) -> Text:
@@ -175,7 +175,7 @@ class Library(Record, frozen=True):
         done[name] = text
 
 
-class Layered(Mapping[str, Text]):
+class OverlaidTexts(Mapping[str, Text]):
     """Texts over others, which are still only read when they are asked for."""
 
     def __init__(self, above: Mapping[str, Text], below: Mapping[str, Text]) -> None:
@@ -194,7 +194,7 @@ class Layered(Mapping[str, Text]):
         return name in self._above or name in self._below
 
 
-class Texts(Mapping[str, Text]):
+class ShaderFolder(Mapping[str, Text]):
     """Shader files of a folder by name; each is read when it is asked for.
 
     Those of a plug-in have its namespace in front, and so have all their functions: any two nodes may share a pass.
@@ -239,13 +239,13 @@ class InstalledTexts(Mapping[str, Text]):
     """The shader files of Halation, and those of plug-ins, which are looked for only when one is asked for."""
 
     def __init__(self) -> None:
-        self._own = Texts(folder())
+        self._own = ShaderFolder(folder())
 
     @cached_property
-    def _added(self) -> Mapping[str, Texts]:
+    def _added(self) -> Mapping[str, ShaderFolder]:
         """The shader files of every plug-in by its namespace."""
         return {
-            plugin.namespace: Texts(plugin.folder / "shaders", plugin.namespace)
+            plugin.namespace: ShaderFolder(plugin.folder / "shaders", plugin.namespace)
             for plugin in plugins()
             if plugin.nodes and plugin.folder and (plugin.folder / "shaders").is_dir()
         }
@@ -274,6 +274,6 @@ def _walk(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
 
 
 @cache
-def installed() -> Library:
+def installed_library() -> Library:
     """The library that ships with Halation, with the shaders of plug-ins."""
     return Library(InstalledTexts())

@@ -13,38 +13,38 @@ from ..graph import Graph, color_settings
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .fusion.fuse import fuse
-from .fusion.rewrites import rewritten
-from .library import Library, installed
-from .lowering.expand import written_texts
+from .fusion.rewrites import rewrite_passes
+from .library import Library, installed_library
+from .lowering.expand import find_custom_texts
 from .lowering.incremental import lower_again
 from .lowering.lower import lower
 from .lowering.steps import LoweringRecord
 from .plan import Plan
 from .request import Request
-from .scheduling.schedule import Scheduled, formats, reschedule, schedule
+from .scheduling.schedule import ScheduleRecord, choose_formats, reschedule, schedule
 from .target import NULL, Precision, Target
-from .tiling.regions import focused
-from .tiling.tiling import tile
+from .tiling.regions import focus_program
+from .tiling.tiling import plan_tiling
 from .working import library_for
 
-KEPT = 4
+MAX_REMEMBERED_PLANS = 4
 """Plans that a planner remembers: someone who works on a graph looks at few things in turn."""
 
 
-class Compiled(Struct, frozen=True):
+class PlanRecord(Struct, frozen=True):
     """A plan of whole pictures, how it came to be, and what was asked for besides a frame, a region and bindings."""
 
     asked: tuple[object, ...]
     lowered: LoweringRecord
-    scheduled: Scheduled
+    scheduled: ScheduleRecord
     tiled: bool
     """False where it is known to fit."""
-    part: Scheduled | None
+    part: ScheduleRecord | None
     """The plan of the last region."""
 
 
 @contextmanager
-def _uncollected() -> Generator[None]:
+def _pause_collection() -> Generator[None]:
     """Nobody looks for garbage meanwhile: most of what a plan is made of lives on, and all other plans with it."""
     before = gc.isenabled()
     gc.disable()
@@ -62,9 +62,9 @@ class Planner:
     """
 
     def __init__(self) -> None:
-        self._known: list[Compiled] = []
+        self._known: list[PlanRecord] = []
 
-    @_uncollected()
+    @_pause_collection()
     def plan(
         self,
         graph: Graph,
@@ -106,18 +106,18 @@ class Planner:
         lowered = lowered or lower(graph, request, library, outside)
         if scheduled is None:
             passes = fuse(lowered.program, target, enabled=fusion)
-            passes = rewritten(lowered.program, passes, target, library) if fusion else passes
+            passes = rewrite_passes(lowered.program, passes, target, library) if fusion else passes
             scheduled, tiled = schedule(lowered.program, passes, library, target, precision, request.halves), True
         wanted = scheduled
         if request.region is not None:  # which part of a picture is read may depend on numbers: it is found anew
             made = {ref for ref, key in scheduled.keys.items() if key in there}
-            program = focused(lowered.program, scheduled.passes, request.region, made)
+            program = focus_program(lowered.program, scheduled.passes, request.region, made)
             same = part is not None and part.passes is scheduled.passes and part.program.windows == program.windows
             wanted = reschedule(part, program, library) if part is not None and same else None
             wanted = wanted or schedule(program, scheduled.passes, library, target, precision, request.halves)
             part = wanted
         if tiled or wanted is not scheduled:  # what fitted as it was still does if nothing but numbers changed
-            tiling = tile(
+            tiling = plan_tiling(
                 wanted.program,
                 wanted.passes,
                 wanted.texels,
@@ -129,7 +129,7 @@ class Planner:
                 request.by_rows,
             )
         tiled = tiling is not None if wanted is scheduled else tiled
-        self._known = [Compiled(asked, lowered, scheduled, tiled, part), *self._known][:KEPT]
+        self._known = [PlanRecord(asked, lowered, scheduled, tiled, part), *self._known][:MAX_REMEMBERED_PLANS]
         return _with_pixels(replace(wanted.plan, tiling=tiling), request.bindings)
 
 
@@ -156,28 +156,28 @@ def examine(graph: Graph, request: Request, outside: ResourceProvider, target: T
     library = graph_library(graph, outside)
     program = lower(graph, request, library, outside).program
     passes, precision = fuse(program, target), target.precision
-    texels = formats(program, passes, target, precision, request.halves)
-    tile(program, passes, texels, library, target, precision, request.halves)
+    texels = choose_formats(program, passes, target, precision, request.halves)
+    plan_tiling(program, passes, texels, library, target, precision, request.halves)
 
 
 def graph_library(graph: Graph, outside: ResourceProvider, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and its own."""
     working = outside.working(color_settings(graph)) if graph.settings.color.working else None
-    return library_for(library or installed(), working).including(written_texts(graph))
+    return library_for(library or installed_library(), working).with_texts(find_custom_texts(graph))
 
 
 def _with_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
     """A plan that has the pixels that are bound to inputs."""
     pixels = {item.path: item.pixels for item in bindings.values() if item.in_memory}
 
-    def filled(picture: Picture) -> Picture:
+    def fill_pixels(picture: Picture) -> Picture:
         there = not picture.in_memory or picture.pixels is not None
         return picture if there else replace(picture, pixels=pixels.get(picture.path))
 
-    uploads = tuple(replace(item, picture=filled(item.picture)) for item in plan.uploads)
+    uploads = tuple(replace(item, picture=fill_pixels(item.picture)) for item in plan.uploads)
     if plan.tiling is None:
         return replace(plan, uploads=uploads)
     program = plan.tiling.program
-    ops = tuple(op.with_pictures(filled) for op in program.ops)
+    ops = tuple(op.with_pictures(fill_pixels) for op in program.ops)
     tiling = replace(plan.tiling, program=replace(program, ops=ops))
     return replace(plan, uploads=uploads, tiling=tiling)

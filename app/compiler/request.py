@@ -35,7 +35,7 @@ class Request(Struct, frozen=True):
     """Targets, or outputs, that will be rounded to half floats: they are that already where nothing else wants them."""
 
     region: Region | None = None
-    """The part of every output that is wanted, in pixels as they are rendered; None for all. See `regions.focused`."""
+    """The part of every output to make, in pixels as they are rendered; None for all: see `focus_program`."""
     by_rows: frozenset[str] = frozenset()
     """Targets, or outputs, that are taken by rows, from the top down, where they are made by tiles."""
 

@@ -8,4 +8,4 @@ from .library import Library
 
 def library_for(library: Library, working: WorkingSpace | None) -> Library:
     """The library for a working space; None is linear Rec.709, which it is written for."""
-    return library if working is None else library.replacing(working.text, f"{working}")
+    return library if working is None else library.with_replacement(working.text, f"{working}")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from .code import Code, CodeFault, Language, Written, unprefixed
+from .code import Code, CodeFault, CustomNode, Language, strip_prefix
 
-__all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"]
+__all__ = ["Code", "CodeFault", "CustomNode", "Language", "node_type", "strip_prefix"]
 
 
-def node_type(code: Code) -> type[Written]:
+def node_type(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes; the same class for equal code. Raises CodeFault."""
     if code.language == "isf":
         from .isf import isf_node

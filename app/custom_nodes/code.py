@@ -39,7 +39,7 @@ class CodeFault(Exception):
         super().__init__(f"line {line}: {sentence}" if line else sentence)
 
 
-class Written(Node):
+class CustomNode(Node):
     """What the classes of all nodes share that are made of code. `title` is what it calls itself."""
 
     code: ClassVar[Code]
@@ -48,6 +48,6 @@ class Written(Node):
     """Its functions for the compiler's library, if they go there."""
 
 
-def unprefixed(message: str) -> str:
+def strip_prefix(message: str) -> str:
     """A driver's message with names as the user wrote them."""
     return re.sub(r"\bw[0-9a-f]{8}x?_(?=\w)", "", message)

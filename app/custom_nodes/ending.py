@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 
-from ..glsl import Function
+from ..glsl import GlslFunction
 from ..glsl.loops import COUNTER, MOST_ROUNDS
 
 _NAN = "uintBitsToFloat(0x7fc00000u)"
 
 
-def ended(text: str, entry: Function, prefix: str) -> str:
+def ended(text: str, entry: GlslFunction, prefix: str) -> str:
     """`text`, whose loops are counted, with a function around the one that is the node.
 
     It counts for every pixel anew. A pixel whose loops had to be left is NaN: a wrong number would be taken for a

@@ -13,9 +13,9 @@ from typing import Any, Literal, cast
 from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
 from msgspec import Struct
 
-from ..glsl import COMMENT, Function, Text, blanked, parse, unified
+from ..glsl import COMMENT, GlslFunction, Text, blanked, parse, unified
 from ..glsl.loops import guarded
-from .code import Code, CodeFault, Written
+from .code import Code, CodeFault, CustomNode
 from .ending import ended
 from .notes import Note, read_note
 from .passes import drawn
@@ -43,7 +43,7 @@ class _Parameter(Struct, frozen=True):
 
 
 @lru_cache(KEPT)
-def glsl_node(code: Code) -> type[Written]:
+def glsl_node(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes. Raises CodeFault."""
     source = unified(code.text)
     plain = blanked(source)
@@ -74,13 +74,13 @@ def _class(
     code: Code,
     source: str,
     text: Text,
-    entry: Function,
+    entry: GlslFunction,
     parameters: tuple[_Parameter, ...],
     inputs: Mapping[str, Socket],
     values: Mapping[str, Value],
     outputs: Mapping[str, Output],
     looks: bool,
-) -> type[Written]:
+) -> type[CustomNode]:
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"
     function = prefix + entry.name
@@ -107,7 +107,7 @@ def _class(
 
         body["passes"] = passes
     base = Filter if looks else Pointwise
-    made = cast("type[Written]", new_class(entry.name, (Written, base), {}, lambda space: space.update(body)))
+    made = cast("type[CustomNode]", new_class(entry.name, (CustomNode, base), {}, lambda space: space.update(body)))
     name = f"written/{digest}"
     made.id, made.category = "glsl", "code"
     made.values = dict(values)
@@ -117,7 +117,7 @@ def _class(
     return made
 
 
-def _parameters(source: str, plain: str, entry: Function) -> Iterator[_Parameter]:
+def _parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Parameter]:
     """The parameters of the function in order, each with the comments that stand beside it."""
     opened = plain.index("(", entry.start)
     closed = plain.index(")", opened)
@@ -141,7 +141,7 @@ def _parameters(source: str, plain: str, entry: Function) -> Iterator[_Parameter
         yield _Parameter(words[0], words[1], out, line, read_note(comment[0], line) if comment else Note())
 
 
-def _check(entry: Function, parameters: tuple[_Parameter, ...]) -> None:
+def _check(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> None:
     seen = set[str]()
     for one in parameters:
         if one.name in seen or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
@@ -183,7 +183,7 @@ def _hint(value: Value) -> Any:
     return {"float": float, "int": int, "bool": bool}[value.type]
 
 
-def _doc(source: str, entry: Function) -> str:
+def _doc(source: str, entry: GlslFunction) -> str:
     """The comment right above the function, else a sentence."""
     lines = source.split("\n")[: entry.line - 1]
     found: list[str] = []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..custom_nodes import Code, CodeFault, Language, Written
+from ..custom_nodes import Code, CodeFault, CustomNode, Language
 from ..errors import DocumentError
 from .disk import read_text
 
@@ -23,7 +23,7 @@ def written_code(code: Code) -> dict[str, object]:
     return {"file": code.file} if code.file else {"code": code.text.split("\n")}
 
 
-def reread(kind: type[Written], folder: str) -> Code:
+def reread(kind: type[CustomNode], folder: str) -> Code:
     """The code of a node as its file has it now. Raises CodeFault."""
     code = kind.code
     return read_code(code.language, None, code.file, folder) if code.file else code

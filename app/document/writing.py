@@ -9,7 +9,7 @@ from typing import Any
 
 from halation.nodes import Plain, Value
 
-from ..custom_nodes import Written
+from ..custom_nodes import CustomNode
 from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
@@ -125,7 +125,7 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
-    what = written_code(item.code) if isinstance(item, Written) else {"version": item.version}
+    what = written_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.package:
         what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.package)
     return {"type": item.id} | what | muted | ({"values": values} if values else {})

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .text import COMMENT, Function, Text, blanked, parse, unified, words
+from .text import COMMENT, GlslFunction, Text, blanked, parse, unified, words
 
-__all__ = ["COMMENT", "Function", "Text", "blanked", "parse", "unified", "words"]
+__all__ = ["COMMENT", "GlslFunction", "Text", "blanked", "parse", "unified", "words"]

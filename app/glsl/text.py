@@ -21,7 +21,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _BLANK = re.compile(r"[^\n]")
 
 
-class Function(Struct, frozen=True):
+class GlslFunction(Struct, frozen=True):
     """A GLSL signature: `result name(parameters)`; `outputs` are the `out` parameters."""
 
     name: str
@@ -47,8 +47,8 @@ class Text(Struct, frozen=True, dict=True):
     file: str
     body: str
     includes: Mapping[str, int]
-    functions: Mapping[str, Function]
-    all_functions: tuple[Function, ...]
+    functions: Mapping[str, GlslFunction]
+    all_functions: tuple[GlslFunction, ...]
     words: frozenset[str]
 
     @cached_property
@@ -91,7 +91,7 @@ class Text(Struct, frozen=True, dict=True):
         return words(text)
 
 
-def _function(match: re.Match[str], code: str) -> Function:
+def _function(match: re.Match[str], code: str) -> GlslFunction:
     result, name, inside = match.groups()
     depth, end = 1, match.end()
     while depth and end < len(code):
@@ -106,7 +106,7 @@ def _function(match: re.Match[str], code: str) -> Function:
             way, glsl, called, array = found.groups(default="")
             (given if way else taken).append((glsl + array, called))
     line = code.count("\n", 0, match.start(2)) + 1
-    return Function(name, result, tuple(taken), tuple(given), match.start(), end, line, used)
+    return GlslFunction(name, result, tuple(taken), tuple(given), match.start(), end, line, used)
 
 
 def blanked(source: str) -> str:

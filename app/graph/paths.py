@@ -11,7 +11,7 @@ from typing import get_args
 from halation.nodes import Node, Plain
 from msgspec import structs
 
-from ..custom_nodes import Language, Written, node_type
+from ..custom_nodes import CustomNode, Language, node_type
 from .color import BUILT_IN
 from .graph import Graph, Group, Item, signature
 
@@ -83,14 +83,14 @@ def _item(item: Item, folder: str, change: Change) -> Item:
 
 def _code(item: Node, change: Change) -> Node:
     """The same node with the file that its code is in, if it is in one, somewhere else."""
-    if not isinstance(item, Written) or not item.code.file:
+    if not isinstance(item, CustomNode) or not item.code.file:
         return item
     kind = node_type(structs.replace(item.code, file=change(item.code.file)))
     return kind(**{name: getattr(item, name) for name in item.values})
 
 
 def _inlined(item: Item, folder: str) -> Item:
-    if isinstance(item, Written) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
+    if isinstance(item, CustomNode) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
         kind = node_type(structs.replace(item.code, file=""))
         return kind(**{name: getattr(item, name) for name in item.values})
     if not isinstance(item, Group):

@@ -34,20 +34,20 @@ class LazyResourceProvider:
 
     def frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
         """The first and last frame of a graph, without reading any file where it says so itself."""
-        from ..compiler import named_files
+        from ..compiler import find_named_files
         from ..graph import keyed_range
 
         if graph.settings.frames:
             return graph.settings.frames
-        if not inputs and not named_files(graph, {}):
+        if not inputs and not find_named_files(graph, {}):
             return keyed_range(graph)
         return self.pictures.frames(graph, self.bind(graph, inputs))
 
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for a file that is missing in a sequence."""
-        from ..compiler import named_files
+        from ..compiler import find_named_files
 
-        if named_files(graph, {}):
+        if find_named_files(graph, {}):
             self.pictures.check_frames(graph, frames)
 
     def at(self, path: str, frame: int, missing: Missing) -> FrameFile:

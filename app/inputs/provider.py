@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from halation.nodes import Kind
 
-from ..compiler import named_files
+from ..compiler import find_named_files
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
 from ..graph.frames import is_video
@@ -81,7 +81,7 @@ class MediaProvider:
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
         needed = graph.upstream(OUTPUTS)
-        for path, owner, missing in named_files(graph, {}):
+        for path, owner, missing in find_named_files(graph, {}):
             used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
             for frame in frames if used and missing == "error" else ():
                 self.at(path, frame, missing)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
 
-from ..compiler import Request, examine, named_files
+from ..compiler import Request, examine, find_named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, keyed_range
 from ..graph.rules import Rule
@@ -82,7 +82,7 @@ class World:
 
     def first_frame(self, graph: Graph) -> int:
         """The first frame of a graph. A file that is missing in a sequence is noted."""
-        if not any(self._is_sequence(path) for path, _, _ in named_files(graph, {})):
+        if not any(self._is_sequence(path) for path, _, _ in find_named_files(graph, {})):
             return (graph.settings.frames or keyed_range(graph))[0]
         try:
             first, last = self.pictures.frames(graph, {})

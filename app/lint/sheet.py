@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeGuard
 
 from halation.nodes import Node, Reader, Trait, Value
 
-from ..compiler import Library, installed
+from ..compiler import Library, installed_library
 from ..graph import Graph, Group, Item, Port, Problem, signature
 from ..graph.rules import Rule
 
@@ -29,7 +29,7 @@ class Sheet:
     @cached_property
     def library(self) -> Library:
         """What the shaders of nodes are."""
-        return installed()
+        return installed_library()
 
     @cached_property
     def moving(self) -> frozenset[str]:

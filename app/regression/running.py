@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import document
-from ..compiler import named_files
+from ..compiler import find_named_files
 from ..errors import GraphError, HalationError
 from ..graph import Expression, Graph, Port, node_output, problems
 from ..graph.frames import Pattern
@@ -168,7 +168,7 @@ def _wanted(case: Case, graph: Graph, how: How) -> RenderRequest:
 
 def _read_by(graph: Graph, case: Case, golden: Path) -> str:
     """Why a golden must not be written: the graph reads that file."""
-    read = [path for path, _, _ in named_files(graph, {})]
+    read = [path for path, _, _ in find_named_files(graph, {})]
     read += [split_layer(item)[0] for item in case.inputs.values() if isinstance(item, str)]
     if any(os.path.realpath(path) == os.path.realpath(golden) for path in read):
         return "the graph reads this file; name another"

@@ -16,7 +16,7 @@ from halation.nodes import Size, catalogue
 from msgspec.structs import asdict, replace
 
 from ..compiler import Form, Request, compile_graph
-from ..compiler.devices import Measured
+from ..compiler.devices import FormTimings
 from ..document.disk import read_text
 from ..errors import HalationError
 from ..graph import Graph, Port, Settings
@@ -35,7 +35,7 @@ VERSION = 1
 """Goes up when other passes are measured, or the compiler makes something else of them."""
 
 
-def load_or_measure(device: Device, folder: Path | None = None) -> Measured | None:
+def load_or_measure(device: Device, folder: Path | None = None) -> FormTimings | None:
     """What is kept of the device; else it is measured and kept. None where it cannot be kept.
 
     `folder` is by default that of the user.
@@ -57,7 +57,7 @@ def load_or_measure(device: Device, folder: Path | None = None) -> Measured | No
     return known or found
 
 
-def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> Measured:
+def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> FormTimings:
     """Seconds that noise, which is arithmetic, and its blur, which is reading, take in either form.
 
     Both forms take turns, after a first one that counts for nothing: it compiles, and wakes the device up.
@@ -87,7 +87,7 @@ def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> Measured:
     finally:
         for runner in runners.values():
             runner.close()
-    return Measured(**fastest)
+    return FormTimings(**fastest)
 
 
 def _folder() -> Path:
@@ -101,9 +101,9 @@ def _digest(device: Device) -> str:
     return blake2b(known.encode(), digest_size=12).hexdigest()
 
 
-def _read(path: Path) -> Measured | None:
+def _read(path: Path) -> FormTimings | None:
     try:
         found = json.loads(read_text(path))
-        return Measured(float(found["compute"]), float(found["fragment"]))
+        return FormTimings(float(found["compute"]), float(found["fragment"]))
     except (HalationError, ValueError, KeyError, TypeError):  # it is not there, or nobody can read it: measure again
         return None

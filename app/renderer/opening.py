@@ -5,7 +5,7 @@ from __future__ import annotations
 from msgspec.structs import replace
 
 from ..compiler import Form
-from ..compiler.devices import choose
+from ..compiler.devices import choose_form
 from .calibration import load_or_measure
 from .device import Device
 from .opengl.context import open_current, open_standalone
@@ -28,5 +28,5 @@ def adopt_window(form: Form | None = None) -> Device:
 
 def _choose_form(device: OpenGLDevice, form: Form | None, memory: int = 0) -> Device:
     target = device.target
-    chosen = choose(target.renderer, target.version, form, lambda: load_or_measure(device))
+    chosen = choose_form(target.renderer, target.version, form, lambda: load_or_measure(device))
     return device.with_target(replace(target, form=chosen.form, why=chosen.why, memory=memory or target.memory))

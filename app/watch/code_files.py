@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import get_args
 
-from ..custom_nodes import Language, Written
+from ..custom_nodes import CustomNode, Language
 from ..graph import Graph, Group, Item, Unknown
 from ..graph.paths import full
 
@@ -36,7 +36,7 @@ def code_items(graph: Graph, borrowed: bool = True) -> Iterator[tuple[Graph, Ite
 
 def code_file(item: Item, folder: str) -> Path | None:
     """The file that the code of a node is in."""
-    if isinstance(item, Written):
+    if isinstance(item, CustomNode):
         file = item.code.file
     else:
         file = item.raw.get("file") if isinstance(item, Unknown) and item.type in get_args(Language) else ""

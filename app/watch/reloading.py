@@ -17,7 +17,7 @@ from halation import nodes, shaders
 from halation.nodes import Node, built_in_nodes, catalogue
 
 from .. import document
-from ..custom_nodes import Written
+from ..custom_nodes import CustomNode
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Item, Unknown
 
@@ -139,7 +139,7 @@ def _migrated(graph: Graph, id: str, item: Item, known: Types) -> Graph | None:
     if isinstance(item, Group):
         inner = migrated(item.graph, known)
         return None if inner is item.graph else Graph({id: replace(item, graph=inner)}, extra=mine)
-    if isinstance(item, Written):
+    if isinstance(item, CustomNode):
         return None
     now = known.get(item.type if isinstance(item, Unknown) else item.id)
     if (now is None and isinstance(item, Unknown)) or type(item) is now:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from ..compiler import installed
+from ..compiler import installed_library
 from ..errors import GraphError, HalationError
 from ..graph import Graph
 from ..renderer.jobs.job import FrameReport, Progress, Report
@@ -115,7 +115,7 @@ class Rerendering:
             self._look()
         news, self._news = self._news, {}
         if any(change.kind == "shader" for change in news.values()):
-            installed.cache_clear()
+            installed_library.cache_clear()
         if any(change.kind == "node" for change in news.values()) and (fault := self._nodes.reload()):
             self._refuse(fault)
         return tuple(news)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from halation.compiler import dot, explain
+from halation.compiler import explain, write_dot
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
@@ -166,7 +166,7 @@ def test_explain_names_passes_nodes_formats_slots_and_bytes(plan):
 
 def test_dot_has_every_pass_and_surface(plan):
     made = plan(chain(Exposure(stops=1.0), GaussianBlur(sigma=2.0)))
-    text = dot(made)
+    text = write_dot(made)
     assert text.startswith("digraph") and text.rstrip().endswith("}")
     assert text.count("->") == sum(len(one.textures) for one in made.passes) + len(made.outputs)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 import pytest
-from halation.compiler.devices import Measured, choose, is_software
+from halation.compiler.devices import FormTimings, choose_form, is_software
 from halation.errors import DeviceError
 
 LLVMPIPE = "llvmpipe (LLVM 15.0.6, 256 bits)"
@@ -18,7 +18,7 @@ CARDS = (
 
 
 def chosen(renderer, version=460, asked=None, found=None):
-    return choose(renderer, version, asked, lambda: found)
+    return choose_form(renderer, version, asked, lambda: found)
 
 
 def never():
@@ -40,7 +40,7 @@ def never():
     ],
 )
 def test_what_the_table_knows_is_not_measured(renderer, version, form):
-    made = choose(renderer, version, None, never)
+    made = choose_form(renderer, version, None, never)
     assert made.form == form and made.why.startswith("by the table: ")
 
 
@@ -50,23 +50,23 @@ def test_only_those_without_a_gpu_are_software():
 
 @pytest.mark.parametrize("renderer", [*CARDS, LLVMPIPE, "Apple M2"])
 def test_what_is_asked_for_is_taken(renderer):
-    assert choose(renderer, 460, "fragment", never).why == "asked for"
-    assert choose(renderer, 460, "compute", never).form == "compute"
+    assert choose_form(renderer, 460, "fragment", never).why == "asked for"
+    assert choose_form(renderer, 460, "compute", never).form == "compute"
 
 
 def test_compute_passes_cannot_be_asked_of_an_old_opengl():
     with pytest.raises(DeviceError, match=r"Apple M2 offers OpenGL 4\.1, but compute passes need 4\.3: use fragment"):
-        choose("Apple M2", 410, "compute", never)
+        choose_form("Apple M2", 410, "compute", never)
 
 
 @pytest.mark.parametrize(
     ("found", "form", "why"),
     [
-        (Measured(4.0e-3, 3.1e-3), "fragment", "measured: 3.10 ms against 4.00 in compute passes"),
-        (Measured(3.1e-3, 4.0e-3), "compute", "measured: 3.10 ms against 4.00 in fragment passes"),
-        (Measured(1.0, 1.0), "compute", "measured: 1000.00 ms against 1000.00 in fragment passes"),
-        (Measured(inf, 0.25), "fragment", "measured: the driver refuses compute passes"),
-        (Measured(0.25, inf), "compute", "measured: the driver refuses fragment passes"),
+        (FormTimings(4.0e-3, 3.1e-3), "fragment", "measured: 3.10 ms against 4.00 in compute passes"),
+        (FormTimings(3.1e-3, 4.0e-3), "compute", "measured: 3.10 ms against 4.00 in fragment passes"),
+        (FormTimings(1.0, 1.0), "compute", "measured: 1000.00 ms against 1000.00 in fragment passes"),
+        (FormTimings(inf, 0.25), "fragment", "measured: the driver refuses compute passes"),
+        (FormTimings(0.25, inf), "compute", "measured: the driver refuses fragment passes"),
     ],
 )
 @pytest.mark.parametrize("renderer", CARDS)
@@ -75,7 +75,7 @@ def test_other_devices_are_given_what_was_faster(renderer, found, form, why):
     assert (made.form, made.why) == (form, why)
 
 
-@pytest.mark.parametrize("found", [None, Measured(0.0, 0.0), Measured(0.0, 1.0), Measured(inf, inf)])
+@pytest.mark.parametrize("found", [None, FormTimings(0.0, 0.0), FormTimings(0.0, 1.0), FormTimings(inf, inf)])
 def test_what_says_nothing_decides_nothing(found):
     made = chosen(CARDS[0], found=found)
     assert made.form == "compute" and "nothing could be measured" in made.why

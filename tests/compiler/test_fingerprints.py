@@ -5,14 +5,14 @@ from __future__ import annotations
 from random import Random
 
 from edited_graphs import edited
-from halation.compiler import NULL, Library, Request, installed
+from halation.compiler import NULL, Library, Request, installed_library
 from halation.compiler.codegen.emit import emit
 from halation.compiler.fusion.fuse import fuse
-from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.fusion.rewrites import rewrite_passes
 from halation.compiler.ir import ExternalProgram, Raster
 from halation.compiler.lowering.lower import lower
 from halation.compiler.scheduling.fingerprints import PassFingerprints
-from halation.compiler.scheduling.schedule import formats
+from halation.compiler.scheduling.schedule import choose_formats
 from halation.errors import HalationError
 from halation.glsl import parse
 from halation.graph import Graph, Input, Output, Port
@@ -32,7 +32,7 @@ FORMS = (NULL, replace(NULL, form="fragment"), replace(NULL, software=False))
 
 def told(graph: Graph, target=NULL, library: Library | None = None, frame: int = 1, scale: float = 1.0) -> dict:
     """By mark, the programs of all that passes make, each as if it were alone, and what they are set to."""
-    library, found = library or installed(), dict[str, set]()
+    library, found = library or installed_library(), dict[str, set]()
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items()
@@ -42,8 +42,8 @@ def told(graph: Graph, target=NULL, library: Library | None = None, frame: int =
         program = lower(graph, Request(bindings=bindings, frame=frame, scale=scale), library, Headers(SIZE)).program
     except HalationError:
         return {}
-    passes = rewritten(program, fuse(program, target), target, library)
-    texels = formats(program, passes, target, "half", frozenset())
+    passes = rewrite_passes(program, fuse(program, target), target, library)
+    texels = choose_formats(program, passes, target, "half", frozenset())
     fingerprints = PassFingerprints(program, library, target, texels)
     for fused in passes:
         whole = emit(program, fused, library, target, texels)
@@ -91,9 +91,9 @@ def test_a_shader_that_is_written_again_changes_what_it_makes_and_nothing_else()
     for name, node in (("exposure", Exposure(stops=1.0)), ("vignette", Vignette())):
         graph = graph.add(name, node).connect(Port("inputs", "image"), Port(name, "image"))
         graph = graph.add_output(name, Output(Kind.IMAGE)).connect(Port(name, "out"), Port("outputs", name))
-    library, name = installed(), Exposure().shader
+    library, name = installed_library(), Exposure().shader
     source = f"{library.texts[name].body}\n".replace("exp2(", "exp(")
-    other = library.replacing(parse(name, source), "another")
+    other = library.with_replacement(parse(name, source), "another")
     before, after = told(graph), told(graph, library=other)
     check(before, after)
     assert len(before) == len(after) == 2 and len(before.keys() & after.keys()) == 1

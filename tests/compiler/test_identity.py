@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from halation.compiler import NULL
-from halation.compiler.areas import Around
+from halation.compiler.areas import Neighborhood
 from halation.compiler.fusion.fuse import PassGroup
 from halation.compiler.ir import (
     Accessor,
@@ -53,7 +53,7 @@ PARAMETERS = (
     Parameter("int", Choice(1)),
 )
 CHOICES = (("mode", ("a", "b")),)
-AROUND = Around((1.0, 0.0, 0.0, 0.0, 1.0, 0.0), (2.0, 2.0))
+AROUND = Neighborhood((1.0, 0.0, 0.0, 0.0, 1.0, 0.0), (2.0, 2.0))
 ACCESSORS = (Accessor("image", "vec4", Ref(0), AROUND), Accessor("mask", "float", UniformConstant(1.0), AROUND))
 PROGRAM = ColorProgram(
     "color_change", parse("color", "vec4 color_change(vec4 c) { return c; }"), (LookupTable("t", True, 0),)

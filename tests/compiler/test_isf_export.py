@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.compiler.isf import Exported, export_isf
-from halation.compiler.isf.affine import length_text
-from halation.custom_nodes import Written
+from halation.compiler.isf import IsfExport, export_isf
+from halation.compiler.isf.affine import find_length_formula
+from halation.custom_nodes import CustomNode
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.inputs.lazy_provider import LazyResourceProvider
 from halation.nodes import Kind, Node, catalogue
@@ -41,7 +41,7 @@ def chain(*nodes: Node, pictures: int = 1) -> Graph:
     return graph.connect(last, TARGET)
 
 
-def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> Exported:
+def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> IsfExport:
     found = export_isf(graph, TARGET, LazyResourceProvider(), size=size)
     assert not found.reasons
     return found
@@ -51,7 +51,7 @@ def both(
     renderer: Renderer, graph: Graph, text: str, size: tuple[int, int], frame: int = 1, **values: Any
 ) -> tuple[Array, Array]:
     """What the graph makes, and what the shader makes; pictures reach above white."""
-    kind: type[Written] = shader(text)
+    kind: type[CustomNode] = shader(text)
     pictures = {
         name: opaque(size[1], size[0], seed) * np.array([3, 3, 3, 1], np.float32)
         for seed, name in enumerate(graph.inputs)
@@ -141,7 +141,7 @@ def test_lengths_are_found(factor: int, added: int, sides: list[int]) -> None:
     """A formula is right for every sample, or there is none."""
     sides = sorted(set(sides))
     lengths = [(side + min(added, factor - 1)) // factor for side in sides]
-    text = length_text(sides, lengths)
+    text = find_length_formula(sides, lengths)
     if text is None:
         assert len(sides) < 2 or lengths[-1] == lengths[0] or (lengths[-1] - lengths[0]) < 3
         return

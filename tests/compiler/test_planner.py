@@ -13,9 +13,9 @@ from edited_graphs import edited, some_graph
 from halation.compiler import NULL, Planner, Region, Request, compile_graph
 from halation.compiler import planner as planning
 from halation.compiler.fusion.fuse import fuse
-from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.fusion.rewrites import rewrite_passes
 from halation.compiler.lowering.lower import lower
-from halation.compiler.planner import KEPT, graph_library
+from halation.compiler.planner import MAX_REMEMBERED_PLANS, graph_library
 from halation.errors import GraphError, HalationError
 from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
 from halation.inputs.provider import MediaProvider
@@ -107,7 +107,7 @@ def test_numbers_decide_nothing_about_passes(seed):
     blank = structs.replace(program, ops=tuple(op.without_numbers() for op in program.ops))
     passes = fuse(program, NULL)
     assert fuse(blank, NULL) == passes
-    assert rewritten(blank, passes, NULL, library) == rewritten(program, passes, NULL, library)
+    assert rewrite_passes(blank, passes, NULL, library) == rewrite_passes(program, passes, NULL, library)
 
 
 # --- what is not done again ------------------------------------------------------------------------------------------
@@ -241,7 +241,7 @@ def test_only_a_few_plans_are_known():
     planner, graphs = Planner(), [chain(*[Exposure(stops=1.0)] * count) for count in range(1, 8)]
     for graph in graphs:
         planner.plan(graph, asked(graph), Headers(SIZE))
-    assert len(planner._known) == KEPT
+    assert len(planner._known) == MAX_REMEMBERED_PLANS
 
 
 def test_what_a_plan_followed_is_forgotten():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.custom_nodes import Code, CodeFault, Written, node_type
+from halation.custom_nodes import Code, CodeFault, CustomNode, node_type
 from halation.nodes import Field, Filter, Image, Pointwise, Value, Vector
 from hypothesis import given
 from hypothesis import strategies as some
@@ -26,7 +26,7 @@ vec4 tint(
 """
 
 
-def glsl(text: str, file: str = "") -> type[Written]:
+def glsl(text: str, file: str = "") -> type[CustomNode]:
     return node_type(Code("glsl", text, file))
 
 

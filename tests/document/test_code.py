@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from halation import document
-from halation.custom_nodes import Written
+from halation.custom_nodes import CustomNode
 from halation.errors import DocumentError
 from halation.graph import Graph, Unknown, problems
 from hypothesis import given
@@ -16,9 +16,9 @@ from hypothesis import strategies as some
 TEXT = "vec4 tint(vec4 image, float k /* = 0.5 */) {\n    return image * k;\n}"
 
 
-def written(graph: Graph, id: str = "tint") -> Written:
+def written(graph: Graph, id: str = "tint") -> CustomNode:
     item = graph.nodes[id]
-    assert isinstance(item, Written)
+    assert isinstance(item, CustomNode)
     return item
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.compiler.lowering.named import path_texts
+from halation.compiler.lowering.named import find_path_texts
 from halation.graph.paths import inlined, rebased, repointed
 
 INNER = {
@@ -47,7 +47,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def files(graph) -> dict[str, str]:
-    return {owner: str(Path(path).resolve()) for owner, (_, path) in path_texts(graph).items()}
+    return {owner: str(Path(path).resolve()) for owner, (_, path) in find_path_texts(graph).items()}
 
 
 @pytest.mark.parametrize("name", ["whole", "turned"])
@@ -66,14 +66,14 @@ def test_what_is_inside_leads_to_the_same_files(folder: Path, name: str) -> None
 def test_a_graph_that_moves_takes_its_paths_along(folder: Path, tmp_path: Path) -> None:
     graph = inlined(document.load(folder / "whole.json"))
     moved = rebased(graph, str(tmp_path / "library" / "deep"))
-    assert files(moved) == files(graph) and path_texts(moved)["inputs.plate"][0] == "../../plate.exr"
+    assert files(moved) == files(graph) and find_path_texts(moved)["inputs.plate"][0] == "../../plate.exr"
     assert rebased(moved, str(folder)) == graph
 
 
 def test_every_path_can_be_another(folder: Path) -> None:
     graph = inlined(document.load(folder / "turned.json"))
     changed = repointed(graph, lambda path: f"x/{Path(path).name}")
-    assert {text for text, _ in path_texts(changed).values()} == {"x/plate.exr", "x/rain.exr"}
+    assert {text for text, _ in find_path_texts(changed).values()} == {"x/plate.exr", "x/rain.exr"}
 
 
 def test_code_comes_inside(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.custom_nodes import Written
+from halation.custom_nodes import CustomNode
 from halation.editor.problems.findings import findings
 from halation.editor.toolkit.keys import chord
 from halation.graph import Graph, Output, Port, Settings, Unknown
@@ -116,7 +116,7 @@ def test_a_broken_line_is_marked_and_the_picture_stays(gui, path) -> None:
             ui.until(lambda: ui.session.root is not before and "code fault" not in ui.editor.places)  # noqa: B023
             ui.settled()
             assert not ui.editor.preview.faults and ui.session.graph.links == links
-            assert isinstance(ui.session.graph.nodes["code"], Written) and ui.session.graph.nodes["code"].k == 3.0
+            assert isinstance(ui.session.graph.nodes["code"], CustomNode) and ui.session.graph.nodes["code"].k == 3.0
 
     gui(body, path, size=SIZE)
 

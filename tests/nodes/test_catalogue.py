@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.compiler import installed
+from halation.compiler import installed_library
 from halation.graph import Graph, Port
 from halation.nodes import Filter, Kind, Node, Pointwise, Source, Trait, built_in_nodes, look_at
 from halation.renderer import RenderRequest
@@ -186,7 +186,7 @@ def test_file_name_is_id_is_shader_name(node):
 
 @pytest.mark.parametrize("node", [node for node in NODES if issubclass(node, Pointwise)], ids=lambda node: node.id)
 def test_the_glsl_signature_is_the_declaration(node):
-    function = installed().function(f"{node.category}/{node.id}", node.id, node.id)
+    function = installed_library().function(f"{node.category}/{node.id}", node.id, node.id)
     declared = tuple(
         (node.inputs[name].glsl if name in node.inputs else node.values[name].glsl, name)
         for name in node.order
@@ -206,15 +206,17 @@ def face(function) -> tuple[str, tuple[str, ...]]:
     return function.name, tuple(glsl for glsl, _ in (*function.parameters, *function.outputs))
 
 
-SHADERS = sorted(name for name in installed().texts if not name.startswith("viewer/"))
+SHADERS = sorted(name for name in installed_library().texts if not name.startswith("viewer/"))
 """What passes are made of. The viewer's are whole programs, which never meet a node's."""
 
 
 @pytest.mark.parametrize("name", SHADERS)
 def test_shader_names_do_not_clash(name):
     """Nothing is called like a GLSL word, and a node's helpers start with its id, so that any two nodes can fuse."""
-    text = installed().texts[name]
-    taken = {face(one) for other, item in installed().texts.items() if other != name for one in item.all_functions}
+    text = installed_library().texts[name]
+    taken = {
+        face(one) for other, item in installed_library().texts.items() if other != name for one in item.all_functions
+    }
     for function in text.all_functions:
         assert function.name not in GLSL_WORDS
         assert face(function) not in taken, f"'{function.name}' is defined in another file too"

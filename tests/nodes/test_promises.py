@@ -16,7 +16,7 @@ from halation import document, media
 from halation.authoring.preview.data_range import find_data_range
 from halation.cli.specimen import drawn, over
 from halation.color.transforms import decode_srgb
-from halation.compiler import installed
+from halation.compiler import installed_library
 from halation.nodes import Kind, Node, Pointwise, built_in_nodes
 from halation.presets import sample
 from halation.renderer import Renderer, RenderRequest
@@ -119,7 +119,7 @@ def listed(reasons: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
 def knows_places(node: type[Node]) -> bool:
     """False where each pixel is computed from the same pixel alone: then a proxy cannot differ."""
     words = frozenset({"pixel", "extent", "proxy"})
-    return not issubclass(node, Pointwise) or installed().uses(f"{node.category}/{node.id}", words, node.id)
+    return not issubclass(node, Pointwise) or installed_library().uses(f"{node.category}/{node.id}", words, node.id)
 
 
 @pytest.fixture(scope="module")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.compiler import installed
+from halation.compiler import installed_library
 from halation.errors import ShaderError
 from halation.graph import Graph, Port, Unknown, problems
 from halation.nodes import catalogue, plugins
@@ -51,7 +51,7 @@ class Site:
 
 def forget() -> None:
     """Look for plug-ins anew."""
-    for cached in (plugins, catalogue, installed):
+    for cached in (plugins, catalogue, installed_library):
         cached.cache_clear()
 
 
@@ -85,7 +85,7 @@ def test_built_in_ids_never_look_for_plugins(site: Site, monkeypatch: pytest.Mon
     forget()
     monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: pytest.fail("they are looked up"))
     assert catalogue()["exposure"].id == "exposure" and "no_such_node" not in catalogue()
-    assert installed().function("color/exposure", "exposure", "test").result == "vec4"
+    assert installed_library().function("color/exposure", "exposure", "test").result == "vec4"
 
 
 def test_a_fault_costs_only_that_plugin(site: Site) -> None:
@@ -122,11 +122,11 @@ def test_functions_of_shaders_have_its_name_in_front(site: Site) -> None:
     shader = code / "shaders" / "tone" / "dim.glsl"
     shader.write_text("vec4 acme_tone_dim(vec4 image, float factor) { return image * factor; }\n")
     forget()
-    assert installed().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
+    assert installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
     shader.write_text("\nvec4 dim(vec4 image, float factor) { return image * factor; }\n")
     forget()
     with pytest.raises(ShaderError, match=r"acme_tone/shaders/tone/dim.glsl.*'dim'.*must begin with 'acme_tone_'"):
-        installed().function("acme_tone/tone/dim", "acme_tone_dim", "test")
+        installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "test")
 
 
 # --- graphs ----------------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.compiler.devices import Measured
+from halation.compiler.devices import FormTimings
 from halation.errors import ShaderError
 from halation.renderer import calibration, open_device
 from halation.renderer.calibration import load_or_measure, measured
@@ -30,7 +30,7 @@ def counted(monkeypatch):
 
     def fake(device):
         seen.append(device.target.renderer)
-        return Measured(1.0 / len(seen), 0.25)
+        return FormTimings(1.0 / len(seen), 0.25)
 
     monkeypatch.setattr(calibration, "measured", fake)
     return seen
@@ -38,7 +38,7 @@ def counted(monkeypatch):
 
 def test_both_forms_run_and_take_time(device):
     found = measured(device, SMALL, 2)
-    assert found.telling and 0.0 < found.compute < 60.0 and 0.0 < found.fragment < 60.0
+    assert found.is_usable and 0.0 < found.compute < 60.0 and 0.0 < found.fragment < 60.0
 
 
 def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
@@ -51,14 +51,14 @@ def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
 
     monkeypatch.setattr(Runner, "measure", refusing)
     found = measured(device, SMALL, 1)
-    assert found.compute == float("inf") and found.telling
+    assert found.compute == float("inf") and found.is_usable
 
 
 def test_a_device_is_measured_once(device, counted, tmp_path):
     first = load_or_measure(device, tmp_path / "new")
-    assert first == Measured(1.0, 0.25) == load_or_measure(device, tmp_path / "new")
+    assert first == FormTimings(1.0, 0.25) == load_or_measure(device, tmp_path / "new")
     other = device.with_target(replace(device.target, renderer="another card"))
-    assert load_or_measure(other, tmp_path / "new") == Measured(0.5, 0.25)
+    assert load_or_measure(other, tmp_path / "new") == FormTimings(0.5, 0.25)
     assert counted == [device.target.renderer, "another card"]
     files = list((tmp_path / "new").iterdir())
     assert {json.loads(file.read_text())["renderer"] for file in files} == set(counted)
@@ -69,7 +69,7 @@ def test_a_file_that_makes_no_sense_is_measured_again(device, counted, tmp_path,
     load_or_measure(device, tmp_path)
     file = next(tmp_path.iterdir())
     file.write_text(text)
-    assert load_or_measure(device, tmp_path) == Measured(0.5, 0.25) == load_or_measure(device, tmp_path)
+    assert load_or_measure(device, tmp_path) == FormTimings(0.5, 0.25) == load_or_measure(device, tmp_path)
 
 
 def test_what_cannot_be_kept_is_not_measured(device, counted, tmp_path):

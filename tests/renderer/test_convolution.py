@@ -78,10 +78,10 @@ def test_what_is_no_number_does_not_spread(run, hole):
 
 @pytest.mark.parametrize("length", [1, 2, 7, 13, 32, 480, 1080, 1125, 1944, 3840])
 def test_stages_make_the_whole_length_and_miss_no_pixel(length):
-    padded = fourier.padded_length(length, 1)
+    padded = fourier.pad_length(length, 1)
     assert length <= padded <= 1.15 * length + 1.0
     for filled in {1, min(33, padded), -(-padded // 2), padded}:
-        stages = fourier.stages(padded, filled)
+        stages = fourier.plan_stages(padded, filled)
         assert math.prod(stage.radix for stage in stages) == padded
         for before, stage in pairwise(stages):
             assert stage.span == before.span * before.radix and stage.terms == stage.radix

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from halation.compiler import Library, installed
+from halation.compiler import Library, installed_library
 from halation.compiler.library import parse
 from halation.errors import GraphError
 from halation.graph import Graph, Input, Output, Port, Settings
@@ -35,7 +35,7 @@ class Trail(Temporal):
 def engine():
     source = "vec4 trail(vec4 image, vec4 before, float keep) { return mix(image, before, keep); }\n"
     shader = f"{Trail.category}/{Trail.id}"
-    library = Library({**installed().texts, shader: parse(shader, source)})
+    library = Library({**installed_library().texts, shader: parse(shader, source)})
     made = Renderer(open_device(), budget=0, library=library)
     yield made
     made.close()

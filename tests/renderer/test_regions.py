@@ -14,10 +14,10 @@ from conftest import graph_of
 from halation.compiler import Request, graph_library
 from halation.compiler.areas import Region
 from halation.compiler.fusion.fuse import fuse
-from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.fusion.rewrites import rewrite_passes
 from halation.compiler.ir import Read
 from halation.compiler.lowering.lower import lower
-from halation.compiler.tiling.regions import needed
+from halation.compiler.tiling.regions import find_regions
 from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
 from halation.renderer import Renderer, RenderRequest
@@ -87,14 +87,14 @@ def prove(renderer: Renderer, node: Node, some: bool, regions: tuple[Region, ...
     request = Request(bindings=outside.bind(graph, arrays))
     library, target = graph_library(graph, outside), renderer.device.target
     program = lower(graph, request, library, outside).program
-    passes = rewritten(program, fuse(program, target), target, library)
+    passes = rewrite_passes(program, fuse(program, target), target, library)
     whole = renderer.render(graph, RenderRequest(arrays, precision="float"))
     proven = 0
     for name, ref in program.outputs.items():
         if program.shape(ref).size != SIZE:
             continue
         for region in regions:
-            found = needed(program, passes, {ref: region})
+            found = find_regions(program, passes, {ref: region})
             read = {
                 op.picture.path: part
                 for one, part in found.items()

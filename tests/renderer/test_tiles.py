@@ -41,9 +41,9 @@ def fitting():
 @pytest.fixture
 def in_pieces(monkeypatch):
     """Everything is made in the smallest tiles that there are."""
-    monkeypatch.setattr(tiling, "LEAST", 16)
-    monkeypatch.setattr(tiling, "_too_much", lambda *_: "a test")
-    monkeypatch.setattr(tiling._Work, "_fits", lambda *_: False)
+    monkeypatch.setattr(tiling, "MIN_TILE", 16)
+    monkeypatch.setattr(tiling, "_find_excess", lambda *_: "a test")
+    monkeypatch.setattr(tiling._StagePlanner, "_fits", lambda *_: False)
 
 
 def same_bits(one, other) -> None:
@@ -143,7 +143,7 @@ def cameras(node) -> dict[str, Camera]:
 @pytest.mark.parametrize("name", FAR_LOOKING)
 def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name):
     size, node = (120, 90), FAR_LOOKING[name]
-    monkeypatch.setattr(tiling, "LEAST", 36)
+    monkeypatch.setattr(tiling, "MIN_TILE", 36)
     known = {
         "image": noise(*size),
         "depth": deep(*size),
@@ -336,7 +336,7 @@ def test_memory_that_no_tile_fits_into_is_refused():
 
 
 def test_tiles_that_are_too_many_are_refused(monkeypatch):
-    monkeypatch.setattr(tiling, "MOST_TILES", 5)
+    monkeypatch.setattr(tiling, "MAX_TILES", 5)
     tight = limited(memory=2 * 100 * 50 * 16 + 2**15)  # both pictures, and small tiles
     with pytest.raises(DeviceError, match=r"node 'n0': within 188.* its 100x50 pixels can only be made in tiles of"):
         tight.compile(chain(NODES["convolve3x3"]()), RenderRequest({"image": noise(100, 50)}))

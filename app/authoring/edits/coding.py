@@ -10,7 +10,7 @@ from typing import Any, cast, get_args
 from halation.nodes import Node, Plain
 from msgspec import structs
 
-from ...custom_nodes import Code, CodeFault, Language, Written, node_type
+from ...custom_nodes import Code, CodeFault, CustomNode, Language, node_type
 from ...document.code import read_code, written_code
 from ...graph import Graph, Group, Item, Unknown
 from ...graph.values import coerced, value_fault
@@ -51,7 +51,7 @@ def make_starter_node() -> Node:
 
 def read_node_code(item: Item | None, folder: str) -> Code | None:
     """The code of a node, even of one whose code says no node; None for all other nodes."""
-    if isinstance(item, Written):
+    if isinstance(item, CustomNode):
         return item.code
     if not isinstance(item, Unknown) or item.type not in get_args(Language):
         return None
@@ -94,7 +94,7 @@ def file_texts(graph: Graph) -> dict[Path, str]:
     text_by_file: dict[Path, str] = {}
     for body, item in code_items(graph, borrowed=False):
         file = code_file(item, body.folder)
-        if file is not None and (isinstance(item, Written | BrokenCodeNode)):
+        if file is not None and (isinstance(item, CustomNode | BrokenCodeNode)):
             code = read_node_code(item, body.folder)
             text_by_file[file] = code.text if code else ""
     return text_by_file
@@ -123,7 +123,7 @@ def reread_file_code(graph: Graph, file: Path) -> Graph:
         except CodeFault as fault:
             return _replace_node(body, id, _make_broken(code, fault, _changed_values(item)))
         return (
-            body if disk_code == code and isinstance(item, Written | BrokenCodeNode) else set_code(body, id, disk_code)
+            body if disk_code == code and isinstance(item, CustomNode | BrokenCodeNode) else set_code(body, id, disk_code)
         )
 
     return _map_code_nodes(graph, change, borrowed=True)

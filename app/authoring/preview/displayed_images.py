@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from halation.nodes import Kind, Size
 
-from ...compiler import Plan, scaled
+from ...compiler import Plan, scale_size
 from ...graph import Port
 from ...renderer import DeviceTexture, Lease, Runner
 from .frame_cache import FrameImage
@@ -125,7 +125,7 @@ class DisplayedImages:
         candidates += [plan.surfaces[upload.surface].size for upload in plan.uploads]
         full_size = (round(size[0] / wish.scale), round(size[1] / wish.scale))
         for full in candidates:
-            if full and scaled(full, wish.scale) == size:
+            if full and scale_size(full, wish.scale) == size:
                 full_size = full
                 break
         full_size = size if wish.scale == 1.0 or size == (1, 1) else full_size

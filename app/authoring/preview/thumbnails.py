@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from halation.nodes import ColorSettings, Kind
 
 from ...color.management import DEFAULT_COLOR
-from ...compiler import Plan, scaled
+from ...compiler import Plan, scale_size
 from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
 from .color_fallback import ColorFallback
 from .data_range import are_normals, balance_range, find_data_range
@@ -99,7 +99,7 @@ class Thumbnails:
         source = _DisplaySource(texture.handle, texture.handle.size, subject.channels, subject.key)
         width, height = source.full_size
         zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
-        size = scaled(source.full_size, zoom)
+        size = scale_size(source.full_size, zoom)
         look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
         handle = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
         self._thumbnails[subject.path] = _Thumbnail(handle, subject.key, subject.mark)

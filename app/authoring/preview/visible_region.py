@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from halation.nodes import Size
 
-from ...compiler import Region, scaled
+from ...compiler import Region, scale_size
 from ...graph import Port
 from ...renderer import Renderer
 from .request import PreviewRequest
@@ -49,7 +49,7 @@ class VisibleRegion:
 
     def share(self, scale: float) -> float:
         """The part of the pictures that is computed first at a scale, of their area."""
-        size = scaled(self.picture, scale)
+        size = scale_size(self.picture, scale)
         region = self.region(size)
         return region.width * region.height / (size[0] * size[1]) if region else 1.0
 
@@ -81,7 +81,7 @@ def find_visible_part(
         return None
     plan, textures = renderer.compile(wish.graph, wish.render_request(ports, wish.frame)), renderer.runner.textures
     surfaces = [plan.surfaces[number] for number in plan.outputs.values()]
-    size = scaled(glimpse.picture, wish.scale)
+    size = scale_size(glimpse.picture, wish.scale)
     if plan.memories or plan.tiling is not None or any(surface.size != size for surface in surfaces):
         return None
     region = None if all(surface.key in textures for surface in surfaces) else glimpse.region(size)

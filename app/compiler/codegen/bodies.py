@@ -7,30 +7,30 @@ from halation.nodes import Edge, glsl_type
 from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
 from .names import ShaderNames
 
-OUTPUTS = 8
+LONG_STRIP = 8
 """Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
 
-FEWER = 4
+SHORT_STRIP = 4
 """Those of a short one. Eight would be hardly faster, and take the driver long to compile."""
 
-SHORT = (9, 17, 25, 33)
+UNROLLED_TAPS = (9, 17, 25, 33)
 """Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
 
-SMALL = 2**18
+MAX_LOOPED_PIXELS = 2**18
 """Pixels of pictures that are convolved in loops: writing taps out takes the driver longer than is ever saved."""
 
 
-def accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
+def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture."""
     name, glsl = item.name, item.glsl
     if isinstance(item.operand, Ref):
         size = names.shape(item.operand).size
         names.uniform("ivec2", size, f"{name}_size")
         if edge == "black":
-            value = names.converted(item.operand, f"edge_clamp(p, {name}_size)", glsl)
+            value = names.load_as(item.operand, f"edge_clamp(p, {name}_size)", glsl)
             value = f"inside(p, {name}_size) ? {value} : {glsl}(0.0)"
         else:
-            value = names.converted(item.operand, f"edge_{edge}(p, {name}_size)", glsl)
+            value = names.load_as(item.operand, f"edge_{edge}(p, {name}_size)", glsl)
     else:
         names.uniform("ivec2", (1, 1), f"{name}_size")
         value = names.constant(item.operand, glsl)
@@ -48,18 +48,18 @@ def accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     ]
 
 
-def convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
+def write_convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
     """The accessor, the weights and the uniforms that all forms of a convolution share."""
     names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
     names.uniform("int", op.origin, "origin")
-    if names.form == "fragment" or not is_written(op):
+    if names.form == "fragment" or not is_unrolled(op):
         names.uniform("int", len(op.weights), "taps")
     glsl = glsl_type(names.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
-    return [block, *accessor(names, Accessor("image", glsl, op.image), op.edge)]
+    return [block, *write_accessor(names, Accessor("image", glsl, op.image), op.edge)]
 
 
-def convolution(names: ShaderNames, op: Convolve) -> list[str]:
+def write_convolution(names: ShaderNames, op: Convolve) -> list[str]:
     """`convolution`, one pixel of it, for fragment passes."""
     glsl = glsl_type(names.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
@@ -73,18 +73,18 @@ def convolution(names: ShaderNames, op: Convolve) -> list[str]:
     ]
 
 
-def is_written(op: Convolve) -> bool:
+def is_unrolled(op: Convolve) -> bool:
     """Whether all taps are written out."""
     width, height = op.size
-    return op.stride > 1 or (len(op.weights) <= SHORT[-1] and width * height > SMALL)
+    return op.stride > 1 or (len(op.weights) <= UNROLLED_TAPS[-1] and width * height > MAX_LOOPED_PIXELS)
 
 
-def count_of(op: Convolve) -> int:
+def count_pixels(op: Convolve) -> int:
     """How many pixels one invocation makes. Those of a decimation by four have little in common."""
-    return OUTPUTS if len(op.weights) > SHORT[-1] else max(2 * FEWER // max(op.stride, 2), 1)
+    return LONG_STRIP if len(op.weights) > UNROLLED_TAPS[-1] else max(2 * SHORT_STRIP // max(op.stride, 2), 1)
 
 
-def strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
+def write_strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
     """Statements that make `s0`, `s1`..., the convolution at `count` pixels from `first` on.
 
     Every pixel is read once. Terms are added in the order of a plain loop, so all forms give the same bits.
@@ -94,12 +94,12 @@ def strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
         f"ivec2 p = first + along * (first * {op.stride - 1} + origin);",
         f"{glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(count))};",
     ]
-    return lines + (_written_out(op, count) if is_written(op) else _sliding(count))
+    return lines + (_write_unrolled(op, count) if is_unrolled(op) else _write_sliding(count))
 
 
-def _written_out(op: Convolve, count: int) -> list[str]:
+def _write_unrolled(op: Convolve, count: int) -> list[str]:
     """No loop, and every weight is where it is needed."""
-    taps, lines = _class(op), list[str]()
+    taps, lines = _count_unrolled_taps(op), list[str]()
     for tap in range((count - 1) * op.stride + taps):
         sums = [
             f"s{k} += weights[{number // 4}].{'xyzw'[number % 4]} * t;"
@@ -110,7 +110,7 @@ def _written_out(op: Convolve, count: int) -> list[str]:
     return lines
 
 
-def _sliding(count: int) -> list[str]:
+def _write_sliding(count: int) -> list[str]:
     """A loop. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
     lines = [
         f"float {', '.join(f'w{k} = 0.0' for k in range(count))};",
@@ -125,22 +125,22 @@ def _sliding(count: int) -> list[str]:
     return [*lines, "}"]
 
 
-def _class(op: Convolve) -> int:
+def _count_unrolled_taps(op: Convolve) -> int:
     """How many taps are written out: those of a class of lengths, so that lengths share programs."""
     if op.stride > 1:
         return len(op.weights)
-    return next(size for size in SHORT if size >= len(op.weights))
+    return next(size for size in UNROLLED_TAPS if size >= len(op.weights))
 
 
-def padded_weights(op: Convolve, form: str) -> tuple[float, ...]:
+def pad_weights(op: Convolve, form: str) -> tuple[float, ...]:
     """The uniform block's contents: strips run past the last weight, where zeros must lie."""
     count = len(op.weights)
     if form == "compute":
-        count = _class(op) if is_written(op) else -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
+        count = _count_unrolled_taps(op) if is_unrolled(op) else -(-(count + LONG_STRIP - 1) // LONG_STRIP) * LONG_STRIP
     return op.weights + (0.0,) * (-(-count // 4) * 4 - len(op.weights))
 
 
-def source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> list[str]:
+def write_source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> list[str]:
     """`source_at`: a pixel of what is reduced, computed on the spot where its producers joined the pass."""
     shape = names.shape(root.image)
     names.uniform("ivec2", shape.size, "source_size")
@@ -153,7 +153,7 @@ def source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> lis
     ]
 
 
-def reduction(names: ShaderNames, root: Reduce) -> list[str]:
+def write_reduction(names: ShaderNames, root: Reduce) -> list[str]:
     """Every invocation folds one block; the blocks at the far edges are smaller."""
     glsl = glsl_type(names.shape(root.image).channels)
     fold = "result + c" if root.operation == "sum" else "max(result, c)"

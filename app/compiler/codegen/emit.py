@@ -74,9 +74,9 @@ def _emit_root(root: Op, asked: _PassRequest) -> EmittedProgram:
         _write_texel(names.shape(ref), result, half)
         for ref, result, half in zip(group.writes, parts.results, asked.halves, strict=True)
     ]
-    count = bodies.count_of(parts.convolution) if parts.convolution else forms.count_rows(context)
+    count = bodies.count_pixels(parts.convolution) if parts.convolution else forms.count_rows(context)
     if target.form == "compute":
-        main = forms.main(names, count, parts.convolution, parts.body, texels)
+        main = forms.write_main(names, count, parts.convolution, parts.body, texels)
     else:
         main = _write_fragment_main(names, parts.body, texels)
     lines = [
@@ -94,8 +94,8 @@ def _emit_root(root: Op, asked: _PassRequest) -> EmittedProgram:
     return EmittedProgram(
         Shader("\n".join(lines) + "\n", target.form, files, by_image),
         tuple((name, value) for name, _, value in names.uniforms),
-        bodies.padded_weights(parts.convolution, target.form) if parts.convolution else (),
-        forms.groups(parts.convolution, count, program.size_on_device(group.writes[0])),
+        bodies.pad_weights(parts.convolution, target.form) if parts.convolution else (),
+        forms.count_groups(parts.convolution, count, program.size_on_device(group.writes[0])),
     )
 
 
@@ -116,7 +116,7 @@ def _name_windows(names: ShaderNames, group: PassGroup) -> None:
         if ref in windows:
             names.uniform("ivec2", windows[ref].start, f"t{number}_start")
     if group.writes[0] in windows:
-        names.window(windows[group.writes[0]])
+        names.declare_window(windows[group.writes[0]])
 
 
 def _write_preamble(target: Target) -> list[str]:

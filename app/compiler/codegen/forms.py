@@ -37,7 +37,7 @@ def count_rows(context: PassContext) -> int:
     return ROWS if gathers < 2 and all(op.is_straight(context.library) for op in context.members) else 1
 
 
-def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
+def count_groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
     """Work groups that cover a picture: side by side across the rows of pixels, along them, and blocks of those."""
     axis = convolve.axis if convolve else 1
     along, across = -(-size[axis] // count), -(-size[1 - axis] // LOCAL_SIZE)
@@ -45,7 +45,7 @@ def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int,
     return (block, along, -(-across // block))
 
 
-def main(
+def write_main(
     names: ShaderNames, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]
 ) -> list[str]:
     """The entry point of a compute pass.
@@ -60,7 +60,7 @@ def main(
         "void main() {",
         "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
         " + gl_LocalInvocationID.x;",
-        f"ivec2 first = {_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
+        f"ivec2 first = {_write_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
         *([f"first += {names.start};"] if names.start else []),
         "pixel = first; extent = grid;",
     ]
@@ -79,7 +79,7 @@ def main(
         "}",
     ]
     if convolve:
-        lines += bodies.strip(names, convolve, count)
+        lines += bodies.write_strip(names, convolve, count)
     for k in range(count):
         own = [f"{name}_{k}" for name in results]
         given = [f"s{k}"] if convolve else []
@@ -92,6 +92,6 @@ def main(
     return [*made, *lines, "}", "}"]
 
 
-def _place(along: str, across: str, convolve: Convolve | None) -> str:
+def _write_place(along: str, across: str, convolve: Convolve | None) -> str:
     """A pixel by where it is along its row of pixels, and across; both axes of a convolution share a program."""
     return f"along * ({along}) + along.yx * {across}" if convolve else f"ivec2({across}, {along})"

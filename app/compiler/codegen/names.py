@@ -32,7 +32,7 @@ class ShaderNames(Struct):
     room: str = "grid"
     """How many pixels are written, across and down."""
 
-    def window(self, region: Region) -> None:
+    def declare_window(self, region: Region) -> None:
         """Only a region is written, and of some pictures only parts are there."""
         self.start = self.uniform("ivec2", region.start, "window_start")
         self.room = self.uniform("ivec2", region.size, "window_size")
@@ -56,7 +56,7 @@ class ShaderNames(Struct):
         call = f"imageLoad({name}, {where})" if self.by_image else f"texelFetch({name}, {where}, 0)"
         return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
 
-    def converted(self, ref: Ref, where: str, glsl: str) -> str:
+    def load_as(self, ref: Ref, where: str, glsl: str) -> str:
         """Read one pixel as another type."""
         return convert(self.load(ref, where), self.shape(ref).channels, glsl)
 
@@ -84,7 +84,7 @@ class ShaderNames(Struct):
         text = values[item.operand]
         channels = self.shape(item.operand).channels
         if item.low != float("-inf") or item.high != float("inf"):
-            text = f"clamp({text}, {_bound(item.low)}, {_bound(item.high)})"
+            text = f"clamp({text}, {_write_bound(item.low)}, {_write_bound(item.high)})"
         if item.factor != 1.0:
             text = f"{text} * {self.uniform('float', item.factor)}"
         return convert(text, channels, item.glsl)
@@ -118,7 +118,7 @@ def glsl_channels(glsl: str) -> int:
     return {"vec2": 2, "vec3": 3, "vec4": 4}.get(glsl, 1)
 
 
-def _bound(limit: float) -> str:
+def _write_bound(limit: float) -> str:
     return repr(_float32(limit))
 
 

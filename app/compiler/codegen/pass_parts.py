@@ -96,7 +96,7 @@ def _(root: Call, context: PassContext) -> PassParts:
         line
         for gather in inlined
         for item in gather.accessors
-        for line in bodies.accessor(context.names, item, gather.op.edge)
+        for line in bodies.write_accessor(context.names, item, gather.op.edge)
     ]
     body, values = _write_calls(context)
     shaders = [*([EDGES] if inlined else []), *_pointwise_files(context)]
@@ -106,17 +106,19 @@ def _(root: Call, context: PassContext) -> PassParts:
 @_write_root.register
 def _(root: Reduce, context: PassContext) -> PassParts:
     body, values = _write_calls(context)
-    functions = bodies.source(context.names, root, body, values[root.image]) + bodies.reduction(context.names, root)
+    functions = bodies.write_source(context.names, root, body, values[root.image]) + bodies.write_reduction(
+        context.names, root
+    )
     return PassParts(_pointwise_files(context), functions, [], ["reduced(pixel)"])
 
 
 @_write_root.register
 def _(root: Convolve, context: PassContext) -> PassParts:
     names = context.names
-    functions, body = bodies.convolution_accessor(names, root), list[str]()
+    functions, body = bodies.write_convolution_accessor(names, root), list[str]()
     if names.form == "fragment":
         glsl = glsl_type(names.shape(root.image).channels)
-        functions += bodies.convolution(names, root)
+        functions += bodies.write_convolution(names, root)
         body.append(f"{glsl} convolved = convolution();")
     return PassParts([EDGES], functions, body, ["convolved"], convolution=root)
 
@@ -124,7 +126,7 @@ def _(root: Convolve, context: PassContext) -> PassParts:
 @_write_root.register
 def _(root: Gather, context: PassContext) -> PassParts:
     names = context.names
-    functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
+    functions = [line for item in root.accessors for line in bodies.write_accessor(names, item, root.edge)]
     arguments = [names.argument(item, {}) for item in root.parameters]
     accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ACCESSORS)
     body, results = list[str](), [f"r{ref.output}" for ref in context.group.writes]

@@ -41,8 +41,8 @@ def fuse(
     `enabled=False` leaves every one alone, `gathers=False` those that look around.
     """
     ops = program.ops
-    live = _live(program)
-    readers = _readers(ops, live)
+    live = _find_live(program)
+    readers = _find_readers(ops, live)
     kept = set(program.kept_refs)
     home: dict[int, int] = {}
     members: dict[int, list[int]] = {}
@@ -56,9 +56,11 @@ def fuse(
         roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
         joins = op.is_pointwise or (gathers and op.is_inlinable)
-        joins = joins and root != index and not kept.intersection(outputs) and _at_its_pixel(ops, outputs, readers)
+        joins = (
+            joins and root != index and not kept.intersection(outputs) and _are_read_at_own_pixel(ops, outputs, readers)
+        )
         if enabled and joins:
-            joined = _joined(reads[root], outputs, op)
+            joined = _join_reads(reads[root], outputs, op)
             together = uniforms[root] + op.uniform_floats
             inputs = len(joined) + count_tables(ops, [*members[root], index])
             if together <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
@@ -70,12 +72,12 @@ def fuse(
         home[index], members[index], uniforms[index] = index, [index], op.uniform_floats
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
-        PassGroup(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
+        PassGroup(tuple(reversed(members[root])), tuple(reads[root]), tuple(_find_writes(ops, root, readers, kept)))
         for root in sorted(members)
     )
 
 
-def _live(program: LoweredProgram) -> set[int]:
+def _find_live(program: LoweredProgram) -> set[int]:
     """Operations that an output needs."""
     found: set[int] = set()
     todo = [ref.op for ref in program.kept_refs]
@@ -87,7 +89,7 @@ def _live(program: LoweredProgram) -> set[int]:
     return found
 
 
-def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
+def _find_readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
     found: dict[Ref, list[int]] = {}
     for index in live:
         for ref in ops[index].reads():
@@ -95,12 +97,12 @@ def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
     return found
 
 
-def _at_its_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
+def _are_read_at_own_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
     """True if all that read these pictures want each pixel for one of their own."""
     return all(ops[reader].takes_producers for ref in outputs for reader in readers.get(ref, ()))
 
 
-def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
+def _join_reads(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
     """What a pass reads once `op` is part of it."""
     return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
 
@@ -119,7 +121,7 @@ def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: 
     return same_size and len(members) < MAX_MEMBERS and inputs <= target.max_inputs
 
 
-def _writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:
+def _find_writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:
     """The root's outputs that somebody wants."""
     outputs = [Ref(root, number) for number in range(ops[root].outputs)]
     return [ref for ref in outputs if ref in readers or ref in kept]

@@ -23,7 +23,7 @@ def fits(program: LoweredProgram, one: PassGroup, target: Target) -> bool:
     )
 
 
-def ordered(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
+def order_members(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
     """The operations of several passes as those of one. What looks around reads textures only, so it comes first."""
     both = {index for some in members for index in some}
     return tuple(sorted(both, key=lambda index: (ops[index].is_pointwise, index)))

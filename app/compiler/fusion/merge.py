@@ -17,9 +17,9 @@ from ..ir import LoweredProgram, Ref
 from ..library import Library
 from ..target import Target
 from .fuse import PassGroup
-from .limits import fits, looks_around, ordered
+from .limits import fits, looks_around, order_members
 
-MOST_TRIED = 4
+MAX_READERS_TRIED = 4
 """Passes that read a picture and are tried for another one that does, the latest: hundreds may read one file."""
 
 
@@ -27,17 +27,17 @@ def merge(
     program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Merge passes as far as `target` allows. They stay in an order in which each comes after what it reads."""
-    found = _Merging(program, passes, target).run()
+    found = _PassMerger(program, passes, target).run()
     return tuple(group.fused for group in found)
 
 
 def split_by_result(program: LoweredProgram, fused: PassGroup) -> tuple[PassGroup, ...]:
     """What a pass writes, each operation's as the pass that would make nothing else; the pass itself if it is one."""
     roots = tuple(dict.fromkeys(ref.op for ref in fused.writes))
-    return (fused,) if len(roots) == 1 else tuple(_behind(program, fused, root) for root in roots)
+    return (fused,) if len(roots) == 1 else tuple(_extract_part(program, fused, root) for root in roots)
 
 
-def _behind(program: LoweredProgram, fused: PassGroup, root: int) -> PassGroup:
+def _extract_part(program: LoweredProgram, fused: PassGroup, root: int) -> PassGroup:
     """The part of a pass that an operation needs."""
     needed, reads = {root}, set[Ref]()
     for index in reversed(fused.members):
@@ -52,7 +52,7 @@ def _behind(program: LoweredProgram, fused: PassGroup, root: int) -> PassGroup:
     )
 
 
-class _Group(Struct, frozen=True):
+class _MergeCandidate(Struct, frozen=True):
     """Passes that are one. `place` says when it runs; what is not `open` is merged with nothing."""
 
     place: int
@@ -67,27 +67,27 @@ class _Group(Struct, frozen=True):
         return PassGroup(self.members, tuple(self.reads), tuple(self.writes))
 
 
-class _Merging:
+class _PassMerger:
     """The work in progress: who makes and who reads each picture, by the numbers of groups."""
 
     def __init__(self, program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target) -> None:
         self.program, self.ops, self.target = program, program.ops, target
         self.kept = frozenset(program.kept_refs)
-        self.groups: dict[int, _Group] = {}
+        self.groups: dict[int, _MergeCandidate] = {}
         self.maker: dict[Ref, int] = {}
         self.readers: dict[Ref, dict[int, None]] = {}
         self.met: dict[Ref, dict[int, None]] = {}
         """Of the readers, those that were looked at."""
         for place, one in enumerate(passes):
             size, reads, writes = self.ops[one.root].size, dict.fromkeys(one.reads), dict.fromkeys(one.writes)
-            self._enter(place, _Group(place, one.members, reads, writes, size, self._is_open(one)))
+            self._enter(place, _MergeCandidate(place, one.members, reads, writes, size, self._is_open(one)))
 
-    def run(self) -> list[_Group]:
+    def run(self) -> list[_MergeCandidate]:
         for number in list(self.groups):
             while number >= 0:
                 for ref in self.groups[number].reads:
                     self.met.setdefault(ref, {})[number] = None
-                number = self._widened(number)
+                number = self._widen(number)
         return sorted(self.groups.values(), key=lambda group: group.place)
 
     def _is_open(self, one: PassGroup) -> bool:
@@ -97,7 +97,7 @@ class _Merging:
             return False
         return all(self.program.shape(ref).size == root.size for ref in one.writes)
 
-    def _enter(self, number: int, group: _Group) -> None:
+    def _enter(self, number: int, group: _MergeCandidate) -> None:
         self.groups[number] = group
         self.maker |= dict.fromkeys(group.writes, number)
         for ref in group.reads:
@@ -109,7 +109,7 @@ class _Merging:
             del self.readers[ref][number]
             self.met[ref].pop(number, None)
 
-    def _widened(self, number: int) -> int:
+    def _widen(self, number: int) -> int:
         """Merge a group with another one; the number of what they became, or -1 if there is none."""
         for other in dict.fromkeys(self._partners(number)):
             first, last = sorted((number, other), key=lambda one: self.groups[one].place)
@@ -131,24 +131,24 @@ class _Merging:
                 yield self.maker[ref]
         for ref in group.reads:
             if self.program.shape(ref).size == group.size:
-                latest = islice(reversed(self.met[ref]), MOST_TRIED)
+                latest = islice(reversed(self.met[ref]), MAX_READERS_TRIED)
                 yield from (other for other in latest if other != number and self._alike(group, other))
 
-    def _alike(self, group: _Group, other: int) -> bool:
+    def _alike(self, group: _MergeCandidate, other: int) -> bool:
         return self.groups[other].open and self.groups[other].size == group.size
 
-    def _both(self, first: int, last: int) -> _Group | None:
+    def _both(self, first: int, last: int) -> _MergeCandidate | None:
         """Two groups as one, if there is a place where it can run."""
         early, late = self.groups[first], self.groups[last]
         place = self._place(first, last)
         if place < 0 or any(looks_around(self.ops, late.fused, ref) for ref in early.writes if ref in late.reads):
             return None
-        members = ordered(self.ops, early.members, late.members)
+        members = order_members(self.ops, early.members, late.members)
         if not self.ops[members[-1]].is_pointwise:
             return None
         reads = dict.fromkeys(ref for ref in (*early.reads, *late.reads) if ref not in early.writes)
         writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_wanted(ref, first, last))
-        return _Group(place, members, reads, writes, early.size, True)
+        return _MergeCandidate(place, members, reads, writes, early.size, True)
 
     def _is_wanted(self, ref: Ref, *but: int) -> bool:
         """True if others than these groups want a picture."""

@@ -12,13 +12,13 @@ from .fuse import PassGroup
 from .merge import merge, split_by_result
 from .recompute import recompute
 
-__all__ = ["REWRITES", "rewritten", "split_by_result"]
+__all__ = ["REWRITES", "rewrite_passes", "split_by_result"]
 
 REWRITES = (recompute, merge)
 """In this order."""
 
 
-def rewritten(
+def rewrite_passes(
     program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Fewer passes, or such that read and write less."""

@@ -11,11 +11,11 @@ from typing import ClassVar
 from halation.nodes import Affine, Edge, ShaderText, Size
 from msgspec.structs import replace
 
-from ...custom_nodes import unprefixed
+from ...custom_nodes import strip_prefix
 from ...resources.color_program import ColorProgram, LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ..areas import Region, Span, inside
+from ..areas import Region, Span, clip_span
 from ..library import Library
 from .operation import Op, SourceOp
 from .values import Accessor, Parameter, Ref, UniformConstant
@@ -112,7 +112,7 @@ class FunctionOp(Op, frozen=True):
 
     @property
     def label(self) -> str:
-        return unprefixed(self.function)
+        return strip_prefix(self.function)
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -126,7 +126,7 @@ class FunctionOp(Op, frozen=True):
         """Each constant is rounded up to four floats, and every output has a seam."""
         constants = [item.operand for item in self.parameters if isinstance(item.operand, UniformConstant)]
         factors = sum(item.factor != 1.0 for item in self.parameters)
-        return sum(_padded_floats(item) for item in constants) + 4 * (factors + len(self.shapes))
+        return sum(_count_padded_floats(item) for item in constants) + 4 * (factors + len(self.shapes))
 
     def without_numbers(self) -> FunctionOp:
         return replace(self, parameters=_blank_parameters(self.parameters))
@@ -151,10 +151,10 @@ class Call(FunctionOp, frozen=True):
         return region
 
     def is_straight(self, library: Library) -> bool:
-        return library.straight(self.shader, self.function, self.owner)
+        return library.is_straight(self.shader, self.function, self.owner)
 
     def is_cheap(self, library: Library) -> bool:
-        return library.cheap(self.shader, self.function, self.owner)
+        return library.is_cheap(self.shader, self.function, self.owner)
 
 
 class ColorCall(Call, frozen=True, kw_only=True):
@@ -221,9 +221,9 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
         footprint: Region | None = None
         for item in self.accessors:
             if item.operand == ref and item.around is not None:
-                across, down = item.around.read(region)
-                part = Region.of(inside(across, size[0], self.edge), inside(down, size[1], self.edge))
-                footprint = footprint.with_(part) if footprint else part
+                across, down = item.around.find_spans(region)
+                part = Region.of(clip_span(across, size[0], self.edge), clip_span(down, size[1], self.edge))
+                footprint = footprint.union(part) if footprint else part
         return footprint or Region.whole(size)
 
     def is_straight(self, library: Library) -> bool:
@@ -280,7 +280,7 @@ class Convolve(Op, frozen=True):
         spans = [region.across, region.down]
         first, end = spans[self.axis]
         span = (first * self.stride + self.origin, (end - 1) * self.stride + self.origin + len(self.weights))
-        spans[self.axis] = inside(span, size[self.axis], self.edge)
+        spans[self.axis] = clip_span(span, size[self.axis], self.edge)
         return Region.of(spans[0], spans[1])
 
     def without_numbers(self) -> Convolve:
@@ -306,7 +306,7 @@ class Reduce(Op, frozen=True):
         return ops[self.image.op].shapes[self.image.output].size
 
     def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
-        return Region.of(_blocks(region.across, size[0]), _blocks(region.down, size[1]))
+        return Region.of(_find_blocks(region.across, size[0]), _find_blocks(region.down, size[1]))
 
 
 class ExternalProgram(Op, frozen=True):
@@ -369,11 +369,11 @@ class Raster(Op, frozen=True):
         return replace(self, cameras=(), motions=(), near=0.0)
 
 
-def _blocks(span: Span, length: int) -> Span:
+def _find_blocks(span: Span, length: int) -> Span:
     return span[0] * BLOCK, min(span[1] * BLOCK, length)
 
 
-def _padded_floats(item: UniformConstant) -> int:
+def _count_padded_floats(item: UniformConstant) -> int:
     return 12 if item.channels == 9 else -(-item.channels // 4) * 4
 
 

@@ -9,7 +9,7 @@ from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import force_setattr
 
-from ..areas import Around
+from ..areas import Neighborhood
 
 
 class PictureShape(Struct, frozen=True, gc=False):
@@ -92,7 +92,7 @@ class Accessor(Struct, frozen=True, gc=False):
     name: str
     glsl: str
     operand: Ref | UniformConstant
-    around: Around | None = None
+    around: Neighborhood | None = None
 
     identity_exclude: ClassVar[Mapping[str, str]] = {
         "around": "it says which part of a picture must be there, and never what is read of it"

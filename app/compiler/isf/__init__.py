@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .export import Exported, export_isf
+from .export import IsfExport, export_isf
 
-__all__ = ["Exported", "export_isf"]
+__all__ = ["IsfExport", "export_isf"]

@@ -14,7 +14,7 @@ from halation.nodes import Size
 from msgspec import Struct
 
 from ...resources.record import Record
-from ..areas import Around
+from ..areas import Neighborhood
 from ..ir import LoweredProgram, PictureShape, UniformConstant
 
 TOLERANCE = 1e-5
@@ -61,7 +61,7 @@ class Anatomy:
     places: dict[int, int] = field(default_factory=dict[int, int])
 
 
-def anatomy(program: LoweredProgram) -> Anatomy:
+def take_apart(program: LoweredProgram) -> Anatomy:
     """Take a program apart."""
     found = Anatomy(None)
     found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(program.outputs.items()))
@@ -77,8 +77,8 @@ def _walk(item: Any, found: Anatomy) -> object:
     if isinstance(item, PictureShape):
         found.sizes.append(item.size)
         return item.channels, item.data, item.size == (1, 1)
-    if isinstance(item, Around):
-        return Around  # it matters for parts of a picture alone, which a shader of this format never makes
+    if isinstance(item, Neighborhood):
+        return Neighborhood  # it matters for parts of a picture alone, which a shader of this format never makes
     if isinstance(item, Struct):
         aside = item.compare_exclude if isinstance(item, Record) else ()
         names = (name for name in item.__struct_fields__ if name not in aside)
@@ -97,7 +97,7 @@ class Model:
     slopes: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
     products: dict[tuple[str, str], list[float]] = field(default_factory=dict[tuple[str, str], list[float]])
 
-    def predicted(self, point: Point) -> list[float]:
+    def predict(self, point: Point) -> list[float]:
         """The numbers at other values of the knobs."""
         away = {name: point.get(name, knob.base) - knob.base for name, knob in self.knobs.items()}
         found = list(self.base.numbers)
@@ -121,49 +121,49 @@ class Model:
                 factors[other] -= slope * a.base
                 whole += slope * a.base * b.base
                 size = max(size, abs(slope * a.base * b.base))
-                parts.append(f"{literal(slope)} * {a.text} * {b.text}")
+                parts.append(f"{write_literal(slope)} * {a.text} * {b.text}")
         for name, factor in factors.items():
             knob = self.knobs[name]
             whole -= self.slopes[name][place] * knob.base
             size = max(size, abs(factor * knob.base))
             if abs(factor * max(abs(knob.base), abs(knob.step))) > TOLERANCE * size:
-                parts.append(f"{literal(factor)} * {knob.text}")
+                parts.append(f"{write_literal(factor)} * {knob.text}")
         if not parts:
-            return literal(self.base.numbers[place])
+            return write_literal(self.base.numbers[place])
         if abs(whole) > TOLERANCE * size:
-            parts.append(literal(whole))
+            parts.append(write_literal(whole))
         return f"({' + '.join(parts)})"
 
 
-def fitted(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
+def fit_slopes(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
     """How fast every number grows with a knob; None if what is computed changes, or numbers do not grow evenly."""
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):
         program = lowered({knob.name: knob.base + step * knob.step})
-        taken = anatomy(program) if program else None
+        taken = take_apart(program) if program else None
         if taken is None or taken.skeleton != base.skeleton or (taken.sizes != base.sizes and not knob.resizes):
             return None
         columns.append(taken.numbers)
     slopes = [(one - start) / knob.step for one, start in zip(columns[0], base.numbers, strict=True)]
     for step, column in enumerate(columns, 1):
-        if not alike(column, [a + step * knob.step * b for a, b in zip(base.numbers, slopes, strict=True)]):
+        if not are_close(column, [a + step * knob.step * b for a, b in zip(base.numbers, slopes, strict=True)]):
             return None
     return slopes
 
 
-def alike(found: Sequence[float], wanted: Sequence[float]) -> bool:
+def are_close(found: Sequence[float], wanted: Sequence[float]) -> bool:
     """True if numbers are equal but for rounding."""
     pairs = zip(found, wanted, strict=True)
     return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b), 1e-3) for a, b in pairs)
 
 
-def length_text(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
+def find_length_formula(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
     """A length as a formula of the picture's, written `{}`, that holds for all samples; None if there is none.
 
     Lengths are constant, or a fraction of the picture's, rounded somehow.
     """
     if len(set(lengths)) == 1 and len(set(canvas)) > 1:
-        return literal(lengths[0])
+        return write_literal(lengths[0])
     if list(lengths) == list(canvas):
         return "{}"
     span = lengths[-1] - lengths[0]
@@ -175,11 +175,11 @@ def length_text(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
         high = min((length + 1) * factor - 1 - side for side, length in zip(canvas, lengths, strict=True))
         if low <= high:
             added = factor - 1 if low <= factor - 1 <= high else 0 if low <= 0 <= high else (low + high) // 2
-            return f"floor(({{}} + {literal(added)}) / {literal(factor)})"
+            return f"floor(({{}} + {write_literal(added)}) / {write_literal(factor)})"
     return None
 
 
-def literal(number: float) -> str:
+def write_literal(number: float) -> str:
     """A number as GLSL 1.20 has it."""
     text = f"{number:.9g}"
     return text if any(letter in text for letter in ".en") else f"{text}.0"

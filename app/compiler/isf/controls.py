@@ -17,7 +17,7 @@ Section = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Controlled:
+class IsfControl:
     """A control, what it turns, and its knobs, one for each component."""
 
     name: str
@@ -44,9 +44,9 @@ def identifier(name: str, taken: Iterable[str]) -> str:
     return found
 
 
-def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], list[str]]:
+def find_controls(graph: Graph, taken: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
     """The controls that may become inputs; and sentences on those that cannot."""
-    names, found, notes = set(taken), list[Controlled](), list[str]()
+    names, found, notes = set(taken), list[IsfControl](), list[str]()
     for name, control in graph.controls.items():
         target = control.target
         item = graph.nodes.get(target.node)
@@ -62,16 +62,16 @@ def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], li
             continue
         called = identifier(name, names)
         names.add(called)
-        found.append(_controlled(called, name, control.label or value.label or name, value, graph.value(target)))
+        found.append(_make_control(called, name, control.label or value.label or name, value, graph.value(target)))
     return found, notes
 
 
-def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -> Controlled:
+def _make_control(called: str, name: str, label: str, value: Value, rest: Plain) -> IsfControl:
     parts = list(rest) if isinstance(rest, tuple) else [float(rest)]
     low, high = _range(value, parts)
     entry: Section = {"NAME": called, "LABEL": label}
     if value.type == "color":
-        straight = [*map(_encoded, parts[:3]), *parts[3:], 1.0]
+        straight = [*map(_encode_light, parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
         texts = [f"@halation_light(@{called}.{letter})" for letter in "rgb"] + [f"@{called}.a"]
     elif value.type == "vector":
@@ -89,7 +89,7 @@ def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -
         _knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
         for at, (part, text) in enumerate(zip(parts, texts, strict=False))
     )
-    return Controlled(name, value, entry, knobs)
+    return IsfControl(name, value, entry, knobs)
 
 
 def _knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
@@ -107,6 +107,6 @@ def _range(value: Value, parts: list[float]) -> tuple[float, float]:
     return min(low, *parts), max(high, *parts)
 
 
-def _encoded(light: float) -> float:
+def _encode_light(light: float) -> float:
     code = 12.92 * abs(light) if abs(light) <= 0.0031308 else 1.055 * abs(light) ** (1.0 / 2.4) - 0.055
     return code if light >= 0.0 else -code

@@ -21,10 +21,10 @@ from ..lowering.lower import lower
 from ..request import Request
 from ..target import NULL
 from .affine import Knob, Point
-from .controls import Section, controlled, identifier
-from .model import FRAME, HEIGHT, WIDTH, Modelled, Modelling
-from .passes import reasons
-from .writing import Writing
+from .controls import Section, find_controls, identifier
+from .model import FRAME, HEIGHT, WIDTH, IsfModel, ModelSearch
+from .passes import find_obstacles
+from .writing import IsfWriter
 
 MAX_PASSES = 64
 MAX_PICTURES = 16
@@ -32,7 +32,7 @@ SIZE: Size = (1280, 720)
 
 
 @dataclass(frozen=True)
-class Exported:
+class IsfExport:
     """The text of a shader and what it cannot do that the graph can; or why there is none: nodes and reasons."""
 
     text: str
@@ -41,7 +41,7 @@ class Exported:
 
 
 @dataclass(frozen=True)
-class _Bound:
+class _BoundProvider:
     """The world beyond the graph, where every bound input is a picture of the size that is wanted."""
 
     outside: ResourceProvider
@@ -68,16 +68,16 @@ class _Bound:
 
 def export_isf(
     graph: Graph, target: Port, outside: ResourceProvider, *, size: Size | None = None, doc: str = ""
-) -> Exported:
+) -> IsfExport:
     """Write what `target` shows of a graph as one shader. Raises the errors of compiling a graph.
 
     Its pictures become those of the shader, and its controls inputs where they change nothing but numbers, evenly.
     `size` is that of the picture where something holds for one size only.
     """
-    return _Export(graph, target, outside, size or graph.settings.size or SIZE).whole(doc)
+    return _IsfExporter(graph, target, outside, size or graph.settings.size or SIZE).whole(doc)
 
 
-class _Export:
+class _IsfExporter:
     """The work in progress."""
 
     def __init__(self, graph: Graph, target: Port, outside: ResourceProvider, size: Size) -> None:
@@ -85,29 +85,29 @@ class _Export:
         self.library = graph_library(graph, outside)
         self.first = (graph.settings.frames or (1, 1))[0]
         self.pictures = _picture_names([name for name, end in graph.inputs.items() if end.kind is Kind.IMAGE])
-        self.controls, notes = controlled(graph, self.pictures.values())
+        self.controls, notes = find_controls(graph, self.pictures.values())
         self.notes = notes
 
-    def whole(self, doc: str) -> Exported:
+    def whole(self, doc: str) -> IsfExport:
         """The shader, or why there is none."""
-        program = self._lowered({})
+        program = self._lower_at({})
         passes = fuse(program, NULL, gathers=False)
-        wrong = [*self._data(program), *reasons(program, passes, self._sources(program))]
+        wrong = [*self._data(program), *find_obstacles(program, passes, self._sources(program))]
         count = sum(len(fused.writes) for fused in passes)
         if count > MAX_PASSES:
             wrong.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
         if wrong:
-            return Exported("", (), tuple(dict.fromkeys(wrong)))
-        found = Modelling(self._lowered, self._knobs(), self.size).whole()
+            return IsfExport("", (), tuple(dict.fromkeys(wrong)))
+        found = ModelSearch(self._lower_at, self._knobs(), self.size).whole()
         self._note(found)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
         inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & found.used]
-        writing = Writing(found, self.library, self._sources(found.program), tuple(self.pictures.values()), self.size)
+        writing = IsfWriter(found, self.library, self._sources(found.program), tuple(self.pictures.values()), self.size)
         text, targets = writing.whole(self.first)
         count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
         if count > MAX_PICTURES:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
-            return Exported("", (), (("", why),))
+            return IsfExport("", (), (("", why),))
         head: Section = {
             "ISFVSN": "2",
             "DESCRIPTION": doc or "Made by Halation.",
@@ -116,9 +116,9 @@ class _Export:
             **({"PASSES": targets} if targets != [{}] else {}),
         }
         comment = json.dumps(head, indent=2).replace("*/", "*\\/")
-        return Exported(f"/*{comment}*/\n\n{text}", tuple(self.notes), ())
+        return IsfExport(f"/*{comment}*/\n\n{text}", tuple(self.notes), ())
 
-    def _lowered(self, point: Point) -> LoweredProgram:
+    def _lower_at(self, point: Point) -> LoweredProgram:
         """The graph as operations, at values of knobs."""
         graph = self.graph
         for control in self.controls:
@@ -126,7 +126,7 @@ class _Export:
         size = (round(point.get(WIDTH, self.size[0])), round(point.get(HEIGHT, self.size[1])))
         bindings = {name: Picture(name, "", Kind.IMAGE, 4, in_memory=True) for name in self.pictures}
         request = Request({"made": self.target}, bindings, size, frame=round(point.get(FRAME, self.first)))
-        return lower(graph, request, self.library, _Bound(self.outside, size)).program
+        return lower(graph, request, self.library, _BoundProvider(self.outside, size)).program
 
     def _knobs(self) -> dict[str, Knob]:
         width, height = (float(side) for side in self.size)
@@ -137,7 +137,7 @@ class _Export:
             HEIGHT: Knob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
         }
 
-    def _note(self, found: Modelled) -> None:
+    def _note(self, found: IsfModel) -> None:
         """Say what the shader does not follow."""
         for control in self.controls:
             if held := [knob.name for knob in control.knobs if knob.name in found.held]:

@@ -9,7 +9,7 @@ from halation.nodes import Size
 
 from ...errors import HalationError
 from ..ir import LoweredProgram, UniformConstant
-from .affine import Anatomy, Knob, Model, Point, alike, anatomy, fitted, length_text
+from .affine import Anatomy, Knob, Model, Point, are_close, find_length_formula, fit_slopes, take_apart
 
 WIDTH, HEIGHT, FRAME = "width", "height", "frame"
 
@@ -18,7 +18,7 @@ Texts = Mapping[Size, tuple[str, str]]
 
 
 @dataclass
-class Modelled:
+class IsfModel:
     """A program, and what its numbers and sizes are in a shader. `held` are the knobs that it does not follow."""
 
     program: LoweredProgram
@@ -42,7 +42,7 @@ class Modelled:
 
 
 @dataclass
-class Modelling:
+class ModelSearch:
     """The work in progress: knobs that do not fit in are held at what they have in the graph, one after the other."""
 
     lowered: Callable[[Point], LoweredProgram]
@@ -50,7 +50,7 @@ class Modelling:
     size: Size
     held: list[str] = field(default_factory=list[str])
 
-    def whole(self) -> Modelled:
+    def whole(self) -> IsfModel:
         """Hold as few knobs as can be. Raises the errors of compiling at the values of the graph."""
         while True:
             try:
@@ -60,7 +60,7 @@ class Modelling:
                     raise
                 self._hold(next(reversed(self.knobs)))
                 continue
-            model = Model(anatomy(program), dict(self.knobs))
+            model = Model(take_apart(program), dict(self.knobs))
             failed = self._fit(model)
             sizes: Texts | None = None
             if WIDTH in self.knobs and not failed:
@@ -68,13 +68,13 @@ class Modelling:
                 failed = WIDTH if sizes is None else ""
             failed = failed or self._multiply(model)
             if not failed:
-                return Modelled(program, model, sizes or {}, self.held)
+                return IsfModel(program, model, sizes or {}, self.held)
             self._hold(failed)
 
     def _base(self) -> dict[str, float]:
         return {name: knob.base for name, knob in self.knobs.items()}
 
-    def _tried(self, point: Point) -> LoweredProgram | None:
+    def _lower_at(self, point: Point) -> LoweredProgram | None:
         try:
             return self.lowered({**self._base(), **point})
         except HalationError:
@@ -88,7 +88,7 @@ class Modelling:
     def _fit(self, model: Model) -> str:
         """Find the slopes; the name of the first knob that has none."""
         for name, knob in self.knobs.items():
-            slopes = fitted(self._tried, model.base, knob)
+            slopes = fit_slopes(self._lower_at, model.base, knob)
             if slopes is None:
                 return name
             model.slopes[name] = slopes
@@ -104,18 +104,18 @@ class Modelling:
                 found = self._numbers(model, point)
                 if found is None:
                     return one if one in (WIDTH, HEIGHT, FRAME) else other
-                apart = model.predicted(point)
-                if not alike(found, apart):
+                apart = model.predict(point)
+                if not are_close(found, apart):
                     area = a.step * b.step
                     model.products[one, other] = [(x - y) / area for x, y in zip(found, apart, strict=True)]
         point = {name: model.knobs[name].far for name in names}
         found = self._numbers(model, point) if names else None
-        return "" if not names or (found is not None and alike(found, model.predicted(point))) else names[-1]
+        return "" if not names or (found is not None and are_close(found, model.predict(point))) else names[-1]
 
     def _numbers(self, model: Model, point: Point) -> list[float] | None:
         """The numbers at a point; None where something else is computed."""
-        program = self._tried(point)
-        taken = anatomy(program) if program else None
+        program = self._lower_at(point)
+        taken = take_apart(program) if program else None
         return taken.numbers if taken is not None and taken.skeleton == model.base.skeleton else None
 
     def _sizes(self, base: Anatomy) -> Texts | None:
@@ -123,14 +123,14 @@ class Modelling:
         steps = (0, 37, 91, 192)
         found: list[Anatomy] = []
         for step in steps:
-            program = self._tried({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
-            if program is None or (taken := anatomy(program)).skeleton != base.skeleton:
+            program = self._lower_at({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
+            if program is None or (taken := take_apart(program)).skeleton != base.skeleton:
                 return None
             found.append(taken)
         texts: dict[Size, tuple[str, str]] = {}
         for at, size in enumerate(base.sizes):
             across, down = (
-                length_text([self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in found])
+                find_length_formula([self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in found])
                 for axis in (0, 1)
             )
             if across is None or down is None or texts.get(size, (across, down)) != (across, down):

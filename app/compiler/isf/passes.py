@@ -15,7 +15,7 @@ from ..codegen.pass_parts import PassContext, PassParts, write_parts
 from ..fusion.fuse import PassGroup
 from ..ir import ExternalProgram, LoweredProgram, Op, Raster, Ref, UniformConstant
 from ..library import Library
-from .affine import literal
+from .affine import write_literal
 
 _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MULTILINE)
 _CONSTANTS = re.compile(r"^const\s+\w+\s+([^;]*);", re.MULTILINE)
@@ -65,7 +65,7 @@ class IsfNames(ShaderNames):
         return convert(whole, len(texts), glsl)
 
 
-def reasons(
+def find_obstacles(
     program: LoweredProgram, passes: tuple[PassGroup, ...], pictures: Mapping[Ref, str]
 ) -> Iterator[tuple[str, str]]:
     """Why a graph cannot be written as one shader: nodes, and sentences about them."""
@@ -93,7 +93,7 @@ def _reason(op: Op) -> str:
     return _OBSTACLES.get(type(op)) or ("changes color by tables of a color library" if op.tables else "")
 
 
-def function(
+def write_function(
     program: LoweredProgram, fused: PassGroup, output: int, prefix: str, names: IsfNames, library: Library
 ) -> tuple[list[str], str]:
     """The functions of a pass, and the name of the one that makes its pixel: a vec4."""
@@ -108,7 +108,7 @@ def function(
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
-    known = {"frame": ("int", f"@FRAMEINDEX + {names.first}"), "proxy": ("float", literal(program.scale))}
+    known = {"frame": ("int", f"@FRAMEINDEX + {names.first}"), "proxy": ("float", write_literal(program.scale))}
     start = [
         "pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));",
         "grid = ivec2(RENDERSIZE);",
@@ -127,7 +127,7 @@ def function(
             start.append(f"{name} = {text};")
     body = [*declared, *lines, "vec4 made() {", *start, *parts.body, f"return {whole};", "}"]
     text = "\n".join(line.rstrip() for line in "\n".join(body).split("\n") if line.strip())
-    return _renamed(text, prefix, names, texts).split("\n"), f"{prefix}made"
+    return _prefix_names(text, prefix, names, texts).split("\n"), f"{prefix}made"
 
 
 def _lines(context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]) -> Iterator[str]:
@@ -158,7 +158,7 @@ def _portable(body: str) -> str:
     )
 
 
-def _renamed(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -> str:
+def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -> str:
     """Every global name gets the prefix of the pass: two passes may define the same. What is marked with @ stays."""
     own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
     own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
@@ -171,7 +171,7 @@ def _renamed(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -
 def _weight(weights: tuple[float, ...], first: int) -> str:
     """Statements that return weight `j`: arrays of constants take drivers four times as long to compile."""
     if len(weights) == 1:
-        return f"return {literal(weights[0])};"
+        return f"return {write_literal(weights[0])};"
     half = len(weights) // 2
     low, high = _weight(weights[:half], first), _weight(weights[half:], first + half)
     return f"if (j < {first + half}) {{ {low} }} else {{ {high} }}"
@@ -183,5 +183,5 @@ def _plain(glsl: str, value: Uniform) -> str:
             return f"{glsl}({', '.join(str(int(part)) for part in value)})"
         if glsl.startswith("uvec"):
             return f"{glsl}({', '.join(f'{int(part)}u' for part in value)})"
-        return f"{glsl}({', '.join(literal(part) for part in value)})"
-    return str(int(value)) if glsl in ("int", "bool") else literal(value)
+        return f"{glsl}({', '.join(write_literal(part) for part in value)})"
+    return str(int(value)) if glsl in ("int", "bool") else write_literal(value)

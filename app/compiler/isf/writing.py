@@ -11,19 +11,19 @@ from ..fusion.fuse import PassGroup, fuse
 from ..ir import Ref
 from ..library import Library
 from ..target import NULL
-from .affine import literal
+from .affine import write_literal
 from .controls import Section
-from .model import Modelled
-from .passes import IsfNames, function
+from .model import IsfModel
+from .passes import IsfNames, write_function
 
 _PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
 
 
 @dataclass
-class Writing:
+class IsfWriter:
     """The work in progress: passes drawn so far, by the buffers that they fill."""
 
-    found: Modelled
+    found: IsfModel
     library: Library
     sources: Mapping[Ref, str]
     pictures: tuple[str, ...]
@@ -63,17 +63,17 @@ class Writing:
             False,
             seams=False,
             texts=self.found.texts,
-            sized=self._sized,
+            sized=self._find_size_text,
             first=first,
             readers={one: f"read_{self._name(one)}" for one in fused.reads},
         )
-        lines, made = function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)
+        lines, made = write_function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)
         self.blocks += [*lines, ""]
         size = self._size_of(ref)
         self.calls.append(f"halation_canvas = {self._canvas(size)}; gl_FragColor = {made}();")
         lengths: Section = {}
         if size != self.size:
-            across, down = self.found.sizes.get(size) or (literal(size[0]), literal(size[1]))
+            across, down = self.found.sizes.get(size) or (write_literal(size[0]), write_literal(size[1]))
             lengths = {"WIDTH": across.format("$WIDTH"), "HEIGHT": down.format("$HEIGHT")}
         self.buffers[ref] = self._free(lengths)
         self.targets.append({"TARGET": self.buffers[ref], "FLOAT": True, **lengths})
@@ -105,9 +105,9 @@ class Writing:
         whole = next((str(one["TARGET"]) for one in self.targets if "WIDTH" not in one), "")
         if whole or self.pictures:
             return f"IMG_SIZE({whole or self.pictures[0]})"
-        return f"vec2({literal(self.size[0])}, {literal(self.size[1])})"
+        return f"vec2({write_literal(self.size[0])}, {write_literal(self.size[1])})"
 
-    def _sized(self, size: Uniform) -> tuple[str, str] | None:
+    def _find_size_text(self, size: Uniform) -> tuple[str, str] | None:
         assert isinstance(size, tuple)
         found = self.found.sizes.get((int(size[0]), int(size[1])))
         if found is None:

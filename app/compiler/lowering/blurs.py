@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 from halation.nodes import Edge, Size
 
-from ..areas import Around
+from ..areas import Neighborhood
 from ..ir import Accessor, Builder, Convolve, Gather, Parameter, PictureShape, Ref, UniformConstant
 from ..library import Library
 from . import gaussian
@@ -33,10 +33,10 @@ class BlurBuilder:
         """
         picture, full = image, self._builder.shape(image).size
         firsts = [0, 0]
-        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
+        spans = [gaussian.find_spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
         for axis, plan in enumerate(axes):
             for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
-                weights, start = gaussian.decimation(step)
+                weights, start = gaussian.decimation_weights(step)
                 origin = first * step + start - firsts[axis]
                 picture = self.convolve(picture, axis, weights, step, origin, edge, length)
                 firsts[axis] = first
@@ -62,10 +62,10 @@ class BlurBuilder:
         shape = self._resize(image, axis, length)
         scale, start = 1.0 / factor, apron / factor
         matrix = (scale, 0.0, start, 0.0, 1.0, 0.0) if axis == 0 else (1.0, 0.0, 0.0, 0.0, scale, start)
-        around = Around(matrix, (2.0, 0.0) if axis == 0 else (0.0, 2.0))
+        around = Neighborhood(matrix, (2.0, 0.0) if axis == 0 else (0.0, 2.0))
         accessor = Accessor("image", "vec4", image, around)
         numbers = tuple(Parameter("int", UniformConstant(number)) for number in (axis, factor, apron))
-        light = self._library.light(*ENLARGE, self._owner)
+        light = self._library.is_light(*ENLARGE, self._owner)
         return self._builder.add(
             Gather((shape,), self._owner, *ENLARGE, numbers, accessors=(accessor,), edge=edge, light=light)
         )

@@ -10,7 +10,7 @@ from ...errors import GraphError
 from ...graph import Input, Port
 from ...graph.values import value_fault
 from ..ir import PlannedObject, UniformConstant
-from .expand import nothing
+from .expand import zero_value
 
 
 def check_values(path: str, node: Node) -> None:
@@ -21,7 +21,7 @@ def check_values(path: str, node: Node) -> None:
             raise GraphError(f"{path}.{name}: {fault}")
 
 
-def of_input(port: Port, end: Input) -> UniformConstant:
+def input_constant(port: Port, end: Input) -> UniformConstant:
     """The constant of a graph input. Raises GraphError where it does not fit."""
     given = end.default if isinstance(end.default, tuple) else (end.default,)
     found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
@@ -32,14 +32,14 @@ def of_input(port: Port, end: Input) -> UniformConstant:
     return UniformConstant(found if len(found) > 1 else float(*found))
 
 
-def limited(wire: UniformConstant, value: Value, factor: float) -> UniformConstant:
+def limit_wire(wire: UniformConstant, value: Value, factor: float) -> UniformConstant:
     """A wired constant within the hard range, in working units."""
     parts = wire.value if isinstance(wire.value, tuple) else (wire.value,)
     parts = tuple(min(max(part, value.minimum), value.maximum) * factor for part in parts)
     return UniformConstant(parts if isinstance(wire.value, tuple) else parts[0])
 
 
-def of_socket(socket: Socket) -> UniformConstant:
+def socket_default(socket: Socket) -> UniformConstant:
     """The constant that an input has without a link: its default with one number per channel."""
     default = socket.default if socket.default is not None else 0.0
     if socket.kind.is_planned:
@@ -51,7 +51,7 @@ def of_socket(socket: Socket) -> UniformConstant:
 
 def of_nothing(socket: Socket) -> UniformConstant:
     """The constant that an output shows which has nothing to show."""
-    return PlannedObject() if socket.kind.is_planned else UniformConstant(nothing(socket))
+    return PlannedObject() if socket.kind.is_planned else UniformConstant(zero_value(socket))
 
 
 def _read_object(kind: Kind, numbers: tuple[float, ...]) -> PlannedObject:

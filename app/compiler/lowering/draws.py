@@ -36,9 +36,9 @@ from halation.nodes import (
 )
 
 from ...errors import ShaderError
-from ...glsl import Function
+from ...glsl import GlslFunction
 from ...resources.picture import Picture
-from ..areas import Around
+from ..areas import Neighborhood
 from ..ir import (
     BLOCK,
     MAX_TAPS,
@@ -66,7 +66,7 @@ from ..library import Library
 from ..raster import CHANNELS
 from . import fourier, gaussian, transforms
 from .blurs import BlurBuilder
-from .node_inputs import DrawnPicture, NodeFiles, NodeInputs
+from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 
 
 class Recorder:
@@ -79,7 +79,7 @@ class Recorder:
         size: Size,
         builder: Builder,
         library: Library,
-        files: NodeFiles,
+        files: NodeResources,
         memories: Mapping[str, Memory],
         rate: float,
         start: int,
@@ -114,7 +114,7 @@ class Recorder:
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._at(socket, frame)
         if isinstance(operand, Ref):
-            return self._drawn(operand)
+            return self._picture_of(operand)
         shape, parameters = self._shape(socket, self.size), (Parameter(socket.glsl, operand),)
         return self._add(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
@@ -129,7 +129,7 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None = None,
         **arguments: Argument,
     ) -> Drawn:
-        light = self._library.light(self._shader, function, self._owner)
+        light = self._library.is_light(self._shader, function, self._owner)
         shapes = (self._shape(result, size or self.size),)
         op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
         return self._add(op)
@@ -182,7 +182,7 @@ class Recorder:
             self._shader,
             function,
             parameters,
-            choices(self._node),
+            find_choices(self._node),
             accessors=tuple(accessors),
             edge=edge,
             light=light,
@@ -200,7 +200,7 @@ class Recorder:
                 self._shader,
                 function,
                 self._parameters(signature, named),
-                choices(self._node),
+                find_choices(self._node),
             )
         )
 
@@ -235,11 +235,11 @@ class Recorder:
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
         along = 0 if axis == "x" else 1
         origin = -(len(weights) // 2)
-        return self._drawn(self._blurs.convolve(picture.ref, along, weights, 1, origin, edge, picture.size[along]))
+        return self._picture_of(self._blurs.convolve(picture.ref, along, weights, 1, origin, edge, picture.size[along]))
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
         picture, spread = self._pixels(image), self._pixels(kernel)
-        return self._drawn(fourier.convolution(self._builder, picture.ref, spread.ref, self._owner))
+        return self._picture_of(fourier.add_convolution(self._builder, picture.ref, spread.ref, self._owner))
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
         picture, program = self._pixels(image), self._files.recolor(change)
@@ -251,7 +251,7 @@ class Recorder:
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
         source = self._pixels(image).ref
         shape = self._shape(None, self.size)
-        return self._drawn(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
+        return self._picture_of(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
 
     def raster(
         self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
@@ -299,34 +299,34 @@ class Recorder:
         return self._files.render(path, named)
 
     def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
-        return self._drawn(self._files.read(Picture(path, layer, result.kind, result.channels, space=space)))
+        return self._picture_of(self._files.read(Picture(path, layer, result.kind, result.channels, space=space)))
 
     def asset(self, path: str, folder: str) -> Drawn:
-        return self._drawn(self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
+        return self._picture_of(self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
 
     # --- parts ---------------------------------------------------------------------------------------------------
 
     def _add(self, op: Op) -> DrawnPicture:
         return DrawnPicture(self._builder.add(op), op.shapes[0])
 
-    def _drawn(self, ref: Ref) -> DrawnPicture:
+    def _picture_of(self, ref: Ref) -> DrawnPicture:
         return DrawnPicture(ref, self._builder.shape(ref))
 
     def _blur(self, image: Pixels, axes: Sequence[gaussian.BlurAxis], edge: Edge) -> DrawnPicture:
-        return self._drawn(self._blurs.blur(self._pixels(image).ref, axes, edge))
+        return self._picture_of(self._blurs.blur(self._pixels(image).ref, axes, edge))
 
     def _shape(self, result: Socket | None, size: Size) -> PictureShape:
         socket = result or Image()
         return PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
 
-    def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Around | None:
+    def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Neighborhood | None:
         """Where a function reads a picture that has this overlap."""
         if overlap is None or isinstance(operand, UniformConstant):
             return None
         if isinstance(overlap, Reach):
-            return Around(overlap.matrix, overlap.radius)
+            return Neighborhood(overlap.matrix, overlap.radius)
         radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
-        return Around.pixel(own, self._builder.shape(operand).size, radius)
+        return Neighborhood.pixel(own, self._builder.shape(operand).size, radius)
 
     def _operand(self, item: Pixels) -> Ref | UniformConstant:
         if isinstance(item, Socket):
@@ -343,7 +343,7 @@ class Recorder:
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
         return DrawnPicture(operand, self._builder.shape(operand))
 
-    def _parameters(self, signature: Function, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
+    def _parameters(self, signature: GlslFunction, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
         names = tuple(name for _, name in signature.parameters)
         if names != tuple(arguments):
             raise ShaderError(
@@ -360,16 +360,16 @@ class Recorder:
                 operand = self._operand(item)
             else:
                 assert isinstance(item, (float, int, tuple))
-                operand = UniformConstant(_plain(item))
+                operand = UniformConstant(_check_plain(item))
             found.append(Parameter(glsl, operand))
         return tuple(found)
 
 
-def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """The choices of a node by value: its GLSL file sees them as macros."""
     return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
 
 
-def _plain(item: Plain) -> float | int | bool | tuple[float, ...]:
+def _check_plain(item: Plain) -> float | int | bool | tuple[float, ...]:
     assert not isinstance(item, str)
     return item

@@ -9,7 +9,7 @@ from typing import Any
 from halation.nodes import Node, Socket
 from msgspec import Struct, field
 
-from ...custom_nodes import Written
+from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...glsl import Text
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
@@ -17,7 +17,7 @@ from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conver
 MAX_DEPTH = 32
 
 
-class Flat(Struct):
+class FlatGraph(Struct):
     """A graph without groups. Node names are paths such as `glow/bloom`; an input's node is `<path>/inputs`."""
 
     nodes: dict[str, Node] = field(default_factory=dict[str, Node])
@@ -53,21 +53,21 @@ class Flat(Struct):
         return end
 
 
-def stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
+def find_stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
     """The input that an output of a muted node or group shows: the first of its type, else one that fits."""
     same = (name for name, socket in inputs.items() if (socket.kind, socket.channels) == (output.kind, output.channels))
     fitting = (name for name, socket in inputs.items() if conversion(socket, output) is None)
     return next(chain(same, fitting), None)
 
 
-def nothing(socket: Socket) -> float | tuple[float, ...]:
+def zero_value(socket: Socket) -> float | tuple[float, ...]:
     """Zero in every channel: what a muted output shows that no input can stand in for."""
     return 0.0 if socket.channels == 1 else (0.0,) * socket.channels
 
 
-def expand(graph: Graph) -> Flat:
+def expand(graph: Graph) -> FlatGraph:
     """Expand every group of `graph`. A group's unlinked input keeps its own default file."""
-    flat = Flat()
+    flat = FlatGraph()
     # Depth first without recursion: groups may nest deeper than we would like to recurse through.
     todo: list[tuple[str, Graph, Mapping[str, Any]]] = [("", graph, {})]
     while todo:
@@ -102,7 +102,7 @@ def expand(graph: Graph) -> Flat:
     return flat
 
 
-def changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
+def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
     """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
     parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
     same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
@@ -119,7 +119,7 @@ def changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, No
         elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
             try:
                 bodies = [_with_controls(group.graph, group.values) for group in (old, item)]
-                inner = changed_nodes(bodies[0], bodies[1], f"{prefix}{id}/")
+                inner = find_changed_nodes(bodies[0], bodies[1], f"{prefix}{id}/")
             except GraphError:
                 return None
             if inner is None:
@@ -158,24 +158,24 @@ def _outward(body: Graph, prefix: str, source: Port) -> Port:
     return Port(prefix + source.node, source.socket)
 
 
-def _mute(flat: Flat, prefix: str, body: Graph) -> None:
+def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:
     """A muted group passes its inputs to its outputs, whatever is inside."""
     flat.folders[prefix] = body.folder
     inputs = {name: end.socket(name) for name, end in body.inputs.items()}
     for name, end in body.inputs.items():
         flat.inputs[Port(prefix + INPUTS, name)] = end
     for name, end in body.outputs.items():
-        shown, port = stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
+        shown, port = find_stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
         if shown is not None:
             flat.links[port] = Port(prefix + INPUTS, shown)
         else:
-            flat.inputs[port] = Input(end.kind, end.width, default=nothing(end.socket(name)))
+            flat.inputs[port] = Input(end.kind, end.width, default=zero_value(end.socket(name)))
 
 
-def written_texts(graph: Graph) -> Iterator[Text]:
+def find_custom_texts(graph: Graph) -> Iterator[Text]:
     """The code of the nodes that users wrote, groups included."""
     for item in graph.nodes.values():
         if isinstance(item, Group):
-            yield from written_texts(item.graph)
-        elif isinstance(item, Written) and item.text is not None:
+            yield from find_custom_texts(item.graph)
+        elif isinstance(item, CustomNode) and item.text is not None:
             yield item.text

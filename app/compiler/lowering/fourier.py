@@ -11,17 +11,17 @@ from ..ir import Accessor, Builder, Choice, Gather, Parameter, PictureShape, Ref
 
 _PRIMES = (2, 3, 5)
 
-_PASS = 14
+_STAGE_COST = 14
 """What a stage costs besides its reads, in reads: measured on the software rasterizer."""
 
-_MOST = 20
+_MAX_READS = 20
 """Reads of a stage at most: the driver unrolls them."""
 
 
 _SHADER = "primitive/fourier"
 
 
-class Stage(Struct, frozen=True):
+class FourierStage(Struct, frozen=True):
     """One pass: `radix` transforms of length `span` become one; every pixel of it is made of `terms` pixels.
 
     Of the first stage, `terms` may be less than `radix`: what is not read is black.
@@ -32,10 +32,10 @@ class Stage(Struct, frozen=True):
     terms: int
 
 
-def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
+def add_convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
     """A picture convolved with another one around its middle, black outside."""
     picture, spread = builder.shape(image).size, builder.shape(kernel).size
-    width, height = (padded_length(*lengths) for lengths in zip(picture, spread, strict=True))
+    width, height = (pad_length(*lengths) for lengths in zip(picture, spread, strict=True))
     spectra = [
         _transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner) for made in (image, kernel)
     ]
@@ -56,43 +56,43 @@ def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
     return _transform(builder, made, 0, width, owner, (across, picture[0]))
 
 
-def padded_length(picture: int, kernel: int) -> int:
+def pad_length(picture: int, kernel: int) -> int:
     """Pixels to transform so that nothing that a kernel spreads comes round to the picture again."""
     length = max(kernel, picture + kernel // 2)
-    while _rest(length) != 1:
+    while _remove_primes(length) != 1:
         length += 1
     return length
 
 
-def stages(length: int, filled: int) -> tuple[Stage, ...]:
+def plan_stages(length: int, filled: int) -> tuple[FourierStage, ...]:
     """The passes that transform a length with no prime factors but 2, 3 and 5; pixels from `filled` on are black."""
     terms = {radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0}
     first = min(
-        (radix for radix in terms if terms[radix] <= _MOST),
-        key=lambda radix: _PASS + terms[radix] + _cost(_radices(length // radix)),
+        (radix for radix in terms if terms[radix] <= _MAX_READS),
+        key=lambda radix: _STAGE_COST + terms[radix] + _cost(_find_radices(length // radix)),
     )
-    found = [Stage(first, 1, terms[first])]
+    found = [FourierStage(first, 1, terms[first])]
     span = first
-    for radix in _radices(length // first):
-        found.append(Stage(radix, span, radix))
+    for radix in _find_radices(length // first):
+        found.append(FourierStage(radix, span, radix))
         span *= radix
     return tuple(found)
 
 
 @cache
-def _radices(length: int) -> tuple[int, ...]:
+def _find_radices(length: int) -> tuple[int, ...]:
     """The factors of a length that cost the least."""
     if length == 1:
         return ()
-    tried = ((radix, *_radices(length // radix)) for radix in range(2, _MOST + 1) if length % radix == 0)
+    tried = ((radix, *_find_radices(length // radix)) for radix in range(2, _MAX_READS + 1) if length % radix == 0)
     return min(tried, key=_cost)
 
 
 def _cost(radices: tuple[int, ...]) -> int:
-    return sum(_PASS + radix for radix in radices)
+    return sum(_STAGE_COST + radix for radix in radices)
 
 
-def _rest(length: int) -> int:
+def _remove_primes(length: int) -> int:
     for prime in _PRIMES:
         while length % prime == 0:
             length //= prime
@@ -103,7 +103,7 @@ def _transform(
     builder: Builder, made: Ref, axis: int, length: int, owner: str, wanted: tuple[int, int] | None = None
 ) -> Ref:
     """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
-    passes = stages(length, builder.shape(made).size[axis])
+    passes = plan_stages(length, builder.shape(made).size[axis])
     for stage in passes:
         size = builder.shape(made).size
         first, count = wanted if wanted and stage is passes[-1] else (0, length)

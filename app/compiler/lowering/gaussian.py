@@ -15,13 +15,13 @@ from msgspec import Struct
 DIRECT_BELOW = 7.0
 """Up to this sigma the direct convolution is both exact and no slower."""
 
-_SPREAD = 0.8
+_DECIMATION_SIGMA = 0.8
 """Sigma of a decimation, in steps."""
 
-_SMOOTH = 36
+_MIN_SMOOTH_REACH = 36
 """How many pixels of the small size other weights must reach: the error is then below 1e-3 of what a pixel becomes."""
 
-_REST = 1.8
+_MIN_REST = 1.8
 """Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
 
 
@@ -36,22 +36,22 @@ class BlurAxis(Struct, frozen=True):
 def plan_axis(sigma: float) -> BlurAxis:
     """Split `sigma`, in pixels, into decimations and an exact rest."""
     if sigma < DIRECT_BELOW:
-        return BlurAxis((), 1, weights(sigma) if sigma > 0.0 else ())
+        return BlurAxis((), 1, gaussian_weights(sigma) if sigma > 0.0 else ())
     steps: list[int] = []
     factor, variance = 1, 0.0
     while True:
         for step in (4, 2):
             next_factor = factor * step
-            next_variance = variance + (_SPREAD * next_factor) ** 2
+            next_variance = variance + (_DECIMATION_SIGMA * next_factor) ** 2
             rest = sigma * sigma - next_variance - next_factor**2 / 3.0
-            if rest > 0.0 and math.sqrt(rest) >= _REST * next_factor:
+            if rest > 0.0 and math.sqrt(rest) >= _MIN_REST * next_factor:
                 steps.append(step)
                 factor, variance = next_factor, next_variance
                 break
         else:
             break
     rest = math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor
-    return BlurAxis(tuple(steps), factor, weights(rest))
+    return BlurAxis(tuple(steps), factor, gaussian_weights(rest))
 
 
 def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
@@ -62,20 +62,20 @@ def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
     reach = len(smooth) // 2
     steps: list[int] = []
     factor, variance = 1, 0.0
-    while reach >= 2 * factor * _SMOOTH:
-        steps.append(4 if reach >= 4 * factor * _SMOOTH else 2)
+    while reach >= 2 * factor * _MIN_SMOOTH_REACH:
+        steps.append(4 if reach >= 4 * factor * _MIN_SMOOTH_REACH else 2)
         factor *= steps[-1]
-        variance += (_SPREAD * factor) ** 2
+        variance += (_DECIMATION_SIGMA * factor) ** 2
     if factor == 1:
         return BlurAxis((), 1, smooth)
-    found = _normalized([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
+    found = _normalize([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
     excess = _variance(found) + (variance + factor**2 / 3.0 - _variance(smooth)) / factor**2
     near = [(before + after) / 2.0 for before, after in zip([0.0, *found], [*found[1:], 0.0], strict=False)]
     sharp = [max((1.0 + excess) * one - excess * other, 0.0) for one, other in zip(found, near, strict=True)]
-    return BlurAxis(tuple(steps), factor, _normalized(sharp))
+    return BlurAxis(tuple(steps), factor, _normalize(sharp))
 
 
-def spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
+def find_spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
     """The first pixel and the length of what each step of a row of `length` makes, in its own pixels; its edge mode.
 
     A small picture reaches beyond the row far enough for the edge mode to mean what it does at full size. What is
@@ -86,7 +86,7 @@ def spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]
     if edge in ("clamp", "black"):
         first, end = 0, length
         for step in axis.steps:
-            taps, start = decimation(step)
+            taps, start = decimation_weights(step)
             first = (first - start - len(taps) + 1) // step
             end = -((start + 1 - end) // step) + 1
             found.append((first, end - first))
@@ -106,7 +106,7 @@ def spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]
     return found, "clamp"
 
 
-def weights(sigma: float) -> tuple[float, ...]:
+def gaussian_weights(sigma: float) -> tuple[float, ...]:
     """Normalized weights out to 4 sigma, as scipy's gaussian_filter has them.
 
     Below one pixel the Gaussian is integrated over each pixel: samples of it would be too narrow.
@@ -117,18 +117,18 @@ def weights(sigma: float) -> tuple[float, ...]:
         found = [math.erf((i + 0.5) / half) - math.erf((i - 0.5) / half) for i in range(-radius, radius + 1)]
     else:
         found = [math.exp(-0.5 * (i / sigma) ** 2) for i in range(-radius, radius + 1)]
-    return _normalized(found)
+    return _normalize(found)
 
 
-def decimation(step: int) -> tuple[tuple[float, ...], int]:
+def decimation_weights(step: int) -> tuple[tuple[float, ...], int]:
     """Weights of a decimation by `step`, and where they start relative to the first pixel of each block."""
-    sigma, middle = _SPREAD * step, (step - 1) / 2
+    sigma, middle = _DECIMATION_SIGMA * step, (step - 1) / 2
     reach = math.ceil(4.0 * sigma - middle)
     found = [math.exp(-0.5 * ((i - middle) / sigma) ** 2) for i in range(-reach, step + reach)]
-    return _normalized(found), -reach
+    return _normalize(found), -reach
 
 
-def _normalized(found: list[float]) -> tuple[float, ...]:
+def _normalize(found: list[float]) -> tuple[float, ...]:
     total = math.fsum(found)
     return tuple(weight / total for weight in found)
 

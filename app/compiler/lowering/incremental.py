@@ -55,7 +55,7 @@ def lower_again(
     graph must be lowered.
     """
     try:
-        moments = before.moments.followed(graph, before.frame, request.frame)
+        moments = before.moments.follow(graph, before.frame, request.frame)
         return _IncrementalLowering(before, graph, request, outside, moments).run() if moments else None
     except (StructureChanged, HalationError):  # an error is found again, and reported, when all is lowered
         return None
@@ -131,7 +131,7 @@ class _IncrementalLowering:
         steps: dict[StepKey, LoweringStep] = dict(before.steps)
         frame_changed = self.frame != before.frame
         offsets = {key[1] for key in steps if key}
-        changed_nodes = {offset: self.moments.changed(self.frame + offset) for offset in offsets}
+        changed_nodes = {offset: self.moments.changed_nodes(self.frame + offset) for offset in offsets}
         for key, step in before.steps.items():
             if (
                 step.reads_outside
@@ -170,7 +170,7 @@ class _IncrementalLowering:
         """The ports that a step reads."""
         if key is None:
             return {(port, 0) for port in self.lowering.find_sources().values()}
-        feeds = self.moments.feeding((key[0], self.frame + key[1])).values()
+        feeds = self.moments.find_feeds((key[0], self.frame + key[1])).values()
         return {(source, frame - self.frame) for source, frames in feeds for frame in frames}
 
     def _replay(self, key: StepKey, before: LoweringStep) -> LoweringStep:

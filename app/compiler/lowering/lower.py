@@ -152,11 +152,11 @@ class Lowering:
             raise GraphError(
                 f"'{port}' does not exist: link to an output of a node or to an input of the graph", node=port.node
             )
-        picture = self.pictures.named.bound(port, socket)
+        picture = self.pictures.named.find_bound(port, socket)
         if picture is not None:
-            operand = self.pictures.read(picture, f"{port}", frame, self.nodes.missing_at(socket.missing, frame))
+            operand = self.pictures.read(picture, f"{port}", frame, self.nodes.choose_missing(socket.missing, frame))
         elif socket.default is not None:
-            operand = constants.of_input(port, socket)
+            operand = constants.input_constant(port, socket)
         else:
             return None
         self.step.results[key] = operand
@@ -186,7 +186,7 @@ class Lowering:
             raise GraphError(fault, node=f"{source}")
         if isinstance(operand, UniformConstant):
             size = (1, 1) if socket.single else self.pictures.canvas
-            return self.pictures.converted(operand, socket, size, name)
+            return self.pictures.convert(operand, socket, size, name)
         return self.nodes.as_type(operand, socket, name)
 
     def _find_type(self, target: Port, source: Port) -> Socket | None:

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from ...errors import GraphError
 from ...graph import Graph, Port, is_animated, still
-from .expand import Flat, changed_nodes, expand
+from .expand import FlatGraph, expand, find_changed_nodes
 
 Moment = tuple[str, int]
 """A node, as a path through groups, at a frame."""
@@ -24,11 +24,11 @@ class Moments:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._moves = is_animated(graph)
-        self._flats: dict[int, tuple[Graph, Flat]] = {}
+        self._flats: dict[int, tuple[Graph, FlatGraph]] = {}
         self._changed: dict[int, Set[str]] = {}
         self._feeding: dict[Moment, Mapping[str, Feed]] = {}
 
-    def flat(self, frame: int) -> Flat:
+    def flat(self, frame: int) -> FlatGraph:
         """The graph at a frame."""
         key = frame if self._moves else 0
         if key not in self._flats:
@@ -36,7 +36,7 @@ class Moments:
             self._flats[key] = graph, expand(graph)
         return self._flats[key][1]
 
-    def followed(self, graph: Graph, before: int, now: int) -> Moments | None:
+    def follow(self, graph: Graph, before: int, now: int) -> Moments | None:
         """The same of a graph that differs in values of nodes only, which `changed` tells; else None.
 
         `now` is looked from instead of `before`. Where these are two frames, no node may look at others.
@@ -51,14 +51,14 @@ class Moments:
         for key, (old, flat) in self._flats.items():
             frame = key if before == now or not self._moves else now
             new = still(graph, frame)
-            changed = changed_nodes(old, new)
+            changed = find_changed_nodes(old, new)
             if changed is None:
                 return None
             after._flats[frame] = new, replace(flat, nodes={**flat.nodes, **changed})
             after._changed[frame] = changed.keys()
         return after
 
-    def changed(self, frame: int) -> Set[str]:
+    def changed_nodes(self, frame: int) -> Set[str]:
         """The nodes that are others at a frame than they were at that one, or before now, in the graph followed."""
         return self._changed[frame if self._moves else 0]
 
@@ -66,10 +66,10 @@ class Moments:
         """A node at a frame."""
         return self.flat(frame).nodes[path]
 
-    def feeding(self, moment: Moment) -> Mapping[str, Feed]:
+    def find_feeds(self, moment: Moment) -> Mapping[str, Feed]:
         """What a node reads, by input or value. Raises GraphError for links that cannot be."""
         if moment not in self._feeding:
-            self._feeding[moment] = self._fed(moment)
+            self._feeding[moment] = self._collect_feeds(moment)
         return self._feeding[moment]
 
     def order(self, starts: Iterable[Port], frame: int) -> list[Moment]:
@@ -100,11 +100,11 @@ class Moments:
                 raise GraphError(f"node '{path}' feeds itself: cut one link of the loop", node=path)
             open_.add(path)
             todo.append((moment, True))
-            for source, frames in self.feeding(moment).values():
+            for source, frames in self.find_feeds(moment).values():
                 todo.extend(((source.node, at), False) for at in frames if (source.node, at) not in done)
         return order
 
-    def _fed(self, moment: Moment) -> dict[str, Feed]:
+    def _collect_feeds(self, moment: Moment) -> dict[str, Feed]:
         path, frame = moment
         flat = self.flat(frame)
         node = flat.nodes[path]

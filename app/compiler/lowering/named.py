@@ -11,31 +11,31 @@ from msgspec.structs import replace
 from ...graph import INPUTS, Graph, Input, Port, color_settings
 from ...graph.color import BUILT_IN
 from ...resources.picture import Picture
-from .expand import Flat, expand
+from .expand import FlatGraph, expand
 
 CONFIG = "settings.config"
 """Who names the file of color management."""
 
 
-class Named:
+class NamedPictures:
     """The pictures that a graph names, and those that are bound to its inputs."""
 
-    def __init__(self, flat: Flat, bindings: Mapping[str, Picture]) -> None:
+    def __init__(self, flat: FlatGraph, bindings: Mapping[str, Picture]) -> None:
         self._flat, self._bindings = flat, bindings
 
     def __iter__(self) -> Iterator[tuple[Picture, str]]:
         """Every picture and who reads it, inputs first, then sources. A path may stand for a sequence."""
         for port, socket in self._flat.inputs.items():
             named = port.node == INPUTS and not socket.socket().single
-            picture = self.bound(port, socket) if named else None
+            picture = self.find_bound(port, socket) if named else None
             if picture is not None:
                 yield picture, f"{port}"
         for path, node in self._flat.nodes.items():
             for value in node.values.values() if isinstance(node, Source) else ():
                 if value.pixels and getattr(node, value.name):
-                    yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
+                    yield Picture(self.locate(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
 
-    def bound(self, port: Port, socket: Input) -> Picture | None:
+    def find_bound(self, port: Port, socket: Input) -> Picture | None:
         """The picture bound to a graph input, else its default file. What is planned is none."""
         if socket.kind.is_planned:
             return None
@@ -48,12 +48,12 @@ class Named:
         folder = self._flat.folders[port.node.removesuffix(INPUTS)]
         return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width, space=socket.color_space)
 
-    def located(self, file: str, node: str) -> str:
+    def locate(self, file: str, node: str) -> str:
         """Relative paths start at the folder of the graph file that the node came from."""
         return str(PurePath(self._flat.folders[node], file))
 
 
-def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str, str, Missing]]:
+def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str, str, Missing]]:
     """The paths of all pictures that a graph reads, who reads them, and what shows where a frame has no file.
 
     Groups are looked into; a path may stand for a sequence.
@@ -67,10 +67,14 @@ def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str
         group, _, name = owner.rpartition(".")
         return flat.inputs[Port(group, name)].missing if node is None else "error"
 
-    return [(picture.path, owner, missing(owner)) for picture, owner in Named(flat, bindings) if not picture.in_memory]
+    return [
+        (picture.path, owner, missing(owner))
+        for picture, owner in NamedPictures(flat, bindings)
+        if not picture.in_memory
+    ]
 
 
-def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
+def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     """Every file that inputs and values of nodes name, by who names it: the text, and the path that it leads to.
 
     Inputs are `inputs.beauty` or `glow/inputs.image`, values `read.path` or `glow/read.path`; a file of color

@@ -25,7 +25,7 @@ class NodeInputs(Struct, frozen=True):
     linked: set[str] = field(default_factory=set[str])
 
 
-class NodeFiles(Struct, frozen=True):
+class NodeResources(Struct, frozen=True):
     """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
 
     read: Callable[[Picture], Ref]

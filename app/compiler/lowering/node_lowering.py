@@ -29,8 +29,8 @@ from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape
 from ..library import Library
 from ..request import Request
 from . import constants
-from .draws import Recorder, choices
-from .expand import Flat, stand_in
+from .draws import Recorder, find_choices
+from .expand import FlatGraph, find_stand_in
 from .moments import Moments
 from .node_inputs import DrawnPicture, NodeInputs
 from .pictures import PictureBuilder
@@ -52,7 +52,7 @@ class LoweringContext(Struct, frozen=True):
     frame: int
     moments: Moments
     builder: Builder
-    flat: Flat
+    flat: FlatGraph
     pictures: PictureBuilder
 
 
@@ -94,7 +94,7 @@ class NodeLowering:
     def _collect_inputs(self, path: str, frame: int, node: Node, operand_at: OperandFinder) -> NodeInputs:
         """A node and all that it reads. Raises GraphError for an input that must be linked and is not."""
         inputs = NodeInputs(path, frame, node)
-        feeds = self._context.moments.feeding((path, frame))
+        feeds = self._context.moments.find_feeds((path, frame))
         for name, socket in node.inputs.items():
             source, frames = feeds.get(name, (None, ()))
             by_frame = {at: operand for at in frames if source and (operand := operand_at(source, at)) is not None}
@@ -103,7 +103,7 @@ class NodeLowering:
                 inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
                 inputs.linked.add(name)
             elif socket.optional:
-                inputs.inputs[name] = constants.of_socket(socket)
+                inputs.inputs[name] = constants.socket_default(socket)
             elif source is not None:
                 raise GraphError(
                     f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
@@ -143,7 +143,7 @@ class NodeLowering:
         """What the outputs of a muted or neutral node show; None if it has something to do."""
         node = inputs.node
         if inputs.path in self._context.flat.muted:
-            shown = {name: stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
+            shown = {name: find_stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {
                 name: inputs.inputs[source] if source else constants.of_nothing(node.outputs[name].socket)
                 for name, source in shown.items()
@@ -184,7 +184,9 @@ class NodeLowering:
             for socket in sockets
         )
         self._check_function(inputs.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
-        ref = self._builder.add(Call(shapes, inputs.path, node.shader, node.function, tuple(parameters), choices(node)))
+        ref = self._builder.add(
+            Call(shapes, inputs.path, node.shader, node.function, tuple(parameters), find_choices(node))
+        )
         for index, name in enumerate(node.outputs):
             step.results[Port(inputs.path, name), inputs.frame - self._context.frame] = Ref(ref.op, index)
 
@@ -205,7 +207,7 @@ class NodeLowering:
         if wire is not None:
             factor = unit_factor(value.unit, self._context.request.scale, size[1])
             if isinstance(wire, UniformConstant):
-                return Parameter(glsl, constants.limited(wire, value, factor))
+                return Parameter(glsl, constants.limit_wire(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)
         setting = getattr(node, value.name)
         if value.type == "choice":
@@ -228,14 +230,14 @@ class NodeLowering:
         for (name, frame), operand in inputs.at_frames.items():
             inputs.at_frames[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
         settings = context.graph.settings
-        missing = self.missing_at(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
+        missing = self.choose_missing(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
         recorder = Recorder(
             inputs,
             node,
             size,
             self._builder,
             context.library,
-            self._pictures.files(inputs, missing),
+            self._pictures.resources_of(inputs, missing),
             self._find_memories(path, step) if remembers else {},
             settings.rate,
             (settings.frames or (1, 1))[0],
@@ -259,7 +261,7 @@ class NodeLowering:
         if socket.single:
             return operand
         if isinstance(operand, UniformConstant):
-            return self._pictures.converted(operand, socket, size, path)
+            return self._pictures.convert(operand, socket, size, path)
         return self.as_type(operand, socket, path)
 
     def as_type(self, ref: Ref, socket: Socket, owner: str) -> Ref:
@@ -267,9 +269,9 @@ class NodeLowering:
         shape = self._builder.shape(ref)
         if shape.channels == socket.channels:
             return ref
-        return self._pictures.converted(ref, socket, shape.size, owner)
+        return self._pictures.convert(ref, socket, shape.size, owner)
 
-    def missing_at(self, policy: Missing, frame: int) -> Missing:
+    def choose_missing(self, policy: Missing, frame: int) -> Missing:
         """What stands for a missing file. Nodes may look beyond the ends of a shot: those stay as they are."""
         return "hold" if policy == "error" and frame != self._context.frame else policy
 

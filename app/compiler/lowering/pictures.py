@@ -14,12 +14,12 @@ from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.provider import PictureProbe, ResourceProvider
-from ..areas import Around, scaled
+from ..areas import Neighborhood, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
-from .expand import Flat, nothing
-from .named import Named
-from .node_inputs import NodeFiles, NodeInputs
+from .expand import FlatGraph, zero_value
+from .named import NamedPictures
+from .node_inputs import NodeInputs, NodeResources
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 
@@ -27,8 +27,10 @@ DEFAULT_CANVAS: Size = (1920, 1080)
 class PictureBuilder:
     """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
 
-    def __init__(self, graph: Graph, flat: Flat, request: Request, outside: ResourceProvider, builder: Builder) -> None:
-        self.named = Named(flat, request.bindings)
+    def __init__(
+        self, graph: Graph, flat: FlatGraph, request: Request, outside: ResourceProvider, builder: Builder
+    ) -> None:
+        self.named = NamedPictures(flat, request.bindings)
         self._settled = graph.settings.size
         self._color = color_settings(graph)
         self._request, self._outside, self._builder = request, outside, builder
@@ -43,22 +45,22 @@ class PictureBuilder:
             first = next(iter(self.named), None)
             size = self._first_size(*first) if first else DEFAULT_CANVAS
         self.canvas_is_read = True
-        return self._scaled(size)
+        return self._scale(size)
 
     def _first_size(self, picture: Picture, owner: str) -> Size:
         """What a sequence is as large as, whether or not this frame has a file."""
         path = self._outside.at(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
-        return self._probed(replace(picture, path=path) if path else picture, owner).size
+        return self._probe(replace(picture, path=path) if path else picture, owner).size
 
-    def _probed(self, picture: Picture, owner: str) -> PictureProbe:
+    def _probe(self, picture: Picture, owner: str) -> PictureProbe:
         try:
             return self._outside.probe(replace(picture, color=self._color))
         except HalationError as error:
             error.node = owner
             raise
 
-    def _scaled(self, size: Size) -> Size:
-        return scaled(size, self._request.scale)
+    def _scale(self, size: Size) -> Size:
+        return scale_size(size, self._request.scale)
 
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
         """Upload a picture, or that frame of a sequence, at the size wanted."""
@@ -66,12 +68,12 @@ class PictureBuilder:
         if not picture.in_memory:
             found = self._outside.at(picture.path, frame, missing)
             picture, black = replace(picture, path=found.path, frame=found.number), found.black
-        probed = self._probed(picture, owner)
+        probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
-        wanted = self._scaled(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
+        wanted = self._scale(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
         if black:
             socket = make_socket(picture.kind, picture.width)
-            return self.converted(UniformConstant(nothing(socket)), socket, wanted, owner)
+            return self.convert(UniformConstant(zero_value(socket)), socket, wanted, owner)
         # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
         picture = replace(picture, pixels=None, by_rows=probed.by_rows)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
@@ -80,39 +82,39 @@ class PictureBuilder:
     def asset(self, picture: Picture, owner: str) -> Ref:
         """Upload a picture that belongs to a node, as it is."""
         picture = replace(picture, color=self._color)
-        probed = self._probed(picture, owner)
+        probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
 
-    def files(self, inputs: NodeInputs, missing: Missing) -> NodeFiles:
+    def resources_of(self, inputs: NodeInputs, missing: Missing) -> NodeResources:
         """The files that a node names, which lie beside the graph file that it came from."""
 
-        def located(file: str) -> str:
-            return self.named.located(file, inputs.path)
+        def locate(file: str) -> str:
+            return self.named.locate(file, inputs.path)
 
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
-                change = replace(change, path=located(change.path))
+                change = replace(change, path=locate(change.path))
             else:
                 change = replace(change, color=self._color)
             return self._outside.recolor(change)
 
         def read(picture: Picture) -> Ref:
-            return self.read(replace(picture, path=located(picture.path)), inputs.path, inputs.frame, missing)
+            return self.read(replace(picture, path=locate(picture.path)), inputs.path, inputs.frame, missing)
 
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
-                scene = replace(scene, path=located(scene.path))
+                scene = replace(scene, path=locate(scene.path))
             return self._outside.mesh(scene)
 
         def render(file: str, named: Mapping[str, str]) -> Render:
-            return self._outside.render(self._outside.at(located(file), inputs.frame, missing).path, named)
+            return self._outside.render(self._outside.at(locate(file), inputs.frame, missing).path, named)
 
         def asset(picture: Picture) -> Ref:
-            whole = replace(picture, path=located(picture.path), within=located(picture.within))
+            whole = replace(picture, path=locate(picture.path), within=locate(picture.within))
             return self.asset(whole, inputs.path)
 
-        return NodeFiles(read, recolor, mesh, render, asset)
+        return NodeResources(read, recolor, mesh, render, asset)
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
@@ -133,11 +135,11 @@ class PictureBuilder:
             down,
             (shape.size[1] - down * size[1]) / 2.0,
         )
-        around = Around(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
+        around = Neighborhood(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
         accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", UniformConstant((across, down)))
         return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (scale,), accessors=(accessor,)))
 
-    def converted(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
+    def convert(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
         """The same as the pixels that `socket` stands for."""
         glsl = socket.glsl
         shape = PictureShape(size, socket.channels, socket.kind is not Kind.IMAGE)

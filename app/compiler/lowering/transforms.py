@@ -12,10 +12,10 @@ from typing import get_args
 
 from halation.nodes import Affine, Edge, Kernel
 
-from ..areas import Around
+from ..areas import Neighborhood
 from ..ir import Accessor, Builder, Choice, Parameter, PictureShape, Placement, Ref, UniformConstant
 
-STILL = 1e-9
+STILL_TOLERANCE = 1e-9
 """A product that moves no pixel farther than this is that of a transform and its inverse, but for rounding."""
 
 
@@ -35,7 +35,7 @@ def place(
     if isinstance(before, Placement) and before.edge == edge:
         source = before.accessors[0].operand
         assert isinstance(source, Ref)
-        image, matrix, chain = source, product(before.matrix, matrix), (*before.chain, owner)
+        image, matrix, chain = source, multiply(before.matrix, matrix), (*before.chain, owner)
     if shape == builder.shape(image) and is_still(matrix, shape):
         return image
     a, b, x, c, d, y = matrix
@@ -56,7 +56,7 @@ def place(
             "place",
             parameters,
             (("kernel", kernels),),
-            accessors=(Accessor("image", "vec4", image, Around(matrix, (across, down))),),
+            accessors=(Accessor("image", "vec4", image, Neighborhood(matrix, (across, down))),),
             edge=edge,
             matrix=matrix,
             chain=chain,
@@ -64,7 +64,7 @@ def place(
     )
 
 
-def product(first: Affine, then: Affine) -> Affine:
+def multiply(first: Affine, then: Affine) -> Affine:
     """Where pixels placed by `first` and `then` lie: both lead backward, so the first one's comes last."""
     a, b, x, c, d, y = first
     e, f, u, g, h, v = then
@@ -77,4 +77,4 @@ def is_still(matrix: Affine, shape: PictureShape) -> bool:
     width, height = shape.size
     corners = ((0, 0), (width, 0), (0, height))
     away = (abs(part) for i, j in corners for part in (a * i + b * j + x - i, c * i + d * j + y - j))
-    return max(away) <= STILL * max(width, height)
+    return max(away) <= STILL_TOLERANCE * max(width, height)

@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
-from .expand import Flat, changed_nodes
+from .expand import FlatGraph, find_changed_nodes
 from .moments import Moments
 
 
@@ -26,7 +26,7 @@ class Upstream:
         self.graph, self.frame = graph, frame
         self.hashes: dict[str, str] = {}
         follows = known and known.frame == frame and not is_animated(graph)
-        changed = changed_nodes(known.graph, graph) if known and follows else None
+        changed = find_changed_nodes(known.graph, graph) if known and follows else None
         try:
             if known is None or changed is None:
                 self._find_all()
@@ -37,7 +37,7 @@ class Upstream:
 
     def _find_all(self) -> None:
         moments = Moments(self.graph)
-        self._flat: Flat = moments.flat(self.frame)
+        self._flat: FlatGraph = moments.flat(self.frame)
         # A node may look at other frames, where values are others.
         self._settings = repr((self.graph.settings, self.frame, _animations(self.graph)))
         self._reads = {path: self._sources(path) for path in self._order(moments)}

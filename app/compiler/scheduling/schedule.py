@@ -21,7 +21,7 @@ from .differences import find_changed_numbers
 from .fingerprints import Fingerprint, PassFingerprints, find_keys, update_keys
 
 
-class Scheduled(Struct, frozen=True):
+class ScheduleRecord(Struct, frozen=True):
     """A plan, and what it was made of."""
 
     program: LoweredProgram
@@ -40,19 +40,19 @@ def schedule(
     target: Target,
     precision: Precision,
     halves: frozenset[str] = frozenset(),
-) -> Scheduled:
+) -> ScheduleRecord:
     """Write the program of every pass, and find a texture for everything it makes.
 
     `halves` are outputs that will be rounded to half floats.
     """
-    texels = formats(program, passes, target, precision, halves)
+    texels = choose_formats(program, passes, target, precision, halves)
     needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
     finder = PassFingerprints(program, library, target, texels)
     fingerprints = tuple(map(finder.of, passes))
     keys = find_keys(program, fingerprints, needed)
-    first, last = _lives(program, passes)
-    slots, sizes = _slots(program, needed, texels, first, last)
+    first, last = _find_lifetimes(program, passes)
+    slots, sizes = _assign_slots(program, needed, texels, first, last)
     numbers = {ref: number for number, ref in enumerate(needed)}
     surfaces = tuple(
         Surface(
@@ -71,18 +71,18 @@ def schedule(
     plan = Plan(
         target,
         surfaces,
-        tuple(_uploads(program, numbers)),
-        tuple(_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
+        tuple(_find_uploads(program, numbers)),
+        tuple(_make_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
         MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
         program.cameras,
-        _memories(program, keys, texels),
+        _find_memories(program, keys, texels),
         sizes,
     )
-    return Scheduled(program, passes, texels, fingerprints, keys, plan)
+    return ScheduleRecord(program, passes, texels, fingerprints, keys, plan)
 
 
-def reschedule(known: Scheduled, program: LoweredProgram, library: Library) -> Scheduled | None:
+def reschedule(known: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
     """The plan of a program that differs from the known one in numbers alone, else None.
 
     The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
@@ -103,7 +103,7 @@ def reschedule(known: Scheduled, program: LoweredProgram, library: Library) -> S
     for number in others:
         fused = known.passes[number]
         item = emit(program, fused, library, target, known.texels)
-        passes[number] = _pass(program, fused, item, numbers, library)
+        passes[number] = _make_pass(program, fused, item, numbers, library)
         fingerprints[number] = finder.of(fused)
     sources = [ref for ref in numbers if ref.op in changed]
     for ref in update_keys(keys, program, sources, fingerprints, others):
@@ -112,15 +112,17 @@ def reschedule(known: Scheduled, program: LoweredProgram, library: Library) -> S
     plan = replace(
         plan,
         surfaces=tuple(surfaces),
-        uploads=tuple(_uploads(program, numbers)),
+        uploads=tuple(_find_uploads(program, numbers)),
         passes=tuple(passes),
         cameras=program.cameras,
-        memories=_memories(program, keys, known.texels),
+        memories=_find_memories(program, keys, known.texels),
     )
-    return Scheduled(program, known.passes, known.texels, tuple(fingerprints), keys, plan)
+    return ScheduleRecord(program, known.passes, known.texels, tuple(fingerprints), keys, plan)
 
 
-def _memories(program: LoweredProgram, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
+def _find_memories(
+    program: LoweredProgram, keys: Mapping[Ref, str], texels: Mapping[Ref, str]
+) -> Mapping[Port, Memory]:
     return MappingProxyType(
         {
             node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
@@ -129,17 +131,20 @@ def _memories(program: LoweredProgram, keys: Mapping[Ref, str], texels: Mapping[
     )
 
 
-def formats(
+def choose_formats(
     program: LoweredProgram, passes: Sequence[PassGroup], target: Target, precision: Precision, halves: frozenset[str]
 ) -> dict[Ref, str]:
     """The format of everything that needs a texture. Raises DeviceError for a pass that writes too many at once."""
     for fused in passes:
         _check_outputs(len(fused.writes), program.ops[fused.root], target)
-    rounded = _rounded(program, passes, target, halves)
-    return {ref: _texel(program, ref, "half" if ref in rounded else precision) for ref in _textures(program, passes)}
+    rounded = _find_rounded(program, passes, target, halves)
+    return {
+        ref: _choose_format(program, ref, "half" if ref in rounded else precision)
+        for ref in _find_textures(program, passes)
+    }
 
 
-def _textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict[Ref, None]:
+def _find_textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict[Ref, None]:
     """Everything that passes read and write, and what must be there at the end."""
     needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
     return needed | dict.fromkeys(program.kept_refs)
@@ -149,10 +154,10 @@ def _shape(program: LoweredProgram, ref: Ref) -> PictureShape:
     return program.ops[ref.op].shapes[ref.output]
 
 
-def peak(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
+def peak_bytes(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
     """Bytes of all textures that passes need at the same time."""
-    first, last = _lives(program, passes)
-    return sum(_slots(program, _textures(program, passes), texels, first, last)[1])
+    first, last = _find_lifetimes(program, passes)
+    return sum(_assign_slots(program, _find_textures(program, passes), texels, first, last)[1])
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
@@ -166,14 +171,14 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
         )
 
 
-def _texel(program: LoweredProgram, ref: Ref, precision: Precision) -> str:
+def _choose_format(program: LoweredProgram, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
     half = op.is_half(ref.output) if isinstance(op, SourceOp) else precision == "half" and not shape.data
     return texture_format(shape.channels, half)
 
 
-def _rounded(
+def _find_rounded(
     program: LoweredProgram, passes: Sequence[PassGroup], target: Target, halves: frozenset[str]
 ) -> frozenset[Ref]:
     """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
@@ -190,7 +195,7 @@ def _depth(format: str) -> Depth:
     return "f2" if format.endswith("16f") else "f4"
 
 
-def _lives(program: LoweredProgram, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
+def _find_lifetimes(program: LoweredProgram, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
     """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
 
     What was remembered of the frame before is there from the first pass to the last.
@@ -210,7 +215,7 @@ def _lives(program: LoweredProgram, passes: Sequence[PassGroup]) -> tuple[dict[R
     return first, last
 
 
-def _slots(
+def _assign_slots(
     program: LoweredProgram,
     needed: Mapping[Ref, None],
     texels: Mapping[Ref, str],
@@ -239,7 +244,7 @@ def _slots(
     return slots, tuple(bytes_)
 
 
-def _uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[Upload]:
+def _find_uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[Upload]:
     found: list[Upload] = []
     for ref, number in numbers.items():
         op = program.ops[ref.op]
@@ -249,7 +254,7 @@ def _uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[Upload
     return found
 
 
-def _pass(
+def _make_pass(
     program: LoweredProgram, fused: PassGroup, item: EmittedProgram, numbers: Mapping[Ref, int], library: Library
 ) -> Pass:
     ops = [program.ops[index] for index in fused.members]
@@ -264,10 +269,10 @@ def _pass(
         item.groups,
         tuple(dict.fromkeys(table for op in ops for table in op.tables)),
         next(filter(None, (op.mesh_drawn for op in ops)), None),
-        _writers(ops, library),
+        _find_writers(ops, library),
     )
 
 
-def _writers(ops: list[Op], library: Library) -> dict[str, str]:
+def _find_writers(ops: list[Op], library: Library) -> dict[str, str]:
     """The nodes behind code that users wrote, by what messages call its file."""
     return {file: op.owner for op in ops for file in op.find_user_files(library)}

@@ -11,12 +11,12 @@ from types import MappingProxyType
 
 from msgspec.structs import replace
 
-from ..areas import Region, inside
+from ..areas import Region, clip_span
 from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Ref
 
 
-def needed(
+def find_regions(
     program: LoweredProgram, passes: Sequence[PassGroup], wanted: Mapping[Ref, Region], there: Set[Ref] = frozenset()
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
@@ -32,18 +32,18 @@ def needed(
         known = all(ref in there for ref in made)
         size = program.shape(made[0]).size
         whole = known or any(program.ops[index].is_indivisible for index in fused.members)
-        region = Region.whole(size) if whole else _joined([found[ref] for ref in made])
+        region = Region.whole(size) if whole else _unite([found[ref] for ref in made])
         found |= {
             ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
             for ref in fused.writes
         }
-        for ref, part in _read(program, fused, region).items():
+        for ref, part in _find_reads(program, fused, region).items():
             part = Region.whole(program.shape(ref).size) if known else part
-            found[ref] = found[ref].with_(part) if ref in found else part
+            found[ref] = found[ref].union(part) if ref in found else part
     return found
 
 
-def focused(
+def focus_program(
     program: LoweredProgram, passes: Sequence[PassGroup], region: Region, there: Set[Ref] = frozenset()
 ) -> LoweredProgram:
     """The same program, which makes only a region of its outputs, as far as that lies in them.
@@ -54,29 +54,29 @@ def focused(
     wanted: dict[Ref, Region] = {}
     for ref in program.outputs.values():
         width, height = program.shape(ref).size
-        wanted[ref] = Region.of(inside(region.across, width, "clamp"), inside(region.down, height, "clamp"))
+        wanted[ref] = Region.of(clip_span(region.across, width, "clamp"), clip_span(region.down, height, "clamp"))
     wanted |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
-    found = needed(program, passes, wanted, there)
+    found = find_regions(program, passes, wanted, there)
     made = {ref for fused in passes for ref in fused.writes}
     kept = {ref for ref in found if ref not in made and (ref in there or program.ops[ref.op].is_memory)}
     parts = {ref: part for ref, part in found.items() if ref not in kept and part.size != program.shape(ref).size}
     return replace(program, windows=MappingProxyType(parts))
 
 
-def _read(program: LoweredProgram, fused: PassGroup, region: Region) -> dict[Ref, Region]:
+def _find_reads(program: LoweredProgram, fused: PassGroup, region: Region) -> dict[Ref, Region]:
     """What a pass reads to write a region."""
     inner = dict.fromkeys(fused.writes, region)
     for index in reversed(fused.members):
         op = program.ops[index]
         own = [inner[ref] for number in range(op.outputs) if (ref := Ref(index, number)) in inner]
         for ref in op.reads():
-            part = op.footprint(ref, program.shape(ref).size, _joined(own) if own else region)
-            inner[ref] = inner[ref].with_(part) if ref in inner else part
+            part = op.footprint(ref, program.shape(ref).size, _unite(own) if own else region)
+            inner[ref] = inner[ref].union(part) if ref in inner else part
     return {ref: inner[ref] for ref in fused.reads}
 
 
-def _joined(regions: list[Region]) -> Region:
+def _unite(regions: list[Region]) -> Region:
     found = regions[0]
     for region in regions[1:]:
-        found = found.with_(region)
+        found = found.union(region)
     return found

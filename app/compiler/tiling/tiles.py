@@ -13,7 +13,7 @@ from ..library import Library
 from ..target import Precision, Target
 
 
-class Stage(Struct, frozen=True):
+class TileStage(Struct, frozen=True):
     """Pictures of one size that are made together, and the passes that make them of what the stages before made.
 
     `windows` are the regions of everything for each of the `tiles`; what is not there is whole.
@@ -38,14 +38,14 @@ class Tiling(Struct, frozen=True):
     precision: Precision
     halves: frozenset[str]
     keys: Mapping[Ref, str]
-    before: tuple[Stage, ...]
-    last: tuple[Stage, ...]
+    before: tuple[TileStage, ...]
+    last: tuple[TileStage, ...]
     nbytes: int
     why: str
     by_rows: frozenset[str] = frozenset()
 
     @property
-    def stages(self) -> tuple[Stage, ...]:
+    def stages(self) -> tuple[TileStage, ...]:
         """All of them, in order."""
         return (*self.before, *self.last)
 

@@ -22,30 +22,30 @@ from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Op, Ref, StoredResult
 from ..library import Library
 from ..plan import Plan, texture_bytes
-from ..scheduling.schedule import peak, schedule
+from ..scheduling.schedule import peak_bytes, schedule
 from ..target import Precision, Target
-from .regions import needed
-from .tiles import Stage, Tiling
+from .regions import find_regions
+from .tiles import TileStage, Tiling
 
-LEAST = 8
+MIN_TILE = 8
 """Pixels across a tile, at least: smaller ones would be all overlap."""
 
-SMALL = 16
+SMALL_FRACTION = 16
 """What has so many times fewer pixels than the largest picture is made whole, even if it need not be: blurs and glows
 look far around in small pictures, and tiles of the large ones then need little around them."""
 
-USUAL = 2**31
+USUAL_BYTES = 2**31
 """Bytes of textures for a tile where nobody says how much memory may be used; more, where much of it is needed for a
 single pixel."""
 
-MOST_TILES = 2**16
+MAX_TILES = 2**16
 """Of a picture: more are so small that they would be mostly overlap."""
 
-MOST_PIXELS = 2**32
+MAX_PIXELS = 2**32
 """Of a picture. It is put together in memory: a larger one is a mistake."""
 
 
-def tile(
+def plan_tiling(
     program: LoweredProgram,
     passes: tuple[PassGroup, ...],
     texels: Mapping[Ref, str],
@@ -62,26 +62,26 @@ def tile(
 
     Raises DeviceError where they do not fit that way either.
     """
-    why = _too_much(program, passes, texels, target)
+    why = _find_excess(program, passes, texels, target)
     if not why:
         return None
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
     for ref in texels:
-        if _area(program.shape(ref).size) > MOST_PIXELS:
+        if _area(program.shape(ref).size) > MAX_PIXELS:
             raise DeviceError(
                 f"{why}, and too many to be made in parts; render smaller with --scale or --size",
                 node=program.ops[ref.op].owner,
             )
     _check(program, passes, target)
-    work = _Work(program, passes, texels, target, by_rows)
-    before, last = work.before(), work.last()
+    work = _StagePlanner(program, passes, texels, target, by_rows)
+    before, last = work.plan_before(), work.plan_last()
     # What an output was rounded to as a part of the whole, it is rounded to in a tile.
     rounded = frozenset(name for name in halves if texels[program.outputs[name]].endswith("16f"))
     return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why, work.by_rows)
 
 
-def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, StoredResult]) -> Plan:
+def plan_tile(tiling: Tiling, stage: TileStage, number: int, made: Mapping[int, StoredResult]) -> Plan:
     """How a tile of a stage is made; `made` is what the stages before made, by operation."""
     ops = tuple(made.get(index, op) for index, op in enumerate(tiling.program.ops))
     program = replace(
@@ -95,32 +95,36 @@ def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Stor
     return schedule(program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves).plan
 
 
-def _too_much(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target) -> str:
+def _find_excess(
+    program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target
+) -> str:
     """What cannot be held, in a sentence; "" if all can."""
     for ref in texels:
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
-                f"node '{owner}': {_sized(size)} pixels is more than the {target.max_size} that {target.renderer} can "
-                "hold on a side"
+                f"node '{owner}': {_size_text(size)} pixels is more than the {target.max_size} that {target.renderer} "
+                "can hold on a side"
             )
     if not target.memory:
         return ""
-    nbytes = peak(program, passes, texels) + sum(_nbytes(program, texels, ref) for ref in _outside(program, passes))
-    nbytes += _remembered(program, texels)
+    nbytes = peak_bytes(program, passes, texels) + sum(
+        _nbytes(program, texels, ref) for ref in _find_outside(program, passes)
+    )
+    nbytes += _count_memory_bytes(program, texels)
     if nbytes <= target.memory:
         return ""
     return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
 
 
-def _remembered(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
+def _count_memory_bytes(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
     """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
     kept = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
     read = sum(_nbytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
     return max(kept - read, 0)
 
 
-def _outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[Ref]:
+def _find_outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[Ref]:
     """What is not only on the device: pictures that are read from files, and outputs."""
     reads = {ref for fused in passes for ref in fused.reads if program.ops[ref.op].find_upload(ref.output)}
     return reads | set(program.outputs.values())
@@ -142,9 +146,9 @@ def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target)
             for size in sizes:
                 if max(size) > target.max_size:
                     raise DeviceError(
-                        f"node '{op.owner}': it may need all {_sized(size)} pixels of a picture for one of its own, "
-                        f"so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a side; "
-                        "render smaller with --scale or --size",
+                        f"node '{op.owner}': it may need all {_size_text(size)} pixels of a picture for one of its "
+                        f"own, so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a "
+                        "side; render smaller with --scale or --size",
                         node=op.owner,
                     )
     for port in program.memories:
@@ -155,11 +159,11 @@ def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target)
         )
 
 
-def _sized(size: Size) -> str:
+def _size_text(size: Size) -> str:
     return f"{size[0]}x{size[1]}"
 
 
-class _Work:
+class _StagePlanner:
     """Finds the stages of a program."""
 
     def __init__(
@@ -178,17 +182,19 @@ class _Work:
         self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.held)
         self.nbytes = 0
 
-    def before(self) -> tuple[Stage, ...]:
+    def plan_before(self) -> tuple[TileStage, ...]:
         """What is made whole before it is read."""
-        return tuple(self._stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts)
+        return tuple(
+            self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts
+        )
 
-    def last(self) -> tuple[Stage, ...]:
+    def plan_last(self) -> tuple[TileStage, ...]:
         """The outputs that are not made by then, by size."""
         sizes: dict[Size, dict[str, Ref]] = {}
         for name, ref in self.program.outputs.items():
             if ref not in self.held:
                 sizes.setdefault(self.program.shape(ref).size, {})[name] = ref
-        return tuple(self._stage(outputs, None) for outputs in sizes.values())
+        return tuple(self._plan_stage(outputs, None) for outputs in sizes.values())
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -207,7 +213,7 @@ class _Work:
         )
 
     def _is_small(self, ref: Ref) -> bool:
-        return SMALL * _area(self.program.shape(ref).size) <= self.largest
+        return SMALL_FRACTION * _area(self.program.shape(ref).size) <= self.largest
 
     def _is_light(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures leave room for much else."""
@@ -222,45 +228,45 @@ class _Work:
     def _ops(self, fused: PassGroup) -> list[Op]:
         return [self.program.ops[index] for index in fused.members]
 
-    def _stage(self, outputs: dict[str, Ref], own: PassGroup | None) -> Stage:
+    def _plan_stage(self, outputs: dict[str, Ref], own: PassGroup | None) -> TileStage:
         """A stage with the fewest tiles that fit."""
-        passes = self._needed(outputs.values(), own)
+        passes = self._find_passes(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
         whole = any(op.is_indivisible for fused in passes for op in self._ops(fused))
         tile = size
-        usual = max(USUAL, 2 * self._textures(passes, outputs, size, (LEAST, LEAST))[1])
+        usual = max(USUAL_BYTES, 2 * self._measure_textures(passes, outputs, size, (MIN_TILE, MIN_TILE))[1])
         while True:
-            found, textures = self._textures(passes, outputs, size, tile)
-            nbytes = self._pictures(passes, outputs, found, tile) + textures
+            found, textures = self._measure_textures(passes, outputs, size, tile)
+            nbytes = self._measure_pictures(passes, outputs, found, tile) + textures
             fits = self._fits(found, textures, nbytes, usual)
-            if fits or whole or max(tile) <= LEAST:
+            if fits or whole or max(tile) <= MIN_TILE:
                 break
-            tile = _smaller(tile, self._too_wide(found))
+            tile = _halve_tile(tile, self._too_wide(found))
         if not fits and (self.target.memory or any(self._too_wide(found))):
             self._refuse(found, nbytes)
         self.nbytes = max(self.nbytes, nbytes)
-        if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MOST_TILES:
+        if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MAX_TILES:
             owner, memory = self.program.ops[next(iter(outputs.values())).op].owner, self.target.memory
             within = f"within {size_text(memory)} its" if memory else "its"
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
-                f"node '{owner}': {within} {_sized(size)} pixels can only be made in tiles of {_sized(tile)}, which "
-                f"takes too long; {more} smaller with --scale or --size",
+                f"node '{owner}': {within} {_size_text(size)} pixels can only be made in tiles of {_size_text(tile)}, "
+                f"which takes too long; {more} smaller with --scale or --size",
                 node=owner,
             )
-        tiles = _grid(size, tile)
-        all_ = [self._windows(passes, outputs.values(), region) for region in tiles]
-        return Stage(MappingProxyType(outputs), passes, tiles, _parts(self.program, all_))
+        tiles = _split_into_tiles(size, tile)
+        all_ = [self._find_windows(passes, outputs.values(), region) for region in tiles]
+        return TileStage(MappingProxyType(outputs), passes, tiles, _select_parts(self.program, all_))
 
-    def _textures(
+    def _measure_textures(
         self, passes: Sequence[PassGroup], outputs: dict[str, Ref], size: Size, tile: Size
     ) -> tuple[list[dict[Ref, Region]], int]:
         """The windows of tiles of this size, and what textures take at most."""
-        found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
+        found = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
         programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in found)
-        return found, max(peak(program, passes, self.texels) for program in programs)
+        return found, max(peak_bytes(program, passes, self.texels) for program in programs)
 
-    def _needed(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
+    def _find_passes(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
         """The passes that make pictures of what stages before made; `own` is the stage's own one."""
         found: set[int] = set()
         todo = list(refs)
@@ -274,10 +280,10 @@ class _Work:
             todo.extend(fused.reads)
         return tuple(self.passes[number] for number in sorted(found))
 
-    def _windows(self, passes: Sequence[PassGroup], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
-        return needed(self.program, passes, dict.fromkeys(refs, region))
+    def _find_windows(self, passes: Sequence[PassGroup], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
+        return find_regions(self.program, passes, dict.fromkeys(refs, region))
 
-    def _pictures(
+    def _measure_pictures(
         self, passes: Sequence[PassGroup], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
     ) -> int:
         """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
@@ -330,7 +336,7 @@ def _area(size: Size) -> int:
     return size[0] * size[1]
 
 
-def _grid(size: Size, tile: Size) -> tuple[Region, ...]:
+def _split_into_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
     """Tiles that cover a picture, row by row."""
     return tuple(
         Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y))
@@ -338,7 +344,7 @@ def _grid(size: Size, tile: Size) -> tuple[Region, ...]:
     )
 
 
-def _sample(size: Size, tile: Size) -> tuple[Region, ...]:
+def _sample_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
     """Of the tiles of a grid, those in corners, along edges and in the middle: all others are like one of these."""
     across, down = (
         sorted({0, (length - 1) // one // 2 * one, (length - 1) // one * one})
@@ -347,14 +353,14 @@ def _sample(size: Size, tile: Size) -> tuple[Region, ...]:
     return tuple(Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y)) for y, x in product(down, across))
 
 
-def _smaller(tile: Size, too_wide: tuple[bool, bool]) -> Size:
+def _halve_tile(tile: Size, too_wide: tuple[bool, bool]) -> Size:
     """Half as many pixels: of what is too long for the device, else of the longer side."""
     width, height = tile
-    across = too_wide[0] if any(too_wide) and min(tile) > LEAST else width > height
-    return (max(-(-width // 2), LEAST), height) if across else (width, max(-(-height // 2), LEAST))
+    across = too_wide[0] if any(too_wide) and min(tile) > MIN_TILE else width > height
+    return (max(-(-width // 2), MIN_TILE), height) if across else (width, max(-(-height // 2), MIN_TILE))
 
 
-def _parts(program: LoweredProgram, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
+def _select_parts(program: LoweredProgram, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
     """The regions of what is not whole for every tile."""
     parts = {ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size}
     return tuple(MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in found)

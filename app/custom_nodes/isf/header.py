@@ -28,7 +28,7 @@ Section = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Entry:
+class IsfInput:
     """One of the inputs. Numbers are lists: one for a float, two for a point, four for a color."""
 
     name: str
@@ -57,7 +57,7 @@ class Header:
     """All that a head says. `passes` are names of buffers, empty for the picture itself; there is at least one."""
 
     doc: str
-    inputs: tuple[Entry, ...]
+    inputs: tuple[IsfInput, ...]
     passes: tuple[str, ...]
     buffers: Mapping[str, Buffer]
     imported: Mapping[str, str]
@@ -72,10 +72,10 @@ def read_header(text: str) -> Header:
     end = source.find("*/", start)
     if not source.startswith("/*", start) or end < 0:
         raise CodeFault(1, "this is no Interactive Shader Format: the file begins with /* {JSON} */, which is missing")
-    return _Reading(source, start + 2, source[start + 2 : end]).header()
+    return _HeaderReader(source, start + 2, source[start + 2 : end]).header()
 
 
-class _Reading:
+class _HeaderReader:
     """The work in progress."""
 
     def __init__(self, source: str, start: int, head: str) -> None:
@@ -117,24 +117,24 @@ class _Reading:
 
     # --- inputs ------------------------------------------------------------------------------------------------------
 
-    def _inputs(self) -> tuple[Entry, ...]:
+    def _inputs(self) -> tuple[IsfInput, ...]:
         items = self._list(self.raw, "INPUTS")
         if len(items) > MAX_INPUTS:
             self._fail(f"there are {len(items)} INPUTS: {MAX_INPUTS} are the most", "INPUTS")
         return tuple(self._input(self._section(item, "INPUTS")) for item in items)
 
-    def _input(self, raw: Section) -> Entry:
+    def _input(self, raw: Section) -> IsfInput:
         name, kind = self._name(raw.get("NAME"), "an input"), raw.get("TYPE")
         if kind not in TYPES:
             self._fail(f"the input '{name}' has the TYPE {json.dumps(kind)[:40]}: known are {', '.join(TYPES)}", name)
         label = self._text(raw, "LABEL")
         if kind in PICTURES:
-            return Entry(name, kind, label)
+            return IsfInput(name, kind, label)
         length = {"point2D": 2, "color": 4}.get(kind, 1)
         default, low, high = (self._numbers(raw, key, name, length) for key in ("DEFAULT", "MIN", "MAX"))
         if low and high:
             low, high = (tuple(pick(a, b) for a, b in zip(low, high, strict=True)) for pick in (min, max))
-        return Entry(name, kind, label, default, low, high, self._choices(raw, name) if kind == "long" else ())
+        return IsfInput(name, kind, label, default, low, high, self._choices(raw, name) if kind == "long" else ())
 
     def _choices(self, raw: Section, name: str) -> tuple[tuple[int, str], ...]:
         values, labels = self._list(raw, "VALUES"), self._list(raw, "LABELS")

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from halation.nodes import Field, Image, Plain, Socket, Temporal, Uniform, Value
 
-from .header import Entry
+from .header import IsfInput
 
 LIGHT = "light"
 """The name of the value that every node has: what numbers the shader is given."""
@@ -19,7 +19,7 @@ REQUIRED = ("inputImage", "startImage", "endImage")
 _TAKEN = frozenset({*dir(Temporal), LIGHT, "code", "title", "text", "inputs", "outputs", "values", "order", "out"})
 
 
-def attributes(entries: Iterable[Entry]) -> dict[str, str]:
+def attributes(entries: Iterable[IsfInput]) -> dict[str, str]:
     """What the node calls each input: its name, with a `_` where that is taken."""
     names = [entry.name for entry in entries]
     found: dict[str, str] = {}
@@ -36,7 +36,7 @@ def attributes(entries: Iterable[Entry]) -> dict[str, str]:
     return found
 
 
-def socket_of(entry: Entry) -> Socket:
+def socket_of(entry: IsfInput) -> Socket:
     """The socket of a picture or of sound."""
     if entry.type != "image":
         wanted = "its spectrum" if entry.type == "audioFFT" else "its samples"
@@ -47,7 +47,7 @@ def socket_of(entry: Entry) -> Socket:
     return Image(0.0, own_size=True, doc=entry.label)
 
 
-def value_of(entry: Entry, name: str) -> tuple[Value, Any]:
+def value_of(entry: IsfInput, name: str) -> tuple[Value, Any]:
     """The value that an input is, and its Python type."""
     label = entry.label or entry.name.replace("_", " ")
     if entry.choices:
@@ -77,7 +77,7 @@ def value_of(entry: Entry, name: str) -> tuple[Value, Any]:
     return Value(name, "float", first[0], low=low, high=high, unit="ratio", label=label), float
 
 
-def uniform_of(entry: Entry, plain: Plain, display: bool) -> Uniform:
+def uniform_of(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
     """What the shader is given for a value of the node."""
     if entry.choices:
         return next(number for number, label in entry.choices if label == plain)
@@ -95,7 +95,7 @@ def number_of(uniform: Uniform) -> float:
     return 0.0 if isinstance(uniform, tuple) else float(uniform)
 
 
-def is_position(entry: Entry) -> bool:
+def is_position(entry: IsfInput) -> bool:
     """True for a point that lies in the picture, as fractions of it: rows run from the bottom."""
     return (
         entry.type == "point2D"
@@ -112,7 +112,7 @@ def doc_of(doc: str, called: Mapping[str, str]) -> str:
     return "\n".join([doc, *(f"{', '.join(others)}." for _ in others[:1])])
 
 
-def _default(entry: Entry) -> tuple[float, ...]:
+def _default(entry: IsfInput) -> tuple[float, ...]:
     """As the head says, else the middle of what is allowed for points, black, or the least."""
     if entry.default:
         return entry.default

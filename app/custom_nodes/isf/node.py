@@ -13,7 +13,7 @@ from halation.nodes import Draw, Drawn, Filter, Plain, ShaderText, Size, Tempora
 
 from ...errors import GraphError
 from ...glsl import parse, words
-from ..code import Code, Written
+from ..code import Code, CustomNode
 from .glsl import UNIFORMS, renamed, samplers, shader_text, values
 from .header import PICTURES, Buffer, Header, read_header
 from .inputs import LIGHT, attributes, doc_of, number_of, socket_of, uniform_of, value_of
@@ -41,7 +41,7 @@ vec4 isf_nothing() { return vec4(0.0); }
 
 
 @dataclass(frozen=True)
-class Shader:
+class IsfShader:
     """What a class draws with: its head, its program, and what the program reads, by the head's names."""
 
     header: Header
@@ -55,13 +55,13 @@ class Shader:
 
 
 @lru_cache(KEPT)
-def isf_node(code: Code) -> type[Written]:
+def isf_node(code: Code) -> type[CustomNode]:
     """The class of the nodes that this shader describes. Raises CodeFault."""
     header = read_header(code.text)
     text = shader_text(code, header)
     used = words(*(stage.text for stage in (text.fragment, text.vertex) if stage))
     called = attributes(header.inputs)
-    shader = Shader(
+    shader = IsfShader(
         header,
         text,
         PurePath(code.file).parent.as_posix() if code.file else "",
@@ -87,7 +87,7 @@ def isf_node(code: Code) -> type[Written]:
     body["passes"] = passes
     base = Temporal if any(buffer.persistent for buffer in header.buffers.values()) else Filter
     title = PurePath(code.file).stem or "shader"
-    made = cast("type[Written]", new_class("Shader", (Written, base), {}, lambda space: space.update(body)))
+    made = cast("type[CustomNode]", new_class("Shader", (CustomNode, base), {}, lambda space: space.update(body)))
     digest = blake2b(repr((code.text, code.vertex, code.file)).encode(), digest_size=8).hexdigest()
     made.id, made.category = "isf", "code"
     made.values = {**found, LIGHT: _LIGHT}
@@ -100,7 +100,7 @@ def isf_node(code: Code) -> type[Written]:
 class _Drawing:
     """One node at work."""
 
-    def __init__(self, node: Filter, draw: Draw, shader: Shader) -> None:
+    def __init__(self, node: Filter, draw: Draw, shader: IsfShader) -> None:
         self.node, self.draw, self.shader, self.header = node, draw, shader, shader.header
         self.light = cast("str", getattr(node, LIGHT))
         entries = {entry.name: entry for entry in self.header.inputs}

@@ -79,10 +79,10 @@ def read_size(text: str) -> SizeFormula:
     """Read a formula. Raises SizeError."""
     if len(text) > MAX_LENGTH:
         raise SizeError(f"it has more than {MAX_LENGTH} characters")
-    return _Reading(text).whole()
+    return _SizeParser(text).whole()
 
 
-class _Reading:
+class _SizeParser:
     """The work in progress: what is left of the tokens, last first."""
 
     def __init__(self, text: str) -> None:

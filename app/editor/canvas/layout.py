@@ -10,7 +10,7 @@ from typing import Literal
 from halation.nodes import Kind, Node, Plain, Socket, Value
 
 from ...authoring.edits.coding import LANGUAGES
-from ...custom_nodes import Written
+from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
 from ..fields.lights import counted
@@ -151,7 +151,7 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else what
     doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
     if words(subtitle).lower() == words(id).lower():
-        subtitle = LANGUAGES[item.id] if isinstance(item, Written) else ""
+        subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
 
     inputs = dict(face.inputs)
     left = [Pin(name, one.kind, 0.0, 0.0, one.optional) for name, one in inputs.items()]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
-from ...custom_nodes import Code, CodeFault, Written, node_type
+from ...custom_nodes import Code, CodeFault, CustomNode, node_type
 from ...errors import ShaderError
 from ...graph import Unknown
 from ..theme.style import mix, u32
@@ -148,7 +148,7 @@ class Page:
                 self._checked = code, _fault_of(code)
             return self._checked[1] or Fault(0, item.fault)
         error = self.context.preview.errors.get(self.path)
-        if isinstance(item, Written) and isinstance(error, ShaderError):
+        if isinstance(item, CustomNode) and isinstance(error, ShaderError):
             if item.text is None or error.file == item.text.file:
                 return Fault(error.line, error.fault.removeprefix("error:").strip())
             return Fault(0, f"{error.file}, line {error.line}: {error.fault}")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...authoring.session import Session
-from ...compiler import named_files
+from ...compiler import find_named_files
 from ...errors import HalationError
 from ...graph import Graph
 from ...media.layers import split_layer
@@ -46,7 +46,9 @@ def gaps_of(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
     """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
     paths = [split_layer(str(file))[0] for file in bindings.values() if isinstance(file, str | Path)]
     with suppress(HalationError):
-        paths += [path for path, owner, _ in named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings]
+        paths += [
+            path for path, owner, _ in find_named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings
+        ]
     found: set[tuple[int, int]] = set()
     for path in dict.fromkeys(paths):
         try:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import plugins
 
-from ...compiler import installed
+from ...compiler import installed_library
 from ...graph import Port
 from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrated, shader_folder
@@ -124,8 +124,8 @@ class FrameUpdater:
             case "code":
                 self._contexts.code_files.reread(change.path)
             case "shader":
-                installed.cache_clear()
-                editor.preview.reload(installed())
+                installed_library.cache_clear()
+                editor.preview.reload(installed_library())
                 editor.log.add(f"shader {change.path.name} was loaded again")
             case "node":
                 if fault := self._nodes.reload():

@@ -12,7 +12,7 @@ from halation.nodes import Plain
 
 from ...errors import GraphError
 from .fault import ExpressionError
-from .functions import OPERATORS, Function, Made, NoValueError, applied
+from .functions import OPERATORS, ExpressionFunction, Made, NoValueError, applied
 
 
 class Scope(NamedTuple):
@@ -77,7 +77,7 @@ def named(text: str, position: int, name: str) -> Code:
     return run
 
 
-def call(text: str, position: int, function: Function, arguments: Sequence[Code]) -> Code:
+def call(text: str, position: int, function: ExpressionFunction, arguments: Sequence[Code]) -> Code:
     """A function of arguments."""
 
     def run(scope: Scope) -> Made:

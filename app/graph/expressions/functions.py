@@ -20,7 +20,7 @@ class NoValueError(Exception):
     """Why some numbers make no value, in words."""
 
 
-class Function(Struct, frozen=True):
+class ExpressionFunction(Struct, frozen=True):
     """A function: how it is written, what it is, and how many values it can take."""
 
     signature: str
@@ -125,45 +125,51 @@ OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
 
 _MANY = range(2, 501)
 
-FUNCTIONS: Mapping[str, Function] = MappingProxyType(
+FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
     {
         item.name: item
         for item in (
-            Function("sin(x)", "the sine of an angle in radians", (1,), math.sin),
-            Function("cos(x)", "the cosine of an angle in radians", (1,), math.cos),
-            Function("tan(x)", "the tangent of an angle in radians", (1,), math.tan),
-            Function("asin(x)", "the angle in radians with that sine", (1,), math.asin),
-            Function("acos(x)", "the angle in radians with that cosine", (1,), math.acos),
-            Function("atan(x)", "the angle in radians with that tangent", (1,), math.atan),
-            Function("atan2(y, x)", "the angle in radians from the x axis to the point x, y", (2,), math.atan2),
-            Function("degrees(x)", "radians as degrees", (1,), math.degrees),
-            Function("radians(x)", "degrees as radians", (1,), math.radians),
-            Function("sqrt(x)", "the square root", (1,), math.sqrt),
-            Function("exp(x)", "e to the power of x", (1,), math.exp),
-            Function("log(x)", "the natural logarithm", (1,), math.log),
-            Function("log2(x)", "the logarithm to base 2: photographic stops", (1,), math.log2),
-            Function("pow(x, y)", "x to the power of y", (2,), math.pow),
-            Function("abs(x)", "x without its sign", (1,), math.fabs),
-            Function("sign(x)", "-1, 0 or 1", (1,), _sign),
-            Function("floor(x)", "the whole number at or below x", (1,), math.floor),
-            Function("ceil(x)", "the whole number at or above x", (1,), math.ceil),
-            Function("round(x)", "the nearest whole number, halves away from zero", (1,), rounded),
-            Function("fract(x)", "x without its whole part", (1,), _fract),
-            Function("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
-            Function("min(a, b, ...)", "the smallest", _MANY, min),
-            Function("max(a, b, ...)", "the largest", _MANY, max),
-            Function(
+            ExpressionFunction("sin(x)", "the sine of an angle in radians", (1,), math.sin),
+            ExpressionFunction("cos(x)", "the cosine of an angle in radians", (1,), math.cos),
+            ExpressionFunction("tan(x)", "the tangent of an angle in radians", (1,), math.tan),
+            ExpressionFunction("asin(x)", "the angle in radians with that sine", (1,), math.asin),
+            ExpressionFunction("acos(x)", "the angle in radians with that cosine", (1,), math.acos),
+            ExpressionFunction("atan(x)", "the angle in radians with that tangent", (1,), math.atan),
+            ExpressionFunction(
+                "atan2(y, x)", "the angle in radians from the x axis to the point x, y", (2,), math.atan2
+            ),
+            ExpressionFunction("degrees(x)", "radians as degrees", (1,), math.degrees),
+            ExpressionFunction("radians(x)", "degrees as radians", (1,), math.radians),
+            ExpressionFunction("sqrt(x)", "the square root", (1,), math.sqrt),
+            ExpressionFunction("exp(x)", "e to the power of x", (1,), math.exp),
+            ExpressionFunction("log(x)", "the natural logarithm", (1,), math.log),
+            ExpressionFunction("log2(x)", "the logarithm to base 2: photographic stops", (1,), math.log2),
+            ExpressionFunction("pow(x, y)", "x to the power of y", (2,), math.pow),
+            ExpressionFunction("abs(x)", "x without its sign", (1,), math.fabs),
+            ExpressionFunction("sign(x)", "-1, 0 or 1", (1,), _sign),
+            ExpressionFunction("floor(x)", "the whole number at or below x", (1,), math.floor),
+            ExpressionFunction("ceil(x)", "the whole number at or above x", (1,), math.ceil),
+            ExpressionFunction("round(x)", "the nearest whole number, halves away from zero", (1,), rounded),
+            ExpressionFunction("fract(x)", "x without its whole part", (1,), _fract),
+            ExpressionFunction("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
+            ExpressionFunction("min(a, b, ...)", "the smallest", _MANY, min),
+            ExpressionFunction("max(a, b, ...)", "the largest", _MANY, max),
+            ExpressionFunction(
                 "clamp(x, low, high)", "x within low and high; within 0 and 1 if they are left out", (1, 3), _clamp
             ),
-            Function("mix(a, b, t)", "from a at t = 0 to b at t = 1", (3,), _mix),
-            Function("step(edge, x)", "0 below the edge, else 1", (2,), _step),
-            Function("smoothstep(low, high, x)", "0 below low, 1 above high, smooth between", (3,), _smoothstep),
-            Function(
+            ExpressionFunction("mix(a, b, t)", "from a at t = 0 to b at t = 1", (3,), _mix),
+            ExpressionFunction("step(edge, x)", "0 below the edge, else 1", (2,), _step),
+            ExpressionFunction(
+                "smoothstep(low, high, x)", "0 below low, 1 above high, smooth between", (3,), _smoothstep
+            ),
+            ExpressionFunction(
                 "fit(x, low, high, a, b)", "from a where x is low to b where it is high, level outside", (5,), _fit
             ),
-            Function("pulse(x, start, end)", "1 from start until before end, else 0", (3,), _pulse),
-            Function("noise(x, seed)", "smooth noise, -1 to 1; the seed may be left out", (1, 2), noise),
-            Function("random(n, seed)", "0 to 1, another for every whole n; the seed may be left out", (1, 2), random),
+            ExpressionFunction("pulse(x, start, end)", "1 from start until before end, else 0", (3,), _pulse),
+            ExpressionFunction("noise(x, seed)", "smooth noise, -1 to 1; the seed may be left out", (1, 2), noise),
+            ExpressionFunction(
+                "random(n, seed)", "0 to 1, another for every whole n; the seed may be left out", (1, 2), random
+            ),
         )
     }
 )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import Pointwise, Trait
 
-from ...custom_nodes import Written
+from ...custom_nodes import CustomNode
 from ...graph import Port, Problem
 from ...graph.rules import Rule
 from ..sheet import Check, Sheet, has_trait
@@ -57,7 +57,7 @@ def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
 def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
     """The one input that is linked of a node that does the same to every pixel, so that it may as well come later."""
     fed = [name for name in (*item.inputs, *item.values) if Port(id, name) in sheet.graph.links]
-    alike = len(fed) == len(item.outputs) == 1 and fed[0] in item.inputs and not isinstance(item, Written)
+    alike = len(fed) == len(item.outputs) == 1 and fed[0] in item.inputs and not isinstance(item, CustomNode)
     return fed[0] if alike and not sheet.library.uses(item.shader, _PLACES, id) else ""
 
 

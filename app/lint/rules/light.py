@@ -7,7 +7,7 @@ from pathlib import PurePath
 
 from halation.nodes import Kind, Trait
 
-from ...custom_nodes import Written
+from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
 from ..sheet import Check, Sheet, has_trait, layered_path
@@ -35,7 +35,7 @@ def display_light(sheet: Sheet) -> Iterator[Problem]:
     maker: dict[Port, str] = {}
     for id in sheet.graph.order():
         item = sheet.works(id)
-        if item is None or isinstance(item, Written):
+        if item is None or isinstance(item, CustomNode):
             continue
         pictures = [source for source in _pictures(sheet, id) if source]
         made = {maker[source] for source in pictures if source in maker}

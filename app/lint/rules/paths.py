@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import PurePosixPath, PureWindowsPath
 
-from ...custom_nodes import Written
+from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Graph, Group, Problem, signature
 from ...graph.color import BUILT_IN
 from ...graph.rules import Rule
@@ -37,7 +37,7 @@ def named_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
         if isinstance(item, Group):
             if item.path:
                 yield id, "", f"nodes.{id}.path", item.path
-        elif isinstance(item, Written) and item.code.file:
+        elif isinstance(item, CustomNode) and item.code.file:
             yield id, "", f"nodes.{id}.file", item.code.file
         for name, value in signature(item).values.items():
             given = getattr(item, name, "") if not isinstance(item, Group) else item.values.get(name, "")

@@ -6,7 +6,7 @@ import re
 from functools import partial
 
 from ...compiler import FIRST_TABLE, Pass, Shader
-from ...custom_nodes import unprefixed
+from ...custom_nodes import strip_prefix
 from ...errors import DeviceError, ShaderError
 from ..device import Device, DeviceProgram
 from .resource_cache import ResourceCache
@@ -60,6 +60,6 @@ def _locate_fault(render_pass: Pass, log: str) -> ShaderError:
         match = _FAULT.match(line.strip())
         if match and not match[4].lower().startswith("warning"):
             name, row = shader.locate(int(match[2] or match[3]))
-            return ShaderError(render_pass.writers.get(name, nodes), name, row, unprefixed(match[4].strip()))
+            return ShaderError(render_pass.writers.get(name, nodes), name, row, strip_prefix(match[4].strip()))
     first = next((line.strip() for line in log.splitlines() if "error" in line.lower()), log.strip())
     return ShaderError(nodes, shader.files[-1], 1, first)

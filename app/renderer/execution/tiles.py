@@ -9,7 +9,7 @@ import numpy as np
 from halation.nodes import Kind, Size
 from msgspec.structs import replace
 
-from ...compiler import Pass, Plan, Ref, Region, Stage, StoredResult, Upload, tile_plan
+from ...compiler import Pass, Plan, Ref, Region, StoredResult, TileStage, Upload, plan_tile
 from ...compiler.areas import Span
 from ...compiler.explain import size_text
 from ...compiler.ir import LoweredProgram
@@ -97,17 +97,17 @@ class TiledRun(Run):
             self._forget(made, tiling.stages[number + 1 :])
         self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
 
-    def _stage(self, stage: Stage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
+    def _stage(self, stage: TileStage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
         """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
         size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
         taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
         whole: dict[str, Array] = {}
-        before, plan = self._runner.lease(), tile_plan(self._tiling, stage, 0, made)
+        before, plan = self._runner.lease(), plan_tile(self._tiling, stage, 0, made)
         try:
             for number, tile in enumerate(stage.tiles):
                 # Each tile keeps what the next one would make again.
                 last = number + 1 == len(stage.tiles)
-                following = None if last else tile_plan(self._tiling, stage, number + 1, made)
+                following = None if last else plan_tile(self._tiling, stage, number + 1, made)
                 shared = carried(plan, following) if following else ()
                 kept = self._runner.lease()
                 try:
@@ -145,7 +145,7 @@ class TiledRun(Run):
         found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
         return replace(plan, uploads=found)
 
-    def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
+    def _held(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
         """What a stage made, in place of the operations that would make it again."""
         program, keys = self._tiling.program, self._tiling.keys
         found: dict[int, StoredResult] = {}
@@ -163,7 +163,7 @@ class TiledRun(Run):
             )
         return found
 
-    def _forget(self, made: dict[int, StoredResult], later: Iterable[Stage]) -> None:
+    def _forget(self, made: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
         """Let go of what no later stage reads."""
         read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
         read |= {ref.op for ref in self._tiling.program.outputs.values()}

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from ... import media
-from ...compiler import Plan, named_files
-from ...compiler.lowering.named import CONFIG, path_texts
+from ...compiler import Plan, find_named_files
+from ...compiler.lowering.named import CONFIG, find_path_texts
 from ...errors import HalationError
 from ...graph import INPUTS, OUTPUTS, Graph
 from ...graph.frames import format_frames
@@ -132,13 +132,13 @@ class Sources:
     @cached_property
     def _named(self) -> dict[str, tuple[str, Missing]]:
         """The path of every picture, and what shows where a frame has no file, by who reads it."""
-        return {owner: (path, missing) for path, owner, missing in named_files(self._graph, self._bound)}
+        return {owner: (path, missing) for path, owner, missing in find_named_files(self._graph, self._bound)}
 
     @cached_property
     def _others(self) -> dict[str, str]:
         """Files of nodes, which may be no pictures, or of which only the header is read, by who names them."""
         used = self._graph.upstream(OUTPUTS)
-        named = {owner: path for owner, (_, path) in path_texts(self._graph).items()}
+        named = {owner: path for owner, (_, path) in find_path_texts(self._graph).items()}
         return {
             owner: path
             for owner, path in named.items()

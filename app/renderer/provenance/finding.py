@@ -12,7 +12,7 @@ from halation.nodes import Node
 from halation.presets import paths as presets
 from msgspec import structs
 
-from ...compiler.lowering.named import CONFIG, path_texts
+from ...compiler.lowering.named import CONFIG, find_path_texts
 from ...errors import InputError, UsageError
 from ...graph import INPUTS, Graph, did_you_mean
 from ...graph.frames import Pattern
@@ -47,7 +47,7 @@ class Finder:
 
     def __init__(self, recipe: Recipe, given: Mapping[str, str], search: Sequence[Path]) -> None:
         self._recipe, self._search = recipe, search
-        self._texts = {owner: text for owner, (text, _) in path_texts(recipe.graph).items()}
+        self._texts = {owner: text for owner, (text, _) in find_path_texts(recipe.graph).items()}
         self._given = {self._owner(name): path for name, path in given.items()}
         self._bases = (recipe.path.parent, Path(), *search, presets()[0].parent)
         self._hashes = Hashes()
@@ -151,7 +151,7 @@ def made_by(path: Path, catalogue: Mapping[str, type[Node]] | None = None) -> Gr
 
 def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
     """The graph with what was found in place of what it names, seen from its own folder."""
-    texts = {owner: text for owner, (text, _) in path_texts(graph).items()}
+    texts = {owner: text for owner, (text, _) in find_path_texts(graph).items()}
     here = {item.used.owner: _spelled(item.path, graph.folder) for item in found if item.path}
     moved = {text: path for owner, path in here.items() if (text := text_of(texts, owner))}
     graph = repointed(graph, lambda text: moved.get(text, text))

@@ -11,7 +11,7 @@ from halation.nodes import ColorSettings
 from ...color.gpu_programs import gpu_view
 from ...color.management import color_mark
 from ...color.primaries import working_of
-from ...compiler import Library, installed, library_for
+from ...compiler import Library, installed_library, library_for
 from ...errors import DeviceError
 from ...resources.color_program import ColorProgram
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture, PixelRect
@@ -76,7 +76,7 @@ class ViewPrograms:
         key = (view, color, color_mark(color), compare, texels, viewed)
         if key not in self._programs:
             text = gpu_view(view.view, view.display, view.look, color) if view else None
-            library = library_for(installed(), working_of(color))
+            library = library_for(installed_library(), working_of(color))
             self._programs[key] = self._compile(text, _source(text, library, compare, texels, viewed))
         return self._programs[key]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.compiler import Library, installed
+from halation.compiler import Library, installed_library
 from halation.compiler.library import parse
 from halation.graph import Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
@@ -275,7 +275,7 @@ def test_a_file_that_breaks_while_it_is_read(preview, engine):
 
 def test_shaders_are_loaded_again_while_the_picture_stays(preview, engine):
     def library(text: str) -> Library:
-        return Library({**installed().texts, "color/saturation": parse("color/saturation", text)})
+        return Library({**installed_library().texts, "color/saturation": parse("color/saturation", text)})
 
     want(preview, chain())
     settle(preview)

@@ -8,7 +8,7 @@ import pytest
 from halation.authoring.edits import coding
 from halation.authoring.edits.coding import BrokenCodeNode
 from halation.authoring.session import Session
-from halation.custom_nodes import Written
+from halation.custom_nodes import CustomNode
 from halation.document import dumps, loads
 from halation.errors import GraphError
 from halation.graph import Graph, Input, Keys, Output, Port, Unknown
@@ -29,9 +29,9 @@ def start(text: str = GAIN) -> Session:
     return session
 
 
-def written(session: Session, id: str = "code") -> Written:
+def written(session: Session, id: str = "code") -> CustomNode:
     item = session.graph.nodes[id]
-    assert isinstance(item, Written)
+    assert isinstance(item, CustomNode)
     return item
 
 
@@ -88,7 +88,7 @@ def test_a_default_that_was_not_touched_follows_the_code() -> None:
     assert written(session).k == 3.0
     session.set(Port("code", "k"), 1.0)
     session.set_code("code", GAIN.replace("= 2", "= 3").replace("k", "gain"))
-    assert isinstance(session.graph.nodes["code"], Written)
+    assert isinstance(session.graph.nodes["code"], CustomNode)
     session.undo()
     session.set_code("code", GAIN)
     assert written(session).k == 1.0
