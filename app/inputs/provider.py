@@ -63,7 +63,7 @@ class MediaProvider:
 
         if graph.settings.frames is not None:
             return graph.settings.frames
-        for path, _, _ in named_files(graph, bound):
+        for path, _, _ in find_named_files(graph, bound):
             if (sequence := find_sequence(path)) and sequence.frames:
                 return sequence.frames[0], sequence.frames[-1]
         return keyed_range(graph)
@@ -73,7 +73,7 @@ class MediaProvider:
         from ..media.sequences import find_sequence
 
         usual = type(graph.settings)().rate
-        for path, _, _ in named_files(graph, bound) if graph.settings.rate == usual else ():
+        for path, _, _ in find_named_files(graph, bound) if graph.settings.rate == usual else ():
             if is_video(path) and (sequence := find_sequence(path)) and sequence.rate:
                 return sequence.rate
         return graph.settings.rate

@@ -123,7 +123,9 @@ def reread_file_code(graph: Graph, file: Path) -> Graph:
         except CodeFault as fault:
             return _replace_node(body, id, _make_broken(code, fault, _changed_values(item)))
         return (
-            body if disk_code == code and isinstance(item, CustomNode | BrokenCodeNode) else set_code(body, id, disk_code)
+            body
+            if disk_code == code and isinstance(item, CustomNode | BrokenCodeNode)
+            else set_code(body, id, disk_code)
         )
 
     return _map_code_nodes(graph, change, borrowed=True)
