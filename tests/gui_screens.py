@@ -159,7 +159,7 @@ def viewer(ui: Ui) -> Screens:
     seen.show("false color")
     ui.session.view(Port("grade", "out"), "B")
     for mode in ("wipe", "difference", "toggle"):
-        seen.comparing(mode)
+        seen.toggle_comparison(mode)
         ui.settled()
         yield f"viewer_{mode}"
     seen.compare = "off"

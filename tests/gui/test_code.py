@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from halation import document
 from halation.custom_nodes import CustomNode
-from halation.editor.problems.findings import findings
+from halation.editor.problems.findings import list_problems
 from halation.editor.toolkit.keys import chord
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
@@ -108,7 +108,7 @@ def test_a_broken_line_is_marked_and_the_picture_stays(gui, path) -> None:
             fault = page(ui).fault
             assert fault.line == 1 and sentence in fault.sentence
             assert isinstance(ui.session.graph.nodes["code"], Unknown) == ("uniform" in line)
-            assert any(one.where == "code" and "line 1" in one.sentence for one in findings(ui.editor))
+            assert any(one.where == "code" and "line 1" in one.sentence for one in list_problems(ui.editor))
 
             before = ui.session.root
             ui.ctx.key_press(chord("Shift+UpArrow"))

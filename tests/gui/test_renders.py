@@ -8,7 +8,6 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
-from halation.editor.window.arriving import arrived
 from halation.graph import Port
 from halation.presets import sample
 

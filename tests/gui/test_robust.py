@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
-from halation.editor.problems.findings import findings
+from halation.editor.problems.findings import list_problems
 from halation.editor.shared.dialogs import Question
 from halation.graph import Port
 from imgui_bundle import imgui
@@ -75,7 +75,7 @@ def test_a_panel_may_fail_anywhere(gui, tmp_path: Path, place: str) -> None:
             panel.begin = begin
             ui.wait(4)
             assert place in ui.editor.faults, name
-            (found,) = [one for one in findings(ui.window._contexts.problems) if place in one.sentence]
+            (found,) = [one for one in list_problems(ui.window._contexts.problems) if place in one.sentence]
             assert "ValueError: a bug" in found.detail, name
             panel.begin = None
             ui.editor.faults.clear()

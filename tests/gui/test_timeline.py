@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from halation.editor.window.arriving import arrived
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
 from halation.renderer import FrameRenderer, RenderRequest

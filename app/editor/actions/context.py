@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard, ElementView
+    from ..shared.protocols import ElementView, SystemText
     from ..shared.window_commands import WindowCommands
 
 
@@ -19,7 +19,7 @@ class EditContext:
 
     session: Session
     canvas: ElementView
-    clipboard: Clipboard
+    clipboard: SystemText
     dialogs: Dialogs
 
 

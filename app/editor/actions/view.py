@@ -17,7 +17,7 @@ def _toggle(name: str) -> Act:
     return toggle
 
 
-def _shown(name: str) -> Ask:
+def _is_shown(name: str) -> Ask:
     return lambda context: bool(getattr(context.store.current, name))
 
 
@@ -34,11 +34,13 @@ def _scale(step: float) -> Act:
 
 
 VIEW: tuple[Action, ...] = (
-    Action("view.thumbnails", "Thumbnails", _toggle("thumbnails"), "View", "T", "graph", checked=_shown("thumbnails")),
     Action(
-        "view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph", checked=_shown("timings")
+        "view.thumbnails", "Thumbnails", _toggle("thumbnails"), "View", "T", "graph", checked=_is_shown("thumbnails")
     ),
-    Action("view.minimap", "Overview", _toggle("minimap"), "View", checked=_shown("minimap")),
+    Action(
+        "view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph", checked=_is_shown("timings")
+    ),
+    Action("view.minimap", "Overview", _toggle("minimap"), "View", checked=_is_shown("minimap")),
     Action(
         "view.theme",
         "Light Theme",

@@ -10,14 +10,14 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..shared.dialogs import Question
 from ..theme.style import ui_scale
-from ..toolkit.buttons import main_button, quiet, right_aligned, room_for
-from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.buttons import align_right, main_button, quiet_button, width_of_buttons
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.places import record
-from ..toolkit.words import dim, elided, font, tip, wrapped
-from .browsing import Browsing, begun
+from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
+from .browsing import Browsing, begin_browsing
 from .file_list import FileGrid, FileTable
 from .listing import make_folder
-from .places import PlaceKind, completed
+from .places import PlaceKind, complete_path
 
 if TYPE_CHECKING:
     from .context import BrowserContext
@@ -56,7 +56,7 @@ class FileBrowser:
             self._now = None
             return
         if self._now is None or self._now.browse is not browse:
-            self._now, self._naming, self._focus = begun(self._context, browse), False, "field"
+            self._now, self._naming, self._focus = begin_browsing(self._context, browse), False, "field"
             self._path = str(self._now.folder)
         now = self._now
         now.poll()
@@ -72,37 +72,37 @@ class FileBrowser:
             self._files(now)
             imgui.end_child()
             self._bottom(now)
-            if escaped() and self._context.dialogs.question is None:
+            if escape_pressed() and self._context.dialogs.question is None:
                 self._context.dialogs.browse = None
 
     def _top(self, now: Browsing) -> None:
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted(now.browse.title)
-        if quiet(self._context, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
+        if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
             self._go(now, now.folder.parent)
         imgui.same_line()
         shown = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
-        buttons = room_for(*shown) + imgui.get_style().item_spacing.x
+        buttons = width_of_buttons(*shown) + imgui.get_style().item_spacing.x
         imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
         entered, self._path = imgui.input_text("##path", self._path, int(imgui.InputTextFlags_.enter_returns_true))
         record(self._context, "path field")
         self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()
         if entered:
-            self._typed(now)
+            self._open_typed_path(now)
         imgui.same_line()
-        if quiet(self._context, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
+        if quiet_button(self._context, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
             self._naming, self._new, self._focus = True, "", "folder"
         imgui.same_line()
         eye = icons.ICON_FA_EYE if now.hidden else icons.ICON_FA_EYE_SLASH
-        if quiet(self._context, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
+        if quiet_button(self._context, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
             now.hidden = not now.hidden
         imgui.same_line()
         other = icons.ICON_FA_LIST if self._as_grid else icons.ICON_FA_TABLE_CELLS_LARGE
-        if quiet(self._context, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
+        if quiet_button(self._context, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
             self._as_grid = not self._as_grid
 
-    def _typed(self, now: Browsing) -> None:
-        path = completed(self._path, now.folder)
+    def _open_typed_path(self, now: Browsing) -> None:
+        path = complete_path(self._path, now.folder)
         if path.is_dir() or now.browse.saving or not path.is_file():
             self._go(now, path)
             return
@@ -111,14 +111,14 @@ class FileBrowser:
         now.search(path.name)
 
     def _go(self, now: Browsing, folder: object) -> None:
-        now.go(completed(str(folder), now.folder))
+        now.go(complete_path(str(folder), now.folder))
         self._path, self._focus = str(now.folder), "field"
 
     def _places(self, now: Browsing, height: float) -> None:
         imgui.begin_child("places", ImVec2(176 * ui_scale(), height), 0, int(imgui.WindowFlags_.no_nav))
         for index, place in enumerate(now.offered):
             room = imgui.get_content_region_avail().x - 30 * ui_scale()
-            label = f"{PLACE_ICONS[place.kind]}  {elided(place.title, room)}##{index}"
+            label = f"{PLACE_ICONS[place.kind]}  {cut_middle(place.title, room)}##{index}"
             if imgui.selectable(label, place.path == now.folder)[0]:
                 self._go(now, place.path)
             tip(str(place.path))
@@ -129,12 +129,12 @@ class FileBrowser:
         if self._naming:
             self._name_folder(now)
         if now.listing.fault:
-            wrapped(self._context.palette.error, now.listing.fault)
+            draw_wrapped(self._context.palette.error, now.listing.fault)
             return
         items = now.items
         if not items:
             nothing = "Nothing here is called that." if now.query else "Nothing here to choose."
-            dim(self._context, "Reading..." if now.listing.busy else nothing)
+            draw_dim(self._context, "Reading..." if now.listing.busy else nothing)
             return
         shape = self._grid if self._as_grid and now.browse.purpose == "image" else self._table
         done = shape.draw(now)
@@ -204,9 +204,9 @@ class FileBrowser:
         verb = "Save" if now.browse.saving else "Open"
         target = now.target
         imgui.align_text_to_frame_padding()
-        counted = f"{len(now.items)} items" if target is None else elided(str(target), 560 * ui_scale())
-        dim(self._context, counted)
-        right_aligned("Cancel", f"    {verb}    ")
+        counted = f"{len(now.items)} items" if target is None else cut_middle(str(target), 560 * ui_scale())
+        draw_dim(self._context, counted)
+        align_right("Cancel", f"    {verb}    ")
         if imgui.button("Cancel"):
             self._context.dialogs.browse = None
         record(self._context, "cancel file")

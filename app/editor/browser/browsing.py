@@ -63,7 +63,7 @@ class Browsing:
     @property
     def items(self) -> tuple[Item, ...]:
         """What is listed."""
-        return self.listing.shown(self.endings, self.query, self.order, self.down, self.hidden)
+        return self.listing.arrange(self.endings, self.query, self.order, self.down, self.hidden)
 
     @property
     def item(self) -> Item | None:
@@ -94,7 +94,7 @@ class Browsing:
         return self.folder / self.item.name if self.item and not self.item.is_folder else None
 
 
-def begun(context: BrowserContext, browse: Browse) -> Browsing:
+def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:
     """Start in the folder that was used last for this, else where the document is."""
     path = context.session.path
     own = path.absolute().parent if path else None

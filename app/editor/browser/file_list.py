@@ -11,9 +11,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import outline
 from ..toolkit.places import record
-from ..toolkit.textures import Textures, fitted
-from ..toolkit.thumbnails import Pictures
-from ..toolkit.words import dim, elided, tip
+from ..toolkit.textures import Textures, fit_picture
+from ..toolkit.thumbnails import FileThumbnails
+from ..toolkit.words import cut_middle, draw_dim, tip
 from .browsing import Browsing, size_text, time_text
 from .listing import Item, Order
 
@@ -65,7 +65,7 @@ class FileTable:
         room = imgui.get_content_region_avail().x - 26 * ui_scale()
         chosen = index == now.chosen
         done = False
-        if imgui.selectable(f"{icon}  {elided(item.name, room)}##{index}", chosen, flags)[0]:
+        if imgui.selectable(f"{icon}  {cut_middle(item.name, room)}##{index}", chosen, flags)[0]:
             now.choose(index)
             done = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
         record(self._context, f"file {item.name}")
@@ -73,9 +73,9 @@ class FileTable:
             imgui.internal.scroll_to_item()
             self.reveal = False
         imgui.table_next_column()
-        dim(self._context, "" if item.is_folder else size_text(item.size))
+        draw_dim(self._context, "" if item.is_folder else size_text(item.size))
         imgui.table_next_column()
-        dim(self._context, time_text(item.time))
+        draw_dim(self._context, time_text(item.time))
         return done
 
 
@@ -86,7 +86,7 @@ class FileGrid:
         self._context = context
         self.reveal = False
         self.columns = 1
-        self._pictures: Pictures | None = None
+        self._pictures: FileThumbnails | None = None
         self._textures = Textures()
 
     def close(self) -> None:
@@ -98,7 +98,7 @@ class FileGrid:
     def draw(self, now: Browsing) -> bool:
         """True if an item was double-clicked."""
         if self._pictures is None:
-            self._pictures = Pictures(self._context.store.file.parent / "thumbnails")
+            self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
         scale, items, done = ui_scale(), now.items, False
         self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
         imgui.begin_child("grid")
@@ -117,7 +117,7 @@ class FileGrid:
         imgui.end_child()
         return done
 
-    def _cell(self, now: Browsing, index: int, item: Item, pictures: Pictures) -> bool:
+    def _cell(self, now: Browsing, index: int, item: Item, pictures: FileThumbnails) -> bool:
         scale, palette = ui_scale(), self._context.palette
         chosen = index == now.chosen
         size = ImVec2((_CELL[0] - 6) * scale, (_CELL[1] - 6) * scale)
@@ -134,7 +134,7 @@ class FileGrid:
         low = imgui.get_item_rect_min()
         self._picture(now.folder / item.name, item, low, pictures)
         lines = imgui.get_window_draw_list()
-        name = elided(item.name, _PICTURE[0] * scale)
+        name = cut_middle(item.name, _PICTURE[0] * scale)
         left = low.x + (size.x - imgui.calc_text_size(name).x) / 2
         lines.add_text(ImVec2(left, low.y + (_PICTURE[1] + 10) * scale), u32(palette.text), name)
         imgui.pop_id()
@@ -142,13 +142,13 @@ class FileGrid:
             now.choose(index)
         return clicked and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
 
-    def _picture(self, path: Path, item: Item, low: ImVec2, pictures: Pictures) -> None:
+    def _picture(self, path: Path, item: Item, low: ImVec2, pictures: FileThumbnails) -> None:
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         left, top = low.x + 5 * scale, low.y + 5 * scale
         width, height = _PICTURE[0] * scale, _PICTURE[1] * scale
         found = None if item.is_folder else pictures.get(path, item.time)
         if found is not None and not isinstance(found, str):
-            across, down = fitted(found, width, height)
+            across, down = fit_picture(found, width, height)
             corner = ImVec2(left + (width - across) / 2, top + (height - down) / 2)
             texture = self._textures.get((path, item.time), lambda: found)
             lines.add_image(texture, corner, ImVec2(corner.x + across, corner.y + down))

@@ -38,7 +38,7 @@ def read_folder(folder: Path) -> tuple[Item, ...]:
     return tuple(item for item in found if item)
 
 
-def arranged(
+def arrange_items(
     items: Sequence[Item],
     endings: Collection[str],
     *,
@@ -54,7 +54,7 @@ def arranged(
     wanted = [
         item
         for item in items
-        if (hidden or not item.hidden) and (item.is_folder or not endings or _ending(item.name) in endings)
+        if (hidden or not item.hidden) and (item.is_folder or not endings or extension_of(item.name) in endings)
     ]
     keys = {
         "name": lambda item: _natural(item.name),
@@ -75,15 +75,15 @@ class Listing:
         self.folder = Path()
         self.items: tuple[Item, ...] = ()
         self.fault = ""
-        self._reader: _Reader | None = None
+        self._reader: _FolderReader | None = None
         self._asked: tuple[object, ...] = ()
         self._shown: tuple[Item, ...] = ()
 
-    def shown(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
+    def arrange(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
         """The items `arranged`; asking the same again costs nothing."""
         asked = (endings, query, order, down, hidden)
         if not self._asked or self._asked[0] is not self.items or self._asked[1:] != asked:
-            self._shown = arranged(self.items, endings, query=query, order=order, down=down, hidden=hidden)
+            self._shown = arrange_items(self.items, endings, query=query, order=order, down=down, hidden=hidden)
             self._asked = (self.items, *asked)
         return self._shown
 
@@ -97,7 +97,7 @@ class Listing:
         if folder != self.folder:
             self.items = ()
         self.folder, self.fault = folder, ""
-        self._reader = _Reader(folder)
+        self._reader = _FolderReader(folder)
         self._reader.start()
 
     def poll(self) -> bool:
@@ -114,7 +114,7 @@ class Listing:
         self.poll()
 
 
-class _Reader(Thread):
+class _FolderReader(Thread):
     """Reads one folder; nobody waits for one that a slow disk holds up."""
 
     def __init__(self, folder: Path) -> None:
@@ -152,7 +152,7 @@ def _item(entry: os.DirEntry[str]) -> Item | None:
     return Item(entry.name, stat.S_ISDIR(status.st_mode), status.st_size, status.st_mtime, hidden)
 
 
-def _ending(name: str) -> str:
+def extension_of(name: str) -> str:
     return os.path.splitext(name)[1].lower()  # noqa: PTH122 - ten thousand times, so without a Path each
 
 

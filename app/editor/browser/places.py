@@ -60,7 +60,7 @@ def drives(mounts: Path = Path("/proc/mounts")) -> tuple[Path, ...]:
     return (Path("/"), *(Path(point) for point in sorted(set(points)) if point.startswith(_MOUNTS)))
 
 
-def completed(text: str, folder: Path) -> Path:
+def complete_path(text: str, folder: Path) -> Path:
     """The path that was typed: `~` is home, what is relative starts in `folder`."""
     path = Path(text.strip().strip('"') or ".")
     try:

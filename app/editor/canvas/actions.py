@@ -42,7 +42,7 @@ def _group(context: CanvasContext) -> bool:
     return isinstance(context.session.graph.nodes.get(context.session.active), Group)
 
 
-def _borrowed_group(context: CanvasContext) -> bool:
+def _is_borrowed_group(context: CanvasContext) -> bool:
     item = context.session.graph.nodes.get(context.session.active)
     return isinstance(item, Group) and bool(item.path)
 
@@ -268,12 +268,17 @@ GRAPH: tuple[Action, ...] = (
         "Make Group Local",
         lambda context: context.session.make_local(context.session.active),
         "Graph",
-        enabled=_borrowed_group,
+        enabled=_is_borrowed_group,
         contexts=frozenset({"group"}),
         doc="Keep the group in this graph, so that it can be changed here.",
     ),
     Action(
-        "group.open", "Open Group's File", _open_group, "Graph", enabled=_borrowed_group, contexts=frozenset({"group"})
+        "group.open",
+        "Open Group's File",
+        _open_group,
+        "Graph",
+        enabled=_is_borrowed_group,
+        contexts=frozenset({"group"}),
     ),
     Action(
         "frame.add",

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, RGB, Palette
 from ..theme.style import mix, u32
-from .geometry import Point, Rect, Transform
+from .geometry import CanvasTransform, Point, Rect
 from .layout import HEADER
 
 TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
@@ -28,7 +28,7 @@ READABLE = 11.0
 
 
 @dataclass(frozen=True)
-class Ink:
+class CanvasColors:
     """The colors of a theme, ready to draw with."""
 
     palette: Palette
@@ -69,13 +69,13 @@ class Ink:
 
 
 @lru_cache(maxsize=4)
-def ink(theme: str) -> Ink:
+def ink(theme: str) -> CanvasColors:
     """The colors of a theme by its name."""
     p = on_nodes(theme)
     dark = theme == "dark"
     kinds: dict[Kind | None, RGB] = {**p.kinds, None: p.dim}
     strength = 0.10 if dark else 0.055
-    return Ink(
+    return CanvasColors(
         p,
         u32(p.node),
         u32(mix(p.node, p.canvas, 0.6)),
@@ -114,7 +114,7 @@ def on_nodes(theme: str) -> Palette:
 
 
 @dataclass
-class Texts:
+class TextCache:
     """Widths of words, measured once."""
 
     _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
@@ -149,15 +149,15 @@ class Texts:
 
 
 @dataclass
-class Brush:
+class DrawContext:
     """Draws in canvas units onto the panel."""
 
     draw: imgui.ImDrawList
-    to: Transform
+    to: CanvasTransform
     zoom: float
-    ink: Ink
+    ink: CanvasColors
     fonts: Fonts
-    texts: Texts
+    texts: TextCache
     seen: Rect
     """The part of the canvas that is visible."""
     title: float = field(init=False)

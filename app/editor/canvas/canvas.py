@@ -11,17 +11,17 @@ from imgui_bundle import imgui
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
-from .brush import DETAILS_FROM, Brush, Texts, ink
+from .brush import DETAILS_FROM, DrawContext, TextCache, ink
 from .crumbs import draw_crumbs
-from .frame import Frame
+from .frame import CanvasFrame
 from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
-from .gestures import Band, Draw, Idle, Link, Move, Resize, band_rect
+from .gestures import Band, BandGesture, Idle, Link, MoveGesture, ResizeGesture, band_rect
 from .legend import Legend
 from .live import Live, drawn_live
 from .looks import Moment, moment
 from .menus import Menus
 from .minimap import Minimap
-from .mouse import Mouse
+from .mouse import CanvasMouse
 from .naming import Naming
 from .paint_decor import (
     paint_band,
@@ -36,11 +36,11 @@ from .paint_decor import (
     paint_wire,
 )
 from .paint_node import paint_node, paint_pin
-from .pictures import Pictures
+from .pictures import ThumbnailSlots
 from .places import Places
-from .scene import Box, Scene
+from .scene import CanvasScene, ElementBox
 from .search import Search
-from .staging import Stage
+from .staging import SceneBuilder
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -61,7 +61,7 @@ class _Fitted:
     keys: Collection[str] = ()
     view: tuple[Point, float] = ((0.0, 0.0), 0.0)
     size: Point = (0.0, 0.0)
-    scene: Scene | None = None
+    scene: CanvasScene | None = None
     graph: Graph | None = None
 
 
@@ -72,19 +72,19 @@ class Canvas:
 
     def __init__(self, context: CanvasContext) -> None:
         self._context = context
-        self._stage = Stage()
-        self._scene: Scene | None = None
+        self._stage = SceneBuilder()
+        self._scene: CanvasScene | None = None
         self._staged: tuple[object, ...] = ()
-        self._texts = Texts()
+        self._texts = TextCache()
         self._live = Live(context)
-        self._mouse = Mouse()
+        self._mouse = CanvasMouse()
         self._search = Search(context)
         self._menus = Menus(context)
         self._naming = Naming(context)
         self._minimap = Minimap(context)
         self._legend = Legend(context)
         self._places = Places(context)
-        self._pictures = Pictures()
+        self._pictures = ThumbnailSlots()
         self._hot = ""
         self._place: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
@@ -103,7 +103,7 @@ class Canvas:
         self._fit(scene, (area[0] / scale, area[1] / scale))
         to = transform(panel, view.center, view.zoom * scale)
         low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
-        brush = Brush(
+        brush = DrawContext(
             imgui.get_window_draw_list(),
             to,
             view.zoom,
@@ -122,7 +122,7 @@ class Canvas:
         busy = imgui.is_any_item_active() and not imgui.is_item_active()
         over = view.hovered and not busy and not self._blocked(panel)
         at = imgui.get_mouse_pos()
-        frame = Frame(self._context, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
+        frame = CanvasFrame(self._context, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
         if view.hovered and not self._search.is_open:
             view.pointer = frame.at
         self._mouse.update(frame)
@@ -148,7 +148,7 @@ class Canvas:
         else:
             view.fit()
 
-    def _build(self) -> Scene:
+    def _build(self) -> CanvasScene:
         session, pictures = self._context.session, self._pictures.of(self._context)
         gesture = self._mouse.gesture
         opened = self._opened if isinstance(gesture, Link) else ""
@@ -171,7 +171,7 @@ class Canvas:
 
     _over: Point = (0.0, 0.0)
 
-    def _fit(self, scene: Scene, size: Point) -> None:
+    def _fit(self, scene: CanvasScene, size: Point) -> None:
         """Bring into view what was asked for. It stays so until someone moves the view or changes the graph, even when
         the panel is resized or first pictures make nodes larger."""
         view, last = self._context.canvas, self._fitted
@@ -204,7 +204,7 @@ class Canvas:
 
     # --- painting ----------------------------------------------------------------------------------------------------
 
-    def _paint(self, brush: Brush, frame: Frame) -> None:
+    def _paint(self, brush: DrawContext, frame: CanvasFrame) -> None:
         scene, session, mouse = self._mouse.dragged.scene, self._context.session, self._mouse
         self._over = frame.at
         hot = self._hot = self._found_hot(frame, scene)
@@ -214,7 +214,9 @@ class Canvas:
         visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
         for box in visible:
             if box.sort == "frame":
-                lit = mouse.hit.key == box.key or (isinstance(mouse.gesture, Resize) and mouse.gesture.key == box.key)
+                lit = mouse.hit.key == box.key or (
+                    isinstance(mouse.gesture, ResizeGesture) and mouse.gesture.key == box.key
+                )
                 paint_frame(brush, box, entry(session.graph, box.key), box.key in session.selection, lit)
         self._paint_wires(brush, scene)
         self._live.begin()
@@ -231,7 +233,7 @@ class Canvas:
         self._paint_gesture(brush, frame)
         self._tooltip(now, scene)
 
-    def _found_hot(self, frame: Frame, scene: Scene) -> str:
+    def _found_hot(self, frame: CanvasFrame, scene: CanvasScene) -> str:
         """The node whose fields are widgets: the one that holds the mouse, else the one below it."""
         if self._live.holder:
             return self._live.holder
@@ -241,7 +243,7 @@ class Canvas:
             return self._hot
         return scene.node_at(*frame.at) if frame.over and isinstance(self._mouse.gesture, Idle) else ""
 
-    def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:
+    def _paint_node(self, brush: DrawContext, box: ElementBox, now: Moment, hot: str) -> None:
         layout = box.layout
         if layout is None:
             return
@@ -254,7 +256,7 @@ class Canvas:
         if live:
             self._live.draw(brush, box, layout.rows)
 
-    def _paint_wires(self, brush: Brush, scene: Scene) -> None:
+    def _paint_wires(self, brush: DrawContext, scene: CanvasScene) -> None:
         mouse, selection = self._mouse, self._context.session.selection
         linking = isinstance(mouse.gesture, Link)
         taken = mouse.gesture.detached if isinstance(mouse.gesture, Link) else None
@@ -269,18 +271,18 @@ class Canvas:
                 for shape in scene.by_target[port].curves:
                     paint_curve(brush, shape, color, 3.0, halo=False)
 
-    def _paint_gesture(self, brush: Brush, frame: Frame) -> None:
+    def _paint_gesture(self, brush: DrawContext, frame: CanvasFrame) -> None:
         mouse = self._mouse
         match mouse.gesture:
             case Band() as band:
                 paint_band(brush, band_rect(band, frame.at))
-            case Draw() as line:
+            case BandGesture() as line:
                 color = brush.ink.accent if line.dots else brush.ink.error
                 paint_cut(brush, line.start, frame.at, color)
                 imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
             case Link() as link:
                 self._paint_link(brush, frame, link)
-            case Move() as move if move.going:
+            case MoveGesture() as move if move.going:
                 imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
             case _:
                 if mouse.hit.part == "edge":
@@ -300,7 +302,7 @@ class Canvas:
             if imgui.is_key_pressed(imgui.Key.escape):
                 self._context.canvas.tool = ""
 
-    def _paint_link(self, brush: Brush, frame: Frame, link: Link) -> None:
+    def _paint_link(self, brush: DrawContext, frame: CanvasFrame, link: Link) -> None:
         scene = self._mouse.dragged.scene
         found = next(((box, pin) for port, box, pin in scene.pins(link.output) if port == link.port), None)
         if found is None:
@@ -316,7 +318,7 @@ class Canvas:
         if snap:
             paint_pin(brush, *end, pin.kind, color, 2.5)
 
-    def _tooltip(self, now: Moment, scene: Scene) -> None:
+    def _tooltip(self, now: Moment, scene: CanvasScene) -> None:
         hit = self._mouse.hit
         if not isinstance(self._mouse.gesture, Idle) or self._menus.is_open:
             return
@@ -334,7 +336,7 @@ class Canvas:
 
     # --- around it ---------------------------------------------------------------------------------------------------
 
-    def _around(self, brush: Brush, frame: Frame) -> None:
+    def _around(self, brush: DrawContext, frame: CanvasFrame) -> None:
         asked, view = self._mouse.asked, self._context.canvas
         if asked.toggle:
             self._stage.expanded ^= {asked.toggle}

@@ -8,14 +8,14 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ..theme.style import u32, ui_scale, vec4
-from .brush import Brush
+from .brush import DrawContext
 from .geometry import Rect
 
 if TYPE_CHECKING:
     from .context import CanvasContext
 
 
-def draw_crumbs(context: CanvasContext, brush: Brush, panel: Rect) -> None:
+def draw_crumbs(context: CanvasContext, brush: DrawContext, panel: Rect) -> None:
     """Draw the bar at the top, inside groups only."""
     session = context.session
     if not session.place:

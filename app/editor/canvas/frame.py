@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from .geometry import Point, Rect, Transform, drift, zoomed
+from .geometry import CanvasTransform, Point, Rect, drift, zoomed
 from .layout import ROW
-from .scene import Scene
+from .scene import CanvasScene
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -22,12 +22,12 @@ _NOTCH = 60.0
 
 
 @dataclass
-class Frame:
+class CanvasFrame:
     """What is known of the mouse and the canvas in one frame. `scene` has no gesture in it yet."""
 
     context: CanvasContext
-    scene: Scene
-    to: Transform
+    scene: CanvasScene
+    to: CanvasTransform
     panel: Rect
     scale: float
     """Pixels per unit of the interface."""
@@ -47,7 +47,7 @@ class Frame:
         return max(abs(x - self.screen[0]), abs(y - self.screen[1])) > CLICK * self.scale
 
 
-def turn_wheel(frame: Frame, io: imgui.IO, on_field: bool) -> None:
+def turn_wheel(frame: CanvasFrame, io: imgui.IO, on_field: bool) -> None:
     """The wheel zooms about the pointer; with Shift, or sideways, it pans. Ctrl on a field turns its value."""
     view = frame.context.canvas
     across, down = io.mouse_wheel_h, io.mouse_wheel
@@ -62,7 +62,7 @@ def turn_wheel(frame: Frame, io: imgui.IO, on_field: bool) -> None:
         view.center, view.zoom = zoomed(view.center, view.zoom, frame.at, 1.15**down)
 
 
-def pan_at_border(frame: Frame, io: imgui.IO) -> None:
+def pan_at_border(frame: CanvasFrame, io: imgui.IO) -> None:
     """Move the view on while something is dragged near the border of the panel."""
     x, y = drift(frame.panel, *frame.screen, _BORDER * frame.scale)
     if x or y:

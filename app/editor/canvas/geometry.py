@@ -29,7 +29,7 @@ _MARGIN = 48.0
 
 
 @dataclass(frozen=True, slots=True)
-class Transform:
+class CanvasTransform:
     """Canvas units to pixels of the screen: `scale` pixels per unit, the canvas origin at `x`, `y`."""
 
     x: float
@@ -45,10 +45,10 @@ class Transform:
         return (x - self.x) / self.scale, (y - self.y) / self.scale
 
 
-def transform(panel: Rect, center: Point, scale: float) -> Transform:
+def transform(panel: Rect, center: Point, scale: float) -> CanvasTransform:
     """The transform that shows `center` in the middle of a panel; whole pixels at rest keep edges sharp."""
     left, top, right, bottom = panel
-    return Transform(
+    return CanvasTransform(
         round((left + right) / 2 - center[0] * scale), round((top + bottom) / 2 - center[1] * scale), scale
     )
 

@@ -10,7 +10,7 @@ from ...authoring.edits.wiring import splice_chain
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from .geometry import Point, Rect, overlap, snapped, spanned
-from .scene import Scene
+from .scene import CanvasScene
 
 SMALLEST = (96.0, 64.0)
 """The least size of frames; comments may be as low as their text."""
@@ -22,7 +22,7 @@ class Idle:
 
 
 @dataclass(frozen=True)
-class Pan:
+class PanGesture:
     """The view follows the mouse."""
 
     center: Point
@@ -39,7 +39,7 @@ class Band:
 
 
 @dataclass(frozen=True)
-class Move:
+class MoveGesture:
     """Elements follow the mouse; until it has gone far enough this is a click on `key`."""
 
     key: str
@@ -58,7 +58,7 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Resize:
+class ResizeGesture:
     """An edge of a frame or comment follows the mouse."""
 
     key: str
@@ -69,7 +69,7 @@ class Resize:
 
 
 @dataclass(frozen=True)
-class Draw:
+class BandGesture:
     """A line across links, to cut them or to put dots on them."""
 
     start: Point
@@ -87,11 +87,11 @@ class Link:
     """Pins of the other side that it fits."""
 
 
-Gesture = Idle | Pan | Band | Move | Resize | Draw | Link
+Gesture = Idle | PanGesture | Band | MoveGesture | ResizeGesture | BandGesture | Link
 IDLE = Idle()
 
 
-def touched(scene: Scene, rect: Rect) -> tuple[str, ...]:
+def touched(scene: CanvasScene, rect: Rect) -> tuple[str, ...]:
     """What a selecting rectangle takes: what it touches, but frames only by their title or whole."""
     left, top, right, bottom = rect
     found: list[str] = []
@@ -104,7 +104,7 @@ def touched(scene: Scene, rect: Rect) -> tuple[str, ...]:
     return tuple(found)
 
 
-def moved(move: Move, scene: Scene, to: Point, snap: bool) -> Move:
+def moved(move: MoveGesture, scene: CanvasScene, to: Point, snap: bool) -> MoveGesture:
     """The move with the mouse elsewhere; `snap` puts what was grabbed on the grid."""
     dx, dy = to[0] - move.start[0], to[1] - move.start[1]
     if snap and move.key in scene.boxes:
@@ -113,7 +113,7 @@ def moved(move: Move, scene: Scene, to: Point, snap: bool) -> Move:
     return replace(move, by=(dx, dy))
 
 
-def resized(resize: Resize, to: Point, snap: bool) -> Resize:
+def resized(resize: ResizeGesture, to: Point, snap: bool) -> ResizeGesture:
     """The resizing with the mouse elsewhere."""
     left, top, right, bottom = resize.before
     dx, dy = to[0] - resize.start[0], to[1] - resize.start[1]
@@ -129,12 +129,12 @@ def resized(resize: Resize, to: Point, snap: bool) -> Resize:
     return replace(resize, rect=(left, top, right, bottom))
 
 
-def with_members(keys: Collection[str], scene: Scene, members: Collection[frozenset[str]]) -> frozenset[str]:
+def with_members(keys: Collection[str], scene: CanvasScene, members: Collection[frozenset[str]]) -> frozenset[str]:
     """What moves together: the elements and all that lie on frames among them."""
     return frozenset(keys).union(*members) & scene.boxes.keys()
 
 
-def fitting(graph: Graph, scene: Scene, port: Port, output: bool) -> frozenset[Port]:
+def fitting(graph: Graph, scene: CanvasScene, port: Port, output: bool) -> frozenset[Port]:
     """The pins of the other side that a link from (or, if not `output`, to) `port` could join without a loop."""
     if output:
         closed = frozenset[str]() if port.node == INPUTS else graph.upstream(port.node) | {port.node}
@@ -148,7 +148,7 @@ def fitting(graph: Graph, scene: Scene, port: Port, output: bool) -> frozenset[P
     return frozenset(found)
 
 
-def nearest(scene: Scene, link: Link, at: Point, reach: float) -> tuple[Port, Point] | None:
+def nearest(scene: CanvasScene, link: Link, at: Point, reach: float) -> tuple[Port, Point] | None:
     """The pin that a dragged link would snap to: one within reach, else the first that fits on the node below."""
     best: tuple[float, Port, Point] | None = None
     body = scene.node_at(*at)
@@ -169,7 +169,7 @@ def nearest(scene: Scene, link: Link, at: Point, reach: float) -> tuple[Port, Po
     return (body_first[1], body_first[2]) if body_first else None
 
 
-def refused(scene: Scene, link: Link, at: Point, reach: float) -> Port | None:
+def refused(scene: CanvasScene, link: Link, at: Point, reach: float) -> Port | None:
     """The pin under the pointer that a dragged link does not fit."""
     for port, box, pin in scene.pins(not link.output):
         near = abs(box.x + pin.x - at[0]) <= reach and abs(box.y + pin.y - at[1]) <= reach
@@ -178,7 +178,7 @@ def refused(scene: Scene, link: Link, at: Point, reach: float) -> Port | None:
     return None
 
 
-def insertable(graph: Graph, scene: Scene, keys: Collection[str], at: Point, reach: float) -> Port | None:
+def insertable(graph: Graph, scene: CanvasScene, keys: Collection[str], at: Point, reach: float) -> Port | None:
     """The target of the link that moved nodes would be put into: they are a chain without other links, and fit."""
     ids = [key for key in keys if key in graph.nodes]
     if not ids or any(key not in graph.nodes and not key.startswith("dots.") for key in keys):
@@ -217,16 +217,16 @@ def band_rect(band: Band, to: Point) -> Rect:
 class Dragged:
     """What a gesture makes of the scene in this frame."""
 
-    scene: Scene
+    scene: CanvasScene
     insert: Port | None = None
     snap: tuple[Port, Point] | None = None
     crossed: dict[Port, Point] = field(default_factory=dict[Port, Point])
 
 
-def shown(scene: Scene, gesture: Gesture) -> Scene:
+def shown(scene: CanvasScene, gesture: Gesture) -> CanvasScene:
     """The scene as a gesture has it for now."""
-    if isinstance(gesture, Move) and gesture.going:
+    if isinstance(gesture, MoveGesture) and gesture.going:
         return scene.moved(gesture.keys, *gesture.by)
-    if isinstance(gesture, Resize):
+    if isinstance(gesture, ResizeGesture):
         return scene.resized(gesture.key, gesture.rect)
     return scene

@@ -15,7 +15,7 @@ from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
 from ..fields.lights import counted
 from ..fields.numbers import SUFFIX, bar, shown
-from ..shared.entries import words
+from ..shared.entries import spell_out
 from .geometry import Rect
 
 WIDTH, END_WIDTH = 184.0, 152.0
@@ -44,7 +44,7 @@ class Pin:
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class FieldText:
     """A number or word in a field; `part` is what of the field is filled."""
 
     text: str
@@ -52,7 +52,7 @@ class Shown:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class NodeRow:
     """One line of a node: an input at the left, an output at the right, or a value that can be set."""
 
     y: float
@@ -64,7 +64,7 @@ class Row:
     linked: bool = False
     hint: str = ""
     """What an input is without a link."""
-    shown: tuple[Shown, ...] = ()
+    shown: tuple[FieldText, ...] = ()
     """The value as its field shows it: several numbers of a vector, else one."""
 
     @property
@@ -77,7 +77,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class NodeLayout:
     """One element as it is drawn. `hidden` counts values that are not shown; `open` is True if none would be."""
 
     what: What
@@ -87,7 +87,7 @@ class Layout:
     subtitle: str = ""
     category: str = ""
     doc: str = ""
-    rows: tuple[Row, ...] = ()
+    rows: tuple[NodeRow, ...] = ()
     ins: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     outs: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     picture: Rect | None = None
@@ -113,13 +113,13 @@ def value_kind(value: Value) -> Kind | None:
     return {"color": Kind.COLOR, "vector": Kind.VECTOR}.get(value.type, Kind.NUMBER)
 
 
-def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> Layout:
+def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> NodeLayout:
     """An input or output of the graph: a slim box with one pin."""
     side, _, name = key.partition(".")
     is_input = side == "inputs"
     pin = Pin(name, socket.kind, END_WIDTH if is_input else 0.0, HEADER / 2, socket.optional)
     height = HEADER + (PICTURE * END_WIDTH / WIDTH + PAD if picture else 0.0)
-    return Layout(
+    return NodeLayout(
         "input" if is_input else "output",
         END_WIDTH,
         height,
@@ -133,7 +133,7 @@ def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> Layout
 
 
 @dataclass(frozen=True, slots=True)
-class Facts:
+class NodeFacts:
     """What the layout of a node depends on besides the node: names of its linked sockets, and how it is shown."""
 
     linked_ins: frozenset[str] = frozenset()
@@ -143,14 +143,14 @@ class Facts:
     picture: bool = False
 
 
-def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
+def node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> NodeLayout:
     """The layout of a node of a graph."""
     face = signature(item)
     what: What = "group" if isinstance(item, Group) else "unknown" if isinstance(item, Unknown) else "node"
     subtitle = subtitle_of(item)
     category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else what
     doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
-    if words(subtitle).lower() == words(id).lower():
+    if spell_out(subtitle).lower() == spell_out(id).lower():
         subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
 
     inputs = dict(face.inputs)
@@ -164,7 +164,7 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
             for name in face.values
             if name in facts.linked_ins
         ]
-        return Layout(
+        return NodeLayout(
             what,
             WIDTH,
             HEADER,
@@ -178,18 +178,20 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
         )
 
     y = HEADER + PAD / 2
-    rows: list[Row] = []
+    rows: list[NodeRow] = []
     for index in range(max(len(left), len(right))):
         start = _at(left[index], y) if index < len(left) else None
         end = _at(right[index], y) if index < len(right) else None
         hint = "" if start is None or end or start.name in facts.linked_ins else _default(inputs.get(start.name))
-        rows.append(Row(y, start, end, hint=hint, linked=start is not None and start.name in facts.linked_ins))
+        rows.append(NodeRow(y, start, end, hint=hint, linked=start is not None and start.name in facts.linked_ins))
         y += ROW
     values = _value_rows(id, item, graph, facts, face.values)
     shown = values if facts.expanded else _first(values)
     for row in shown:
         rows.append(
-            Row(y, row.left and _at(row.left, y), None, row.value, row.label, row.plain, row.linked, shown=row.shown)
+            NodeRow(
+                y, row.left and _at(row.left, y), None, row.value, row.label, row.plain, row.linked, shown=row.shown
+            )
         )
         y += ROW
     hidden = len(values) - len(shown)
@@ -199,7 +201,7 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     if facts.picture:
         picture = PAD / 2, y, WIDTH - PAD / 2, y + PICTURE
         y += PICTURE + PAD / 2
-    return Layout(
+    return NodeLayout(
         what,
         WIDTH,
         y,
@@ -224,18 +226,18 @@ def subtitle_of(item: Item) -> str:
     return item.title if isinstance(item, Node) else ""
 
 
-def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping[str, Value]) -> list[Row]:
-    rows: list[Row] = []
+def _value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values: Mapping[str, Value]) -> list[NodeRow]:
+    rows: list[NodeRow] = []
     for name, value in values.items():
         kind = value_kind(value) if name in facts.linked_ins or _wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
         plain = getattr(item, name) if isinstance(item, Node) else graph.value(Port(id, name))
-        linked, label = name in facts.linked_ins, value.label or words(name)
-        rows.append(Row(0.0, pin, None, value, label, plain, linked, shown=_shown(value, plain)))
+        linked, label = name in facts.linked_ins, value.label or spell_out(name)
+        rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, shown=_shown(value, plain)))
     return rows
 
 
-def _first(rows: list[Row]) -> list[Row]:
+def _first(rows: list[NodeRow]) -> list[NodeRow]:
     """The values worth showing: those that are linked, and the first few others that fit a line and say something."""
     fields = [
         row
@@ -271,19 +273,19 @@ def _spread(pins: list[Pin]) -> dict[str, Pin]:
     }
 
 
-def _shown(value: Value, plain: Plain) -> tuple[Shown, ...]:
+def _shown(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     if value.type == "path":
-        return (Shown(PurePath(str(plain)).name),)
+        return (FieldText(PurePath(str(plain)).name),)
     if value.type in ("choice", "text"):
-        return (Shown(words(str(plain))),)
+        return (FieldText(spell_out(str(plain))),)
     if value.type == "lights" and isinstance(plain, tuple):
-        return (Shown(counted(plain)),)
+        return (FieldText(counted(plain)),)
     if value.type in ("vector", "matrix") and isinstance(plain, tuple):
-        return tuple(Shown(shown(part, value), bar(part, value)) for part in plain)
+        return tuple(FieldText(shown(part, value), bar(part, value)) for part in plain)
     if value.type in ("float", "int") and isinstance(plain, int | float):
         suffix = SUFFIX[value.unit]
-        return (Shown(f"{shown(plain, value)} {suffix}" if suffix else shown(plain, value), bar(plain, value)),)
-    return (Shown(""),)
+        return (FieldText(f"{shown(plain, value)} {suffix}" if suffix else shown(plain, value), bar(plain, value)),)
+    return (FieldText(""),)
 
 
 def _default(socket: Socket | None) -> str:

@@ -9,8 +9,8 @@ from halation.nodes import Kind
 from imgui_bundle import imgui
 
 from ..theme.style import u32, ui_scale, vec4
-from .brush import Brush
-from .geometry import Rect, Transform
+from .brush import DrawContext
+from .geometry import CanvasTransform, Rect
 from .paint_node import paint_pin
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Legend:
         left, bottom = panel[0] + _GAP * scale, panel[3] - _GAP * scale
         return left, bottom - _SIDE * scale, left + _SIDE * scale, bottom
 
-    def draw(self, brush: Brush, panel: Rect) -> None:
+    def draw(self, brush: DrawContext, panel: Rect) -> None:
         """Draw it."""
         rect, palette, scale = self.rect(panel), self.context.palette, ui_scale()
         imgui.set_cursor_screen_pos(rect[:2])
@@ -65,13 +65,15 @@ class Legend:
             self._contents(brush)
             imgui.end_popup()
 
-    def _contents(self, brush: Brush) -> None:
+    def _contents(self, brush: DrawContext) -> None:
         scale, line = ui_scale(), imgui.get_text_line_height()
         draw = imgui.get_window_draw_list()
         for kind, meaning in ((kind, kind.facts.doc) for kind in Kind):
             corner = imgui.get_cursor_screen_pos()
             at = corner.x + 8 * scale, corner.y + line / 2
-            popup = Brush(draw, Transform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.seen)
+            popup = DrawContext(
+                draw, CanvasTransform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.seen
+            )
             paint_pin(popup, at[0] / scale, at[1] / scale, kind, brush.ink.kinds[kind])
             imgui.dummy((18 * scale, line))
             imgui.same_line()

@@ -17,11 +17,11 @@ from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
 from ..shared.dialogs import browse
-from .brush import TEXT, Brush, on_nodes
+from .brush import TEXT, DrawContext, on_nodes
 from .geometry import Rect
-from .layout import FIELD_HEIGHT, Row
+from .layout import FIELD_HEIGHT, NodeRow
 from .paint_field import MOST_PARTS, paint_label, split
-from .scene import Box
+from .scene import ElementBox
 from .sketch import Sketch
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 
 
-def drawn_live(row: Row) -> bool:
+def drawn_live(row: NodeRow) -> bool:
     """True for fields whose widgets draw themselves; those of the others only notice the mouse."""
     if row.value is None or row.field is None:
         return False
@@ -67,7 +67,7 @@ class Live:
         self.fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         self._dragged = self.fields.dragging
 
-    def draw(self, brush: Brush, box: Box, rows: tuple[Row, ...]) -> None:
+    def draw(self, brush: DrawContext, box: ElementBox, rows: tuple[NodeRow, ...]) -> None:
         """The fields of a node, which must have been painted up to them."""
         fields = self.fields
         if fields is None:
@@ -85,7 +85,9 @@ class Live:
         imgui.pop_style_var(3)
         imgui.pop_font()
 
-    def _draw(self, fields: Fields, brush: Brush, rect: Rect, port: Port, row: Row, value: Value, plain: Plain) -> None:
+    def _draw(
+        self, fields: Fields, brush: DrawContext, rect: Rect, port: Port, row: NodeRow, value: Value, plain: Plain
+    ) -> None:
         low, high = brush.corners(rect)
         width, id = high[0] - low[0], f"canvas {port}"
         imgui.set_cursor_screen_pos(low)

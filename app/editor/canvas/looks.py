@@ -10,9 +10,9 @@ from imgui_bundle import imgui
 
 from ...authoring.edits.elements import element_of
 from ...graph import Problem
-from .brush import Ink
+from .brush import CanvasColors
 from .gestures import Gesture, Link
-from .paint_node import Look
+from .paint_node import NodeLook
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -26,7 +26,7 @@ class Moment:
     """What decides the looks of all nodes in one frame; what is costly to find out is found out once."""
 
     context: CanvasContext
-    ink: Ink
+    ink: CanvasColors
     shown: Mapping[str, str]
     badges: Mapping[str, str]
     lit: Mapping[str, frozenset[tuple[bool, str]]] | None
@@ -50,7 +50,7 @@ class Moment:
         """What else is worth a look."""
         return tuple(one.sentence for one in self.problems.get(key, ()) if one.severity == "warning")
 
-    def look(self, key: str, live: frozenset[str]) -> Look:
+    def look(self, key: str, live: frozenset[str]) -> NodeLook:
         """The look of one node or end."""
         faults = self.faults(key)
         warnings = () if faults else self.warnings(key)
@@ -59,7 +59,7 @@ class Moment:
             picture, fresh = imgui.ImTextureRef(found[0].native_handle), found[1]
             size = found[0].size
         overlay, color = self._cost(key)
-        return Look(
+        return NodeLook(
             selected=key in self.selection,
             active=key == self.active,
             muted=key in self.muted,
@@ -86,7 +86,7 @@ class Moment:
         return f"{seconds * 1e3:.1f} ms   {_size(size)}", color
 
 
-def moment(context: CanvasContext, ink: Ink, gesture: Gesture, hot: str) -> Moment:
+def moment(context: CanvasContext, ink: CanvasColors, gesture: Gesture, hot: str) -> Moment:
     """What holds for all nodes in this frame."""
     session = context.session
     shown: dict[str, str] = {}

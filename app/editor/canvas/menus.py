@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from ...graph import Group, Port
 from ..shared.action import Action
 from ..toolkit.buttons import entry
-from ..toolkit.keys import shown
+from ..toolkit.keys import display_shortcut
 from ..toolkit.places import record
 from .geometry import Point
 from .scene import EMPTY, Hit
@@ -127,7 +127,7 @@ def _action(context: CanvasContext, action: Action) -> None:
 
 def _key(context: CanvasContext, id: str) -> str:
     text = context.actions.shortcut(id)
-    return shown(text) if text else ""
+    return display_shortcut(text) if text else ""
 
 
 def _item(context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True) -> None:

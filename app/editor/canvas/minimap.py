@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ..theme.style import u32, ui_scale
-from .brush import Brush
+from .brush import DrawContext
 from .geometry import Rect, bounds
-from .scene import Scene
+from .scene import CanvasScene
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -33,7 +33,7 @@ class Minimap:
             return None
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
 
-    def draw(self, brush: Brush, panel: Rect, scene: Scene) -> None:
+    def draw(self, brush: DrawContext, panel: Rect, scene: CanvasScene) -> None:
         """Draw it, and pan where the mouse points in it."""
         rect = self.rect(panel)
         around = bounds([*(box.rect for box in scene.boxes.values()), brush.seen])

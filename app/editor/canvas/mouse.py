@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...graph import Group, Port
-from .frame import Frame, pan_at_border, turn_wheel
+from .frame import CanvasFrame, pan_at_border, turn_wheel
 from .geometry import Point, holds
 from .gestures import (
     IDLE,
     Band,
+    BandGesture,
     Dragged,
-    Draw,
     Gesture,
     Idle,
     Link,
-    Move,
-    Pan,
-    Resize,
+    MoveGesture,
+    PanGesture,
+    ResizeGesture,
     band_rect,
     dotted,
     fitting,
@@ -34,7 +34,7 @@ from .gestures import (
     touched,
     with_members,
 )
-from .scene import EMPTY, Hit, Scene
+from .scene import EMPTY, CanvasScene, Hit
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -55,20 +55,22 @@ class Asked:
 
 
 @dataclass
-class Mouse:
+class CanvasMouse:
     """Which gesture is going on, and what is under the pointer."""
 
     gesture: Gesture = IDLE
     hit: Hit = EMPTY
     asked: Asked = field(default_factory=Asked)
-    dragged: Dragged = field(default_factory=lambda: Dragged(Scene({})))
+    dragged: Dragged = field(default_factory=lambda: Dragged(CanvasScene({})))
     _pressed: tuple[Hit, Point] | None = None
     """Where the right button went down."""
     _moves: int = 0
-    _hit: tuple[Scene, Point, float, Hit] = field(default_factory=lambda: (Scene({}), (0.0, 0.0), 0.0, EMPTY))
+    _hit: tuple[CanvasScene, Point, float, Hit] = field(
+        default_factory=lambda: (CanvasScene({}), (0.0, 0.0), 0.0, EMPTY)
+    )
     """What was under the pointer last, and where and in what that was."""
 
-    def update(self, frame: Frame) -> None:
+    def update(self, frame: CanvasFrame) -> None:
         """Go on with the gesture, or begin one."""
         self.asked = Asked()
         io = imgui.get_io()
@@ -79,12 +81,12 @@ class Mouse:
             if frame.over:
                 self._begin(frame, io)
         else:
-            if not isinstance(self.gesture, Pan):
+            if not isinstance(self.gesture, PanGesture):
                 pan_at_border(frame, io)
             self._go_on(frame, io)
         self._show(frame)
 
-    def _found(self, frame: Frame) -> Hit:
+    def _found(self, frame: CanvasFrame) -> Hit:
         """What is under the pointer; looked for again only when something has moved."""
         of = frame.scene, frame.at, frame.reach
         if self._hit[0] is not frame.scene or self._hit[1:3] != of[1:]:
@@ -93,20 +95,20 @@ class Mouse:
 
     # --- beginning ---------------------------------------------------------------------------------------------------
 
-    def _begin(self, frame: Frame, io: imgui.IO) -> None:
+    def _begin(self, frame: CanvasFrame, io: imgui.IO) -> None:
         context, view, hit = frame.context, frame.context.canvas, self.hit
         if imgui.is_mouse_clicked(MIDDLE) or (imgui.is_mouse_clicked(LEFT) and imgui.is_key_down(imgui.Key.space)):
-            self.gesture = Pan(view.center, frame.screen)
+            self.gesture = PanGesture(view.center, frame.screen)
         elif imgui.is_mouse_clicked(RIGHT):
             if io.key_ctrl or io.key_shift:
-                self.gesture = Draw(frame.at, dots=io.key_shift)
+                self.gesture = BandGesture(frame.at, dots=io.key_shift)
             else:
                 self._pressed = hit, frame.at
         elif imgui.is_mouse_double_clicked(LEFT):
             self._double(frame, hit)
         elif imgui.is_mouse_clicked(LEFT):
             if view.tool:
-                self.gesture = Draw(frame.at, dots=view.tool == "dot")
+                self.gesture = BandGesture(frame.at, dots=view.tool == "dot")
                 view.tool = ""
             else:
                 self._press(frame, io, hit)
@@ -115,7 +117,7 @@ class Mouse:
             if not frame.is_far(start):
                 self._menu(context, hit)
 
-    def _press(self, frame: Frame, io: imgui.IO, hit: Hit) -> None:
+    def _press(self, frame: CanvasFrame, io: imgui.IO, hit: Hit) -> None:
         context, session = frame.context, frame.context.session
         match hit.part:
             case "pin" if hit.port:
@@ -127,7 +129,7 @@ class Mouse:
             case "edge":
                 self._select(context, hit.key, "replace")
                 rect = frame.scene.boxes[hit.key].rect
-                self.gesture = Resize(hit.key, hit.name, frame.at, rect, rect)
+                self.gesture = ResizeGesture(hit.key, hit.name, frame.at, rect, rect)
             case "title" | "body":
                 if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
                     context.log.attempt(lambda: session.view_node(hit.key))
@@ -137,12 +139,12 @@ class Mouse:
                     alone = hit.key in session.selection
                     if not alone:
                         self._select(context, hit.key, "replace")
-                    self.gesture = Move(hit.key, frame.at, alone=alone)
+                    self.gesture = MoveGesture(hit.key, frame.at, alone=alone)
             case _:
                 mode = "add" if io.key_shift else "remove" if io.key_ctrl else "replace"
                 self.gesture = Band(frame.at, mode)
 
-    def _take(self, frame: Frame, port: Port, output: bool, keep: bool) -> None:
+    def _take(self, frame: CanvasFrame, port: Port, output: bool, keep: bool) -> None:
         """Begin a link from a pin; the link into an input comes along, unless it shall stay."""
         graph = frame.context.session.graph
         detached = None if output or keep else port if port in graph.links else None
@@ -153,7 +155,7 @@ class Mouse:
         targets = frame.context.log.attempt(lambda: fitting(graph, scene, start, is_output), frozenset[Port]())
         self.gesture = Link(start, is_output, detached, targets or frozenset())
 
-    def _double(self, frame: Frame, hit: Hit) -> None:
+    def _double(self, frame: CanvasFrame, hit: Hit) -> None:
         context, session = frame.context, frame.context.session
         if hit.part == "link" and hit.port:
             target = hit.port
@@ -182,31 +184,31 @@ class Mouse:
 
     # --- going on ----------------------------------------------------------------------------------------------------
 
-    def _go_on(self, frame: Frame, io: imgui.IO) -> None:
+    def _go_on(self, frame: CanvasFrame, io: imgui.IO) -> None:
         gesture, view = self.gesture, frame.context.canvas
         cancelled = imgui.is_key_pressed(imgui.Key.escape) or (
-            not isinstance(gesture, Draw | Pan) and imgui.is_mouse_clicked(RIGHT)
+            not isinstance(gesture, BandGesture | PanGesture) and imgui.is_mouse_clicked(RIGHT)
         )
         if cancelled:
-            if isinstance(gesture, Move):
+            if isinstance(gesture, MoveGesture):
                 frame.context.session.abandon(gesture.merge)
             self.gesture = IDLE
             return
         match gesture:
-            case Pan():
+            case PanGesture():
                 scale = frame.to.scale
                 dx, dy = frame.screen[0] - gesture.mouse[0], frame.screen[1] - gesture.mouse[1]
                 view.center = gesture.center[0] - dx / scale, gesture.center[1] - dy / scale
                 self._until(not (imgui.is_mouse_down(MIDDLE) or imgui.is_mouse_down(LEFT)), lambda: None)
             case Band():
                 self._until(not imgui.is_mouse_down(LEFT), lambda: self._banded(frame, gesture))
-            case Move():
+            case MoveGesture():
                 self.gesture = self._moving(frame, gesture, snap=io.key_ctrl, extract=io.key_alt)
                 self._until(not imgui.is_mouse_down(LEFT), lambda: self._moved(frame))
-            case Resize():
+            case ResizeGesture():
                 self.gesture = changed = resized(gesture, frame.at, snap=io.key_ctrl)
                 self._until(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.context, changed))
-            case Draw():
+            case BandGesture():
                 released = not (imgui.is_mouse_down(LEFT) or imgui.is_mouse_down(RIGHT))
                 self._until(released, lambda: _drawn(frame, gesture))
             case Link():
@@ -219,7 +221,7 @@ class Mouse:
             act()
             self.gesture = IDLE
 
-    def _moving(self, frame: Frame, move: Move, snap: bool, extract: bool) -> Move:
+    def _moving(self, frame: CanvasFrame, move: MoveGesture, snap: bool, extract: bool) -> MoveGesture:
         session = frame.context.session
         if not move.going:
             if not frame.is_far(move.start):
@@ -238,9 +240,9 @@ class Mouse:
                     move = replace(move, merge=merge)
         return moved(move, frame.scene, frame.at, snap)
 
-    def _moved(self, frame: Frame) -> None:
+    def _moved(self, frame: CanvasFrame) -> None:
         move, session = self.gesture, frame.context.session
-        if not isinstance(move, Move):
+        if not isinstance(move, MoveGesture):
             return
         if not move.going:
             if move.alone:
@@ -255,7 +257,7 @@ class Mouse:
             frame.context.log.attempt(lambda: session.move(keys, *move.by, merge=move.merge))
         session.seal()
 
-    def _banded(self, frame: Frame, band: Band) -> None:
+    def _banded(self, frame: CanvasFrame, band: Band) -> None:
         context = frame.context
         if not frame.is_far(band.start):
             hit = frame.scene.hit(*band.start, frame.reach)
@@ -267,7 +269,7 @@ class Mouse:
         keys = touched(frame.scene, band_rect(band, frame.at))
         context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
 
-    def _linked(self, frame: Frame, link: Link) -> None:
+    def _linked(self, frame: CanvasFrame, link: Link) -> None:
         context, session = frame.context, frame.context.session
         snap = nearest(frame.scene, link, frame.at, _SNAP * frame.scale / frame.to.scale)
         if snap:
@@ -290,7 +292,7 @@ class Mouse:
             elif holds(frame.panel, *frame.screen):
                 self.asked.search = link.port, link.output
 
-    def _start(self, frame: Frame, link: Link) -> Point:
+    def _start(self, frame: CanvasFrame, link: Link) -> Point:
         end = link.detached or link.port
         for port, box, pin in frame.scene.pins(link.output and link.detached is None):
             if port == end:
@@ -299,14 +301,14 @@ class Mouse:
 
     # --- what is seen of it ------------------------------------------------------------------------------------------
 
-    def _show(self, frame: Frame) -> None:
+    def _show(self, frame: CanvasFrame) -> None:
         gesture, graph = self.gesture, frame.context.session.graph
         self.dragged = Dragged(shown(frame.scene, gesture))
         frame.context.canvas.refusal = ""
         match gesture:
-            case Move() if gesture.going:
+            case MoveGesture() if gesture.going:
                 self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
-            case Draw():
+            case BandGesture():
                 self.dragged.crossed = frame.scene.net.crossed(gesture.start, frame.at)
             case Link():
                 self.dragged.snap = nearest(frame.scene, gesture, frame.at, _SNAP * frame.scale / frame.to.scale)
@@ -319,7 +321,7 @@ class Mouse:
                 pass
 
 
-def _resize(context: CanvasContext, resize: Resize) -> None:
+def _resize(context: CanvasContext, resize: ResizeGesture) -> None:
     left, top, right, bottom = resize.rect
     section, _, id = resize.key.partition(".")
     if resize.rect == resize.before:
@@ -330,7 +332,7 @@ def _resize(context: CanvasContext, resize: Resize) -> None:
         context.log.attempt(lambda: context.session.resize_comment(id, left, top, right - left))
 
 
-def _drawn(frame: Frame, draw: Draw) -> None:
+def _drawn(frame: CanvasFrame, draw: BandGesture) -> None:
     context, session = frame.context, frame.context.session
     crossings = frame.scene.net.crossed(draw.start, frame.at)
     if not crossings:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import end_port, entry
-from .brush import TEXT, Brush
+from .brush import TEXT, DrawContext
 from .geometry import Rect
-from .scene import Scene
+from .scene import CanvasScene
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -39,7 +39,7 @@ class Naming:
             self._text = end.socket if end else key
         self.key, self._starting = key, True
 
-    def draw(self, brush: Brush, scene: Scene) -> None:
+    def draw(self, brush: DrawContext, scene: CanvasScene) -> None:
         """Draw the field, and keep what was typed once that is over."""
         self.rect = None
         if not self.key:

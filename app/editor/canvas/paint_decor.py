@@ -9,16 +9,16 @@ from typing import Any
 from imgui_bundle import imgui
 
 from ..theme.style import mix, u32
-from .brush import TEXT, Brush, Ink
+from .brush import TEXT, CanvasColors, DrawContext
 from .geometry import Curve, Point, Rect
-from .scene import FRAME_TITLE, Box, Wire
+from .scene import FRAME_TITLE, ElementBox, Wire
 
 ROUND = 8.0
 LINK = 2.25
 DASH, HOLE = 9.0, 6.0
 
 
-def paint_grid(brush: Brush, panel: Rect) -> None:
+def paint_grid(brush: DrawContext, panel: Rect) -> None:
     """Lines every 32 units, stronger every 128; the finer ones go when they would be too near."""
     to, draw = brush.to, brush.draw
     draw.add_rect_filled(panel[:2], panel[2:], brush.ink.canvas)
@@ -36,7 +36,7 @@ def paint_grid(brush: Brush, panel: Rect) -> None:
                 draw.add_line((at, panel[1]), (at, panel[3]), color)
 
 
-def frame_color(ink: Ink, facts: Mapping[str, Any]) -> tuple[float, float, float]:
+def frame_color(ink: CanvasColors, facts: Mapping[str, Any]) -> tuple[float, float, float]:
     """The color of a frame: its own, or that of headers."""
     given = facts.get("color")
     if isinstance(given, list | tuple) and len(given) == 3:
@@ -44,7 +44,7 @@ def frame_color(ink: Ink, facts: Mapping[str, Any]) -> tuple[float, float, float
     return ink.palette.category("")
 
 
-def paint_frame(brush: Brush, box: Box, facts: Mapping[str, Any], selected: bool, lit: bool) -> None:
+def paint_frame(brush: DrawContext, box: ElementBox, facts: Mapping[str, Any], selected: bool, lit: bool) -> None:
     """A frame with its title; `lit` while the mouse is on its edge or title."""
     ink = brush.ink
     color = frame_color(ink, facts)
@@ -60,7 +60,7 @@ def paint_frame(brush: Brush, box: Box, facts: Mapping[str, Any], selected: bool
     brush.text(rect[0] + 12.0, y, ink.text, brush.short(text, box.w - 24.0, size, True), size, True)
 
 
-def paint_comment(brush: Brush, box: Box, text: str, selected: bool) -> None:
+def paint_comment(brush: DrawContext, box: ElementBox, text: str, selected: bool) -> None:
     """A note."""
     ink, rect = brush.ink, box.rect
     brush.fill(rect, u32(mix(ink.palette.canvas, ink.palette.warning, 0.12)), 4.0)
@@ -76,7 +76,7 @@ def paint_comment(brush: Brush, box: Box, text: str, selected: bool) -> None:
     brush.draw.pop_clip_rect()
 
 
-def paint_dot(brush: Brush, box: Box, color: int, selected: bool) -> None:
+def paint_dot(brush: DrawContext, box: ElementBox, color: int, selected: bool) -> None:
     """A reroute."""
     x, y = brush.to.to_screen(box.x + box.w / 2, box.y + box.h / 2)
     r = box.w / 2 * brush.to.scale
@@ -86,7 +86,7 @@ def paint_dot(brush: Brush, box: Box, color: int, selected: bool) -> None:
     brush.draw.add_circle_filled((x, y), r * 0.75, color)
 
 
-def paint_wire(brush: Brush, wire: Wire, *, lit: bool, faded: bool) -> None:
+def paint_wire(brush: DrawContext, wire: Wire, *, lit: bool, faded: bool) -> None:
     """A link: in the color of what travels, brighter if `lit`, dashed where nothing passes or it cannot work."""
     ink = brush.ink
     color = ink.error if wire.fault else (ink.kinds_dim if faded or wire.muted else ink.kinds)[wire.kind]
@@ -100,7 +100,7 @@ def paint_wire(brush: Brush, wire: Wire, *, lit: bool, faded: bool) -> None:
             paint_curve(brush, shape, color, thickness, halo=brush.zoom > 0.35)
 
 
-def paint_curve(brush: Brush, shape: Curve, color: int, thickness: float, halo: bool = True) -> None:
+def paint_curve(brush: DrawContext, shape: Curve, color: int, thickness: float, halo: bool = True) -> None:
     """One curve, with a rim that lifts it off what it crosses."""
     to = brush.to
     x, y, s = to.x, to.y, to.scale
@@ -110,7 +110,7 @@ def paint_curve(brush: Brush, shape: Curve, color: int, thickness: float, halo: 
     brush.draw.add_bezier_cubic(a, b, c, d, color, thickness * brush.line)
 
 
-def paint_dashes(brush: Brush, shape: Curve, color: int, thickness: float) -> None:
+def paint_dashes(brush: DrawContext, shape: Curve, color: int, thickness: float) -> None:
     """One curve, dashed."""
     x0, y0, x1, y1, x2, y2, x3, y3 = shape
     length = math.dist((x0, y0), (x1, y1)) + math.dist((x1, y1), (x2, y2)) + math.dist((x2, y2), (x3, y3))
@@ -124,19 +124,19 @@ def paint_dashes(brush: Brush, shape: Curve, color: int, thickness: float) -> No
         brush.draw.add_line(ends[0], ends[1], color, thickness * brush.line)
 
 
-def paint_band(brush: Brush, rect: Rect) -> None:
+def paint_band(brush: DrawContext, rect: Rect) -> None:
     """The rectangle that selects."""
     brush.fill(rect, brush.ink.accent_soft, 2.0)
     brush.frame(rect, brush.ink.accent, 2.0)
 
 
-def paint_cut(brush: Brush, start: Point, end: Point, color: int) -> None:
+def paint_cut(brush: DrawContext, start: Point, end: Point, color: int) -> None:
     """The line that cuts links or puts dots on them."""
     brush.draw.add_line(brush.to.to_screen(*start), brush.to.to_screen(*end), color, 2.0 * brush.line)
     brush.draw.add_circle_filled(brush.to.to_screen(*start), 3.0 * brush.line, color)
 
 
-def paint_note(brush: Brush, x: float, y: float, text: str, color: int) -> None:
+def paint_note(brush: DrawContext, x: float, y: float, text: str, color: int) -> None:
     """A sentence beside the pointer, on top of everything; `x`, `y` and sizes are pixels of the screen."""
     scale = brush.to.scale / brush.zoom
     draw = imgui.get_foreground_draw_list()
@@ -153,7 +153,7 @@ def paint_note(brush: Brush, x: float, y: float, text: str, color: int) -> None:
     draw.add_text(font, size, (low[0] + pad, low[1] + pad * 0.8), color, text, wrap)
 
 
-def paint_hint(brush: Brush, panel: Rect, lines: tuple[str, ...]) -> None:
+def paint_hint(brush: DrawContext, panel: Rect, lines: tuple[str, ...]) -> None:
     """Words on an empty canvas, above the ends of the graph, which lie in the middle."""
     scale = brush.to.scale / brush.zoom
     x, y = (panel[0] + panel[2]) / 2, panel[1] + (panel[3] - panel[1]) * 0.14
@@ -165,7 +165,7 @@ def paint_hint(brush: Brush, panel: Rect, lines: tuple[str, ...]) -> None:
         y += size * 1.7
 
 
-def _visible(brush: Brush, shape: Curve) -> bool:
+def _visible(brush: DrawContext, shape: Curve) -> bool:
     left, top, right, bottom = brush.seen
     xs, ys = shape[0::2], shape[1::2]
     return max(xs) >= left and min(xs) <= right and max(ys) >= top and min(ys) <= bottom

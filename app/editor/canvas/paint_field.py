@@ -8,7 +8,7 @@ from ..fields.colors import swatch
 from ..theme.style import u32
 from .brush import TEXT
 from .geometry import Rect
-from .layout import Row, Shown
+from .layout import FieldText, NodeRow
 from .sketch import Sketch
 
 ROUND = 4.0
@@ -19,7 +19,7 @@ _LEFT, _RIGHT, _NONE = (
 )
 
 
-def paint_field(sketch: Sketch, row: Row, muted: bool) -> None:
+def paint_field(sketch: Sketch, row: NodeRow, muted: bool) -> None:
     """Draw the field of a value of a node."""
     value, rect = row.value, row.field
     if value is None or rect is None:
@@ -57,7 +57,7 @@ def paint_label(sketch: Sketch, rect: Rect, label: str, count: int) -> None:
     sketch.text(rect[0] + 4.0, (rect[1] + rect[3]) / 2, sketch.ink.dim, sketch.short(label, room))
 
 
-def _number(sketch: Sketch, rect: Rect, label: str, shown: Shown, color: int) -> None:
+def _number(sketch: Sketch, rect: Rect, label: str, shown: FieldText, color: int) -> None:
     sketch.fill(rect, sketch.ink.field, ROUND)
     if shown.part and shown.part[1] > shown.part[0]:
         across = rect[2] - rect[0]
@@ -74,7 +74,7 @@ def _number(sketch: Sketch, rect: Rect, label: str, shown: Shown, color: int) ->
     sketch.text(rect[0] + PAD, y, sketch.ink.dim, sketch.short(label, rect[2] - rect[0] - width - PAD * 3))
 
 
-def _words(sketch: Sketch, rect: Rect, row: Row, color: int) -> None:
+def _words(sketch: Sketch, rect: Rect, row: NodeRow, color: int) -> None:
     """A name and a word: choices with an arrow, files, and what only the inspector can edit."""
     sketch.fill(rect, sketch.ink.field, ROUND)
     y, right = (rect[1] + rect[3]) / 2, rect[2] - PAD
@@ -103,7 +103,7 @@ def _switch(sketch: Sketch, rect: Rect, label: str, on: bool) -> None:
     sketch.circle(knob, y, height * 0.36, sketch.ink.on_accent if on else sketch.ink.text)
 
 
-def _swatch(sketch: Sketch, rect: Rect, row: Row) -> None:
+def _swatch(sketch: Sketch, rect: Rect, row: NodeRow) -> None:
     """The color, with its name where that can be read best."""
     if not isinstance(row.plain, tuple):
         return

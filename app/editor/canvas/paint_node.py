@@ -8,12 +8,12 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ..shared.entries import words
-from .brush import DETAILS_FROM, SMALL, TITLE, Brush
+from ..shared.entries import spell_out
+from .brush import DETAILS_FROM, SMALL, TITLE, DrawContext
 from .geometry import Rect
-from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row
+from .layout import HEADER, ROW, WIDTH, NodeLayout, NodeRow, Pin
 from .paint_field import paint_field
-from .scene import Box
+from .scene import ElementBox
 from .sketch import Sketch
 
 ROUND = 6.0
@@ -24,7 +24,7 @@ _INSET = 12.0
 
 
 @dataclass(slots=True)
-class Look:
+class NodeLook:
     """How a node stands in the moment. `lit` are the pins that a dragged link could take; None: none is dragged."""
 
     selected: bool = False
@@ -46,7 +46,7 @@ class Look:
     overlay_color: int = 0
 
 
-def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
+def paint_node(brush: DrawContext, box: ElementBox, layout: NodeLayout, look: NodeLook) -> None:
     """Draw an element with pins."""
     ink, rect = brush.ink, box.rect
     is_end = box.sort == "end"
@@ -90,7 +90,7 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
 
 
 def paint_pin(
-    brush: Brush, x: float, y: float, kind: Kind | None, color: int, grow: float = 0.0, core: int = 0
+    brush: DrawContext, x: float, y: float, kind: Kind | None, color: int, grow: float = 0.0, core: int = 0
 ) -> None:
     """A socket: its shape tells its kind as its color does. `core` fills the hole of a ring or of an optional pin."""
     s = brush.to.scale
@@ -122,7 +122,7 @@ def paint_pin(
         draw.add_circle_filled((cx, cy), r * 0.45, core)
 
 
-def _pin_of(brush: Brush, box: Box, pin: Pin, output: bool, look: Look) -> None:
+def _pin_of(brush: DrawContext, box: ElementBox, pin: Pin, output: bool, look: NodeLook) -> None:
     if pin.value and not (look.hot or look.lit is not None or _is_linked(box, pin)):
         return
     ink, grow = brush.ink, 0.0
@@ -136,12 +136,12 @@ def _pin_of(brush: Brush, box: Box, pin: Pin, output: bool, look: Look) -> None:
     paint_pin(brush, box.x + pin.x, box.y + pin.y, pin.kind, color, grow, ink.node if hollow else 0)
 
 
-def _is_linked(box: Box, pin: Pin) -> bool:
+def _is_linked(box: ElementBox, pin: Pin) -> bool:
     rows = box.layout.rows if box.layout else ()
     return any(row.linked for row in rows if row.left is pin) or bool(box.layout and box.layout.collapsed)
 
 
-def _title(brush: Brush, box: Box, layout: Layout, look: Look, y: float) -> None:
+def _title(brush: DrawContext, box: ElementBox, layout: NodeLayout, look: NodeLook, y: float) -> None:
     ink, size = brush.ink, brush.title
     color = ink.dim if look.muted else ink.text
     left, right = box.x + _INSET, box.x + box.w - 8.0
@@ -174,11 +174,11 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look, y: float) -> None
     brush.text(left, y, color, title, size, True)
     left += brush.width(title, size, True) + 7.0
     if layout.subtitle and right - left > 24.0:
-        name = words(layout.subtitle)
+        name = spell_out(layout.subtitle)
         brush.text(left, y + 0.5, ink.over, brush.short(name, right - left, SMALL), SMALL)
 
 
-def _rows(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
+def _rows(brush: DrawContext, box: ElementBox, layout: NodeLayout, look: NodeLook) -> None:
     of = layout, look.muted, look.live, brush.ink
     known = brush.texts.sketches.get(box.key)
     if known is None or known[0][0] is not layout or known[0][1:] != of[1:]:
@@ -189,7 +189,7 @@ def _rows(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     known[1].draw(brush, box.x, box.y)
 
 
-def _row(brush: Sketch, row: Row, look: Look) -> None:
+def _row(brush: Sketch, row: NodeRow, look: NodeLook) -> None:
     ink, y = brush.ink, row.y + ROW / 2
     if row.value is not None:
         if row.linked:
@@ -200,15 +200,15 @@ def _row(brush: Sketch, row: Row, look: Look) -> None:
     color = ink.dim if look.muted else ink.text
     room = WIDTH - _INSET * 2 if not (row.left and row.right) else WIDTH / 2 - _INSET - 2.0
     if row.left:
-        name = brush.short(words(row.left.name), room)
+        name = brush.short(spell_out(row.left.name), room)
         brush.text(_INSET, y, ink.dim if row.left.optional and not row.linked else color, name)
         if row.hint:
             brush.right(WIDTH - _INSET, y, ink.faint, row.hint, SMALL)
     if row.right:
-        brush.right(WIDTH - _INSET, y, color, brush.short(words(row.right.name), room))
+        brush.right(WIDTH - _INSET, y, color, brush.short(spell_out(row.right.name), room))
 
 
-def _more(brush: Brush, box: Box, layout: Layout, hot: bool) -> None:
+def _more(brush: DrawContext, box: ElementBox, layout: NodeLayout, hot: bool) -> None:
     _, top, _, bottom = layout.more or (0.0, 0.0, 0.0, 0.0)
     y, x = box.y + (top + bottom) / 2 - 1.0, box.x + box.w / 2
     color = brush.ink.dim if hot else brush.ink.faint
@@ -216,7 +216,7 @@ def _more(brush: Brush, box: Box, layout: Layout, hot: bool) -> None:
     brush.text(x - brush.width(text, 10.0) / 2, y, color, text, 10.0)
 
 
-def _picture(brush: Brush, box: Box, place: Rect, picture: imgui.ImTextureRef, look: Look) -> None:
+def _picture(brush: DrawContext, box: ElementBox, place: Rect, picture: imgui.ImTextureRef, look: NodeLook) -> None:
     area = box.x + place[0], box.y + place[1] + 2.0, box.x + place[2], box.y + place[3]
     if brush.zoom >= DETAILS_FROM:
         brush.fill(area, brush.ink.picture, 3.0)
@@ -230,7 +230,7 @@ def _picture(brush: Brush, box: Box, place: Rect, picture: imgui.ImTextureRef, l
     brush.draw.add_image_rounded(picture, low, high, (0, 0), (1, 1), veil, 3.0 * brush.to.scale)
 
 
-def _bypass(brush: Brush, box: Box, layout: Layout) -> None:
+def _bypass(brush: DrawContext, box: ElementBox, layout: NodeLayout) -> None:
     """The line through a muted node that shows what passes."""
     if not layout.ins or not layout.outs:
         return

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Pictures:
+class ThumbnailSlots:
     """Those that had a picture once: its place stays, and what it shows is dimmed while it is out of date.
 
     No picture is ever computed for its own sake, so nodes that became part of a larger step never have one; they look
@@ -41,7 +41,7 @@ def with_room(context: CanvasContext) -> Sizes:
     sizes = context.canvas.sizes or {}
     if not context.store.current.thumbnails:
         return sizes
-    known, nodes = Pictures().of(context), context.session.graph.nodes
+    known, nodes = ThumbnailSlots().of(context), context.session.graph.nodes
     return {
         key: (width, height + PICTURE + PAD / 2)
         if key in nodes and key not in known and height > HEADER

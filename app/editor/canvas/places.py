@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from .brush import DETAILS_FROM, Brush
-from .geometry import Rect, Transform, overlap
+from .brush import DETAILS_FROM, DrawContext
+from .geometry import CanvasTransform, Rect, overlap
 from .link_index import Net, Wire
-from .scene import Box, Scene
+from .scene import CanvasScene, ElementBox
 
 if TYPE_CHECKING:
     from .context import CanvasContext
@@ -24,15 +24,15 @@ class Places:
 
     context: CanvasContext
     _of: tuple[object, ...] = ()
-    _boxes: dict[str, tuple[Box, Found]] = field(default_factory=dict[str, tuple[Box, Found]])
+    _boxes: dict[str, tuple[ElementBox, Found]] = field(default_factory=dict[str, tuple[ElementBox, Found]])
     _net: tuple[Net, Found] = field(default_factory=lambda: (Net(), {}))
 
-    def record(self, scene: Scene, brush: Brush) -> None:
+    def record(self, scene: CanvasScene, brush: DrawContext) -> None:
         """Note where everything visible is."""
         of = brush.to, brush.seen
         if self._of != of:
             self._of, self._boxes, self._net = of, {}, (Net(), {})
-        known, boxes = self._boxes, dict[str, tuple[Box, Found]]()
+        known, boxes = self._boxes, dict[str, tuple[ElementBox, Found]]()
         places = self.context.places
         for key, box in scene.boxes.items():
             one = known.get(key)
@@ -44,12 +44,12 @@ class Places:
         places.update(self._net[1])
 
 
-def _of_wire(wire: Wire, to: Transform) -> tuple[str, Rect]:
+def _of_wire(wire: Wire, to: CanvasTransform) -> tuple[str, Rect]:
     x, y = to.to_screen(*wire.middle)
     return f"link {wire.target}", (x - 2.0, y - 2.0, x + 2.0, y + 2.0)
 
 
-def _of_box(box: Box, brush: Brush) -> Found:
+def _of_box(box: ElementBox, brush: DrawContext) -> Found:
     if not overlap(box.rect, brush.seen):
         return {}
     to, s, key = brush.to, brush.to.scale, box.key

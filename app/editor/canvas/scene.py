@@ -9,7 +9,7 @@ from typing import Literal
 
 from ...graph import Port
 from .geometry import Curve, Point, Rect, curve, holds
-from .layout import HEADER, ROW, Layout, Pin
+from .layout import HEADER, ROW, NodeLayout, Pin
 from .link_index import Net, Wire
 
 DOT = 7.0
@@ -22,7 +22,7 @@ Part = Literal["pin", "field", "more", "title", "body", "edge", "link", "empty"]
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class ElementBox:
     """An element: its rectangle, and the layout within for nodes and ends. Dots are boxes around their center."""
 
     key: str
@@ -31,7 +31,7 @@ class Box:
     y: float
     w: float
     h: float
-    layout: Layout | None = None
+    layout: NodeLayout | None = None
 
     @property
     def rect(self) -> Rect:
@@ -60,10 +60,10 @@ EMPTY = Hit()
 
 
 @dataclass(frozen=True)
-class Scene:
+class CanvasScene:
     """Elements in the order in which they are drawn, and links."""
 
-    boxes: dict[str, Box]
+    boxes: dict[str, ElementBox]
     net: Net = field(default_factory=Net)
 
     @property
@@ -81,7 +81,7 @@ class Scene:
         """Width and height of every element."""
         return {key: (box.w, box.h) for key, box in self.boxes.items()}
 
-    def moved(self, keys: Collection[str], dx: float, dy: float) -> Scene:
+    def moved(self, keys: Collection[str], dx: float, dy: float) -> CanvasScene:
         """The same with some elements elsewhere; links follow."""
         if not keys or not (dx or dy):
             return self
@@ -94,13 +94,13 @@ class Scene:
             else wire
             for wire in self.wires
         )
-        return Scene(boxes, Net(wires))
+        return CanvasScene(boxes, Net(wires))
 
-    def resized(self, key: str, rect: Rect) -> Scene:
+    def resized(self, key: str, rect: Rect) -> CanvasScene:
         """The same with one element of another shape."""
         left, top, right, bottom = rect
         box = replace(self.boxes[key], x=left, y=top, w=right - left, h=bottom - top)
-        return Scene({**self.boxes, key: box}, self.net)
+        return CanvasScene({**self.boxes, key: box}, self.net)
 
     def hit(self, x: float, y: float, reach: float) -> Hit:
         """What is at a point; `reach` is how far off pins, links and edges may be."""
@@ -116,7 +116,7 @@ class Scene:
                 return key
         return ""
 
-    def pins(self, output: bool) -> Iterator[tuple[Port, Box, Pin]]:
+    def pins(self, output: bool) -> Iterator[tuple[Port, ElementBox, Pin]]:
         """Every pin of one side."""
         for box in self.boxes.values():
             if box.layout:
@@ -150,7 +150,7 @@ class Scene:
         return None
 
 
-def pin_place(box: Box, socket: str, output: bool) -> Point:
+def pin_place(box: ElementBox, socket: str, output: bool) -> Point:
     """Where a link meets an element."""
     if box.layout is None:
         return box.x + box.w / 2, box.y + box.h / 2
@@ -158,7 +158,7 @@ def pin_place(box: Box, socket: str, output: bool) -> Point:
     return (box.x + pin.x, box.y + pin.y) if pin else (box.x + (box.w if output else 0.0), box.y + HEADER / 2)
 
 
-def routed(boxes: Mapping[str, Box], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
+def routed(boxes: Mapping[str, ElementBox], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
     """The curves of a link that joins elements."""
     places = [
         pin_place(boxes[stops[0]], source.socket, output=True),
@@ -168,7 +168,7 @@ def routed(boxes: Mapping[str, Box], source: Port, target: Port, stops: tuple[st
     return (curve(*start, *end) for start, end in pairwise(places))
 
 
-def _in_node(box: Box, layout: Layout, x: float, y: float, reach: float) -> Hit | None:
+def _in_node(box: ElementBox, layout: NodeLayout, x: float, y: float, reach: float) -> Hit | None:
     here, there = x - box.x, y - box.y
     for output, pins in ((True, layout.outs), (False, layout.ins)):
         near = min(pins.values(), key=lambda pin: abs(pin.y - there), default=None)

@@ -17,12 +17,12 @@ from ..shared.entries import (
     GRAPH,
     GROUP,
     SHADER,
-    Entry,
+    CatalogEntry,
     Section,
+    arrange_entries,
     code_entries,
-    found,
     graph_entries,
-    narrowed,
+    keep_fitting,
     node_entries,
     preset_entries,
     shader_entries,
@@ -52,14 +52,14 @@ class Search:
     _link: tuple[Port, bool] | None = None
     _replaced: str = ""
     """The node that gets another type, instead of a new one."""
-    _entries: tuple[Entry, ...] = ()
+    _entries: tuple[CatalogEntry, ...] = ()
     _awaits: bool = False
     """True while shaders of this machine are being looked for, which are added then."""
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
 
     @cached_property
-    def _fixed(self) -> tuple[Entry, ...]:
+    def _fixed(self) -> tuple[CatalogEntry, ...]:
         return (*code_entries(), *preset_entries(preset_paths()), *graph_entries())
 
     def begin(self, at: Point, port: Port | None = None, output: bool = True) -> None:
@@ -73,7 +73,7 @@ class Search:
             self._link = port, output
             fits = self.context.log.attempt(lambda: session.fitting(port, output), ()) or ()
             files = self.context.log.attempt(lambda: session.fitting_files(preset_paths(), port, output), ()) or ()
-            self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
+            self._entries = keep_fitting((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 
     def begin_replacing(self, id: str) -> None:
@@ -81,7 +81,7 @@ class Search:
         now = self.context.session.graph.nodes.get(id)
         others = [type for type in self.context.session.types if not isinstance(now, self.context.session.types[type])]
         self._link, self._replaced = None, id
-        self._entries = (*narrowed(node_entries(self.context.session.types), others), *code_entries())
+        self._entries = (*keep_fitting(node_entries(self.context.session.types), others), *code_entries())
         self._query, self._marked, self._opening, self._awaits = "", 0, True, False
 
     def draw(self) -> None:
@@ -119,7 +119,7 @@ class Search:
             files = [one for one in files if takes and (one.has_image_input or not output)]
         self._entries = (*self._entries, *shader_entries(files))
 
-    def _contents(self) -> Entry | None:
+    def _contents(self) -> CatalogEntry | None:
         imgui.set_next_item_width(-1)
         hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
         hint = f"Replace {self._replaced} by ..." if self._replaced else hint
@@ -128,7 +128,7 @@ class Search:
         record(self.context, "search field")
         if self._query != before:
             self._marked = 0
-        sections = found(self._entries, self._query, self._recent)
+        sections = arrange_entries(self._entries, self._query, self._recent)
         lines = [entry for section in sections for entry in section.entries]
         moved = _arrows()
         self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
@@ -141,7 +141,7 @@ class Search:
         entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
         return lines[self._marked] if entered and lines else chosen
 
-    def _list(self, sections: tuple[Section, ...], follow: bool) -> Entry | None:
+    def _list(self, sections: tuple[Section, ...], follow: bool) -> CatalogEntry | None:
         chosen, index = None, 0
         palette, scale = self.context.palette, ui_scale()
         draw = imgui.get_window_draw_list()
@@ -177,7 +177,7 @@ class Search:
             imgui.text_colored(vec4(palette.dim), "Nothing is called like that.")
         return chosen
 
-    def _foot(self, lines: list[Entry]) -> None:
+    def _foot(self, lines: list[CatalogEntry]) -> None:
         imgui.separator()
         doc = lines[self._marked].doc if lines else ""
         imgui.push_style_color(imgui.Col_.text, vec4(self.context.palette.dim))
@@ -185,7 +185,7 @@ class Search:
         imgui.text_wrapped(doc or keys)
         imgui.pop_style_color()
 
-    def _add(self, entry: Entry) -> None:
+    def _add(self, entry: CatalogEntry) -> None:
         session, at = self.context.session, self._at
         if self._replaced:
             session.replace(self._replaced, entry.id)

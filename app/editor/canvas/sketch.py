@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .brush import TEXT, Brush, Ink
+from .brush import TEXT, CanvasColors, DrawContext
 from .geometry import Rect
 
 Corner = tuple[float, float]
@@ -14,7 +14,7 @@ Corner = tuple[float, float]
 class Sketch:
     """Shapes and words in canvas units; shapes come first, words on top."""
 
-    brush: Brush
+    brush: DrawContext
     fills: list[tuple[float, float, float, float, int, float, int]] = field(default_factory=list)
     frames: list[tuple[float, float, float, float, int, float]] = field(default_factory=list)
     circles: list[tuple[float, float, float, int]] = field(default_factory=list)
@@ -22,7 +22,7 @@ class Sketch:
     words: list[tuple[float, float, float, int, str]] = field(default_factory=list)
 
     @property
-    def ink(self) -> Ink:
+    def ink(self) -> CanvasColors:
         """The colors."""
         return self.brush.ink
 
@@ -58,7 +58,7 @@ class Sketch:
         """The width of a line."""
         return self.brush.width(text, size)
 
-    def draw(self, brush: Brush, x: float, y: float) -> None:
+    def draw(self, brush: DrawContext, x: float, y: float) -> None:
         """Draw it all with its corner at a canvas position."""
         draw, s = brush.draw, brush.to.scale
         left, top = brush.to.to_screen(x, y)

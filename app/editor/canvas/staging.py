@@ -14,9 +14,9 @@ from ...authoring.edits.elements import element_of, entries, entry
 from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
 from .geometry import Point
-from .layout import Facts, Layout, end_layout, node_layout
+from .layout import NodeFacts, NodeLayout, end_layout, node_layout
 from .link_index import Net, Wire
-from .scene import DOT, Box, Scene, routed
+from .scene import DOT, CanvasScene, ElementBox, routed
 
 _LETTER = 6.6, 17.0
 """Width of a letter, and height of a line, in comments."""
@@ -28,15 +28,17 @@ FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
 
 
 @dataclass
-class Stage:
+class SceneBuilder:
     """Builds scenes; keeps layouts of nodes that stay the same. `expanded` are nodes that show all their values."""
 
     expanded: set[str] = field(default_factory=set[str])
-    _layouts: dict[str, tuple[Item, Facts, Layout]] = field(default_factory=dict[str, tuple[Item, Facts, Layout]])
+    _layouts: dict[str, tuple[Item, NodeFacts, NodeLayout]] = field(
+        default_factory=dict[str, tuple[Item, NodeFacts, NodeLayout]]
+    )
     _links: object = None
     _linked: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
-    _last: tuple[Graph, Shown, dict[str, Box], Net] | None = None
+    _last: tuple[Graph, Shown, dict[str, ElementBox], Net] | None = None
 
     def build(
         self,
@@ -45,7 +47,7 @@ class Stage:
         top: Collection[str],
         pictures: Collection[str] = frozenset(),
         open: str = "",
-    ) -> Scene:
+    ) -> CanvasScene:
         """The scene of a graph.
 
         `top` are drawn last, in order; `pictures` are the elements with one; `open` shows all its values for now.
@@ -56,9 +58,9 @@ class Stage:
         raised = [key for key in top if key in boxes and boxes[key].sort != "frame"]
         if raised:
             boxes = {key: box for key, box in boxes.items() if key not in raised} | {key: boxes[key] for key in raised}
-        return Scene(boxes, net)
+        return CanvasScene(boxes, net)
 
-    def _changed(self, graph: Graph, shown: Shown) -> tuple[dict[str, Box], Net] | None:
+    def _changed(self, graph: Graph, shown: Shown) -> tuple[dict[str, ElementBox], Net] | None:
         """The last boxes and links, with new boxes of changed nodes; None where more differs than values."""
         if self._last is None or self._last[1] != shown:
             return None
@@ -66,7 +68,7 @@ class Stage:
         parts = ("ui", "links", "inputs", "outputs", "muted")
         if any(getattr(graph, part) is not getattr(last, part) for part in parts) or [*graph.nodes] != [*last.nodes]:
             return None
-        fresh: dict[str, Box] = {}
+        fresh: dict[str, ElementBox] = {}
         for id, item in graph.nodes.items():
             if item is not last.nodes[id]:
                 box = boxes[id]
@@ -80,7 +82,7 @@ class Stage:
 
     def _whole(
         self, graph: Graph, position: Callable[[str], Point], pictures: Collection[str], open: str
-    ) -> tuple[dict[str, Box], Net]:
+    ) -> tuple[dict[str, ElementBox], Net]:
         if graph.links is not self._links:
             self._links, self._linked = graph.links, _linked_names(graph)
             self._faults = {ends: known for ends, known in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
@@ -91,17 +93,17 @@ class Stage:
             text = str(entry(graph, box.key).get("text", ""))
             boxes[box.key] = replace(box, h=comment_height(text, box.w))
         for key, layout in self._ends(graph, pictures):
-            boxes[key] = Box(key, "end", *position(key), layout.width, layout.height, layout)
+            boxes[key] = ElementBox(key, "end", *position(key), layout.width, layout.height, layout)
         closed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
         for id, item in graph.nodes.items():
             layout = self._layout(graph, id, item, id in closed, pictures, open)
-            boxes[id] = Box(id, "node", *position(id), layout.width, layout.height, layout)
+            boxes[id] = ElementBox(id, "node", *position(id), layout.width, layout.height, layout)
         for id in entries(graph, "dots"):
             x, y = position(f"dots.{id}")
-            boxes[f"dots.{id}"] = Box(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
+            boxes[f"dots.{id}"] = ElementBox(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
         return boxes, Net(tuple(self._wires(graph, boxes)))
 
-    def _frames(self, graph: Graph, position: Callable[[str], Point]) -> list[Box]:
+    def _frames(self, graph: Graph, position: Callable[[str], Point]) -> list[ElementBox]:
         found = [_sized(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")]
         return sorted(found, key=lambda box: (-box.w * box.h, box.key))
 
@@ -115,9 +117,9 @@ class Stage:
 
     def _layout(
         self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: Collection[str], open: str
-    ) -> Layout:
+    ) -> NodeLayout:
         ins, outs = self._linked
-        facts = Facts(
+        facts = NodeFacts(
             frozenset(ins.get(id, ())),
             frozenset(outs.get(id, ())),
             collapsed,
@@ -131,7 +133,7 @@ class Stage:
         self._layouts[id] = item, facts, layout
         return layout
 
-    def _wires(self, graph: Graph, boxes: dict[str, Box]):
+    def _wires(self, graph: Graph, boxes: dict[str, ElementBox]):
         passed = routes(graph)
         for target, source in graph.links.items():
             start, end = element_of(source), element_of(target)
@@ -189,13 +191,13 @@ def _linked_names(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]
     return ins, outs
 
 
-def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> Box:
+def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> ElementBox:
     facts = entry(graph, key)
     w, h = (facts.get(name) for name in ("w", "h"))
     width = float(w) if isinstance(w, int | float) else size[0]
-    return Box(key, sort, *position(key), width, float(h) if isinstance(h, int | float) else size[1])
+    return ElementBox(key, sort, *position(key), width, float(h) if isinstance(h, int | float) else size[1])
 
 
 @lru_cache(maxsize=1024)
-def _end(key: str, socket: Any, picture: bool, doc: str) -> Layout:
+def _end(key: str, socket: Any, picture: bool, doc: str) -> NodeLayout:
     return end_layout(key, socket, picture, doc)

@@ -13,9 +13,9 @@ from ...compiler import installed_library
 from ...custom_nodes import Code
 from ...custom_nodes.notes import EDGES, UNITS
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import quiet
+from ..toolkit.buttons import quiet_button
 from ..toolkit.places import record
-from ..toolkit.words import dim, font, tip
+from ..toolkit.words import draw_dim, font, tip
 
 if TYPE_CHECKING:
     from .context import CodeContext
@@ -58,13 +58,13 @@ class Help:
 
     def draw(self, page: Page, code: Code) -> None:
         """Draw the button, and the list if it is open."""
-        if quiet(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
+        if quiet_button(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
             imgui.open_popup(_POPUP)
         scale = ui_scale()
         imgui.set_next_window_size_constraints((420 * scale, 60 * scale), (620 * scale, 560 * scale))
         if imgui.begin_popup(_POPUP):
             if code.language == "isf":
-                dim(self._context, "Shaders in the Interactive Shader Format: isf.video describes it.")
+                draw_dim(self._context, "Shaders in the Interactive Shader Format: isf.video describes it.")
             else:
                 _table(self._context, "Names", NAMES)
                 _table(self._context, "// after a parameter", NOTES)
@@ -94,7 +94,7 @@ def _table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...])
             with font(context, "mono", 14.0):
                 imgui.text_unformatted(name)
             imgui.table_next_column()
-            dim(context, does)
+            draw_dim(context, does)
         imgui.end_table()
 
 

@@ -12,10 +12,10 @@ from imgui_bundle import imgui
 from ...authoring.edits import paths
 from ...custom_nodes import Code
 from ..theme.style import EM, ui_scale, vec4
-from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.buttons import align_right, quiet_button
 from ..toolkit.keys import chord
 from ..toolkit.places import record
-from ..toolkit.words import dim, elided, font, nothing_here, tip, wrapped
+from ..toolkit.words import cut_middle, draw_dim, draw_empty_panel, draw_wrapped, font, tip
 from .help import Help
 from .page import Page
 
@@ -46,7 +46,7 @@ class CodePanel:
         page = self._choose()
         code = self._context.session.code(page.id) if page else None
         if page is None or code is None:
-            nothing_here(
+            draw_empty_panel(
                 self._context,
                 icons.ICON_FA_CODE,
                 "No code",
@@ -128,22 +128,26 @@ class CodePanel:
         where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else "in the graph"
         room = imgui.get_content_region_avail().x - len(glyphs) * (imgui.get_frame_height() + style.item_spacing.x)
         imgui.align_text_to_frame_padding()
-        dim(self._context, elided(where, max(room, 1.0)))
+        draw_dim(self._context, cut_middle(where, max(room, 1.0)))
         record(self._context, "code where")
         tip((f"{code.file}: not saved yet" if draft else code.file) if code.file else "Saved with the graph")
         ours = not session.borrowed
-        right_aligned(*glyphs)
+        align_right(*glyphs)
         if code.file:
-            if quiet(self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and ours):
+            if quiet_button(
+                self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and ours
+            ):
                 page.take()
                 self._save(page, code)
             imgui.same_line()
-            if quiet(
+            if quiet_button(
                 self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=ours
             ):
                 page.take()
                 self._context.log.attempt(lambda: session.inline_code(page.id))
-        elif quiet(self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours):
+        elif quiet_button(
+            self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours
+        ):
             page.take()
             self._context.actions.run("code.export")
         imgui.same_line()
@@ -157,7 +161,7 @@ class CodePanel:
         self._context.code.telling = page.path
         imgui.text_colored(vec4(self._context.palette.error), icons.ICON_FA_TRIANGLE_EXCLAMATION)
         imgui.same_line()
-        wrapped(self._context.palette.error, fault.words)
+        draw_wrapped(self._context.palette.error, fault.words)
         record(self._context, "code fault")
         if fault.line and imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)

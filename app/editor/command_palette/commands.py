@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
 from ..shared.action import Action
-from ..shared.entries import code_entries, words
+from ..shared.entries import code_entries, spell_out
 from ..shared.fuzzy import Match, match
 
 if TYPE_CHECKING:
@@ -33,12 +33,14 @@ class Command:
     """Added to how well it matches: what is wanted less often stands lower."""
 
 
-def commands(context: PaletteContext) -> tuple[Command, ...]:
+def list_commands(context: PaletteContext) -> tuple[Command, ...]:
     """Every action, node type, preset, and node of the graph; `run` does it within `editor.attempt`."""
     return tuple(_all(context))
 
 
-def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) -> tuple[tuple[Command, Match], ...]:
+def rank_commands(
+    query: str, offered: tuple[Command, ...], recent: Collection[str]
+) -> tuple[tuple[Command, Match], ...]:
     """The commands that match, best first; without a query those used last, then those that can be done now."""
     labels = tuple(command.label for command in offered)
     found = [(offered[one.index], one) for one in match(query, labels)]
@@ -53,7 +55,7 @@ def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) ->
     return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
 
 
-def reason(context: PaletteContext, action: Action) -> str:
+def explain_disabled(context: PaletteContext, action: Action) -> str:
     """Why an action cannot be done now, "" if it can."""
     if context.actions.is_enabled(action):
         return ""
@@ -76,21 +78,21 @@ def _all(context: PaletteContext) -> Iterator[Command]:
             partial(context.actions.run, action.id),
             context.actions.shortcut(action.id),
             action.doc,
-            reason(context, action),
+            explain_disabled(context, action),
         )
     for id, type in context.session.types.items():
         doc = (type.__doc__ or "").strip().splitlines()
         yield Command(
             f"add {id}",
             f"Add {type.title.title()}",
-            words(type.category).capitalize(),
+            spell_out(type.category).capitalize(),
             partial(_add, context, id),
             doc=doc[0] if doc else "",
         )
     for entry in code_entries():
         yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, context, entry.id), doc=entry.doc)
     for path in preset_paths():
-        name = words(path.stem).title()
+        name = spell_out(path.stem).title()
         opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
         yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
         yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)

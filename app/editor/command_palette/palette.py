@@ -9,11 +9,11 @@ from imgui_bundle import ImVec2, imgui
 
 from ..shared.fuzzy import Match, runs
 from ..theme.style import ui_scale, vec4
-from ..toolkit.dialogs import backdrop, dialog, escaped
-from ..toolkit.keys import shown
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.keys import display_shortcut
 from ..toolkit.places import record
-from ..toolkit.words import dim, font
-from .commands import Command, commands, ranked
+from ..toolkit.words import draw_dim, font
+from .commands import Command, list_commands, rank_commands
 
 if TYPE_CHECKING:
     from .context import PaletteContext
@@ -38,8 +38,8 @@ class CommandPalette:
             self._open = False
             return
         if not self._open:
-            self._open, self._query, self._chosen, self._offered = True, "", 0, commands(self._context)
-        found = ranked(self._query, self._offered, self._recent)
+            self._open, self._query, self._chosen, self._offered = True, "", 0, list_commands(self._context)
+        found = rank_commands(self._query, self._offered, self._recent)
         close = backdrop(self._context, "palette", 0.3)
         done: Command | None = None
         with dialog(self._context, "Command palette", (620, 0), top=0.18):
@@ -49,7 +49,7 @@ class CommandPalette:
             if entered and found:
                 done = found[self._chosen][0]
             done = self._list(found, moved) or done
-            close = close or escaped()
+            close = close or escape_pressed()
         if done is not None and not done.reason:
             self._do(done)
         if close or (done is not None and not done.reason):
@@ -81,7 +81,7 @@ class CommandPalette:
 
     def _list(self, found: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
         if not found:
-            dim(self._context, "Nothing is called that.")
+            draw_dim(self._context, "Nothing is called that.")
             return None
         height = imgui.get_text_line_height() + 8 * ui_scale()
         done: Command | None = None
@@ -101,7 +101,7 @@ class CommandPalette:
         imgui.pop_style_var()
         imgui.end_child()
         doc = found[self._chosen][0].doc if self._chosen < len(found) else ""
-        dim(self._context, doc or " ")
+        draw_dim(self._context, doc or " ")
         return done
 
     def _row(self, index: int, command: Command, one: Match, height: float) -> bool:
@@ -120,8 +120,8 @@ class CommandPalette:
             with font(self._context, "bold" if matched else "text"):
                 imgui.text_colored(vec4(palette.accent if matched and not command.reason else color), piece)
             imgui.same_line(0, 0)
-        right = command.reason or shown(command.shortcut) or command.kind
+        right = command.reason or display_shortcut(command.shortcut) or command.kind
         imgui.set_cursor_pos(ImVec2(edge - imgui.calc_text_size(right).x - 6 * scale, line))
-        dim(self._context, right)
+        draw_dim(self._context, right)
         imgui.set_cursor_pos(after)
         return clicked

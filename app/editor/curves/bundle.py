@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...graph import Interpolation, Keys, Port
 from ..toolkit.plane import Plane
 from .hits import Mark, line_at
-from .rows import Lane, Row, Spot
+from .rows import CurveRow, Lane, Spot
 from .shapes import Pieces, all_pieces, is_straight, level, on_screen, outside, points
 
 Floats = NDArray[np.float64]
@@ -144,7 +144,7 @@ class Bundles:
         self._known: dict[Lane, Shape] = {}
         self._made: dict[Port, tuple[Keys, list[Pieces]]] = {}
 
-    def make(self, rows: Iterable[Row], hidden: Collection[Lane]) -> Bundle:
+    def make(self, rows: Iterable[CurveRow], hidden: Collection[Lane]) -> Bundle:
         """All channels of rows with keys but hidden ones."""
         lanes: list[Lane] = []
         shapes: list[Shape] = []

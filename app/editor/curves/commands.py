@@ -11,7 +11,7 @@ from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
 from ..toolkit.plane import View
 from .copying import copied, pasted, read
 from .editing import Ease, automatic, chosen, eased, extent, fixed, going_on, interpolated, moved, removed, straightened
-from .rows import Row, Spot, limits, spots_of, width
+from .rows import CurveRow, Spot, limits, spots_of, width
 from .shapes import Samples, heights
 
 if TYPE_CHECKING:
@@ -227,7 +227,7 @@ def _keys_of(context: CurvesContext) -> set[tuple[Port, float]]:
     return {(port, frame) for port, frame, _ in context.curves.spots}
 
 
-def _seen(context: CurvesContext, row: Row) -> frozenset[Spot]:
+def _seen(context: CurvesContext, row: CurveRow) -> frozenset[Spot]:
     assert row.port and row.keys
     spots, state = spots_of(row.port, row.keys), context.curves
     return (
@@ -246,7 +246,7 @@ def _around(found: list[tuple[float, float]]) -> tuple[float, float] | None:
 def _heights(
     graph: Graph,
     settings: Settings,
-    row: Row,
+    row: CurveRow,
     hidden: set[tuple[Port, int]],
     samples: Samples,
     ends: tuple[float, float],

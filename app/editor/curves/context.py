@@ -10,7 +10,7 @@ from ..toolkit.context import PanelContext
 if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
-    from ..shared.protocols import Clipboard
+    from ..shared.protocols import SystemText
     from .state import CurvesState
 
 
@@ -21,4 +21,4 @@ class CurvesContext(PanelContext):
     session: Session
     curves: CurvesState
     actions: Actions
-    clipboard: Clipboard
+    clipboard: SystemText

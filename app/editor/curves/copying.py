@@ -9,7 +9,7 @@ from typing import Any, get_args
 
 from ...errors import UsageError
 from ...graph import Animation, Graph, Interpolation, Key, Keys, Port
-from .editing import Change, chosen
+from .editing import KeyEdit, chosen
 from .rows import Spot, spots_of
 
 _NAME = "halation keys"
@@ -45,7 +45,7 @@ def read(text: str) -> Copied:
         raise UsageError("the clipboard holds no keys: copy some first") from None
 
 
-def pasted(graph: Graph, given: Copied, frame: float, rows: Collection[Port] = ()) -> Change:
+def pasted(graph: Graph, given: Copied, frame: float, rows: Collection[Port] = ()) -> KeyEdit:
     """With copied keys from `frame` on, in the values that they come from; those of one value go into the chosen rows.
 
     Raises UsageError if nothing takes them.
@@ -64,7 +64,7 @@ def pasted(graph: Graph, given: Copied, frame: float, rows: Collection[Port] = (
         spots |= spots_of(port, made[port], (key.frame for key in put))
     if not made:
         raise UsageError("the values of these keys are not in this graph: select a row to paste into")
-    return Change(made, frozenset(spots))
+    return KeyEdit(made, frozenset(spots))
 
 
 def _written(key: Key, first: float) -> dict[str, Any]:

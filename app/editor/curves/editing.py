@@ -27,7 +27,7 @@ LEAST = 0.01
 
 
 @dataclass(frozen=True)
-class Change:
+class KeyEdit:
     """New animations by value, and the chosen keys."""
 
     made: Mapping[Port, Keys] = field(default_factory=dict[Port, Keys])
@@ -57,7 +57,7 @@ def extent(spots: Collection[Spot]) -> tuple[float, float] | None:
 
 def moved(
     animation: Animations, spots: Collection[Spot], by: float, lift: float = 0.0, limits: Limits = unlimited
-) -> Change:
+) -> KeyEdit:
     """Chosen keys so many frames later, chosen channels so much higher."""
     made: dict[Port, Keys] = {}
     for port, frames in chosen(animation, spots).items():
@@ -72,10 +72,10 @@ def moved(
                 ),
             )
         made[port] = keys.move(frames, by)
-    return Change(made, frozenset((port, round(frame + by, 6), channel) for port, frame, channel in spots))
+    return KeyEdit(made, frozenset((port, round(frame + by, 6), channel) for port, frame, channel in spots))
 
 
-def scaled(animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True) -> Change:
+def scaled(animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True) -> KeyEdit:
     """Chosen keys `factor` times as far from the frame `about`."""
     factor = max(factor, LEAST)
 
@@ -87,7 +87,7 @@ def scaled(animation: Animations, spots: Collection[Spot], factor: float, about:
         port: _keys(animation, port).scale(frames, factor, about, whole)
         for port, frames in chosen(animation, spots).items()
     }
-    return Change(made, frozenset((port, there(frame), channel) for port, frame, channel in spots))
+    return KeyEdit(made, frozenset((port, there(frame), channel) for port, frame, channel in spots))
 
 
 def removed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
@@ -271,8 +271,8 @@ def _keys(animation: Animations, port: Port) -> Keys:
 __all__ = [
     "LEAST",
     "Animations",
-    "Change",
     "Ease",
+    "KeyEdit",
     "Limits",
     "Side",
     "aligned",

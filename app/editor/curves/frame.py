@@ -13,7 +13,7 @@ from ..theme.palette import RGB
 from ..theme.style import mix, u32
 from ..toolkit.plane import Plane, Rect
 from .hits import Mark, Tip
-from .rows import Lane, Row
+from .rows import CurveRow, Lane
 from .state import CurvesState
 
 if TYPE_CHECKING:
@@ -27,11 +27,11 @@ SMALL = 12.5
 
 
 @dataclass
-class Frame:
+class CurvesFrame:
     """Where the parts of the panel are, and what is in them."""
 
     context: CurvesContext
-    rows: tuple[Row, ...]
+    rows: tuple[CurveRow, ...]
     plane: Plane
     """Time and values on the part with the keys."""
     list: Rect
@@ -77,7 +77,7 @@ class Frame:
         """How high a row is."""
         return round(ROW * self.scale)
 
-    def row_at(self, y: float) -> Row | None:
+    def row_at(self, y: float) -> CurveRow | None:
         """The row at a height of the screen."""
         place = int((y - self.top) // self.high)
         return self.rows[place] if y >= self.plane.rect[1] and 0 <= place < len(self.rows) else None
@@ -97,7 +97,7 @@ def holds(rect: Rect, at: tuple[float, float]) -> bool:
     return rect[0] <= at[0] < rect[2] and rect[1] <= at[1] < rect[3]
 
 
-def color_of(context: CurvesContext, row: Row, channel: int, place: int) -> RGB:
+def color_of(context: CurvesContext, row: CurveRow, channel: int, place: int) -> RGB:
     """The color of a curve: red, green and blue for channels, for numbers one of a few in turn."""
     palette = context.palette
     if row.channels:
@@ -112,7 +112,9 @@ def color_of(context: CurvesContext, row: Row, channel: int, place: int) -> RGB:
     return kinds[(3, 0, 2, 4, 5)[place % 5]]
 
 
-def small(frame: Frame, x: float, y: float, text: str, color: RGB, alpha: float = 1.0, align: float = 0.0) -> float:
+def small(
+    frame: CurvesFrame, x: float, y: float, text: str, color: RGB, alpha: float = 1.0, align: float = 0.0
+) -> float:
     """A line of small letters: its left end (or with `align` 1 its right one) at `x`, its middle at `y`. Its width."""
     fonts = frame.context.fonts
     font, size = (fonts.text if fonts else imgui.get_font()), SMALL * frame.scale

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...graph import Animation, Keys, Port
 from ...graph.keys import rounded
 from ..toolkit.plane import View
-from .editing import Change, Limits, Side, moved, pulled, scaled
+from .editing import KeyEdit, Limits, Side, moved, pulled, scaled
 from .rows import Spot
 
 Animations = Mapping[Port, Animation]
@@ -17,7 +17,7 @@ At = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Pan:
+class PlotPan:
     """The view follows the mouse: where that was on the screen, and the view and scrolling then."""
 
     start: tuple[float, float]
@@ -31,7 +31,7 @@ class Seek:
 
 
 @dataclass(frozen=True)
-class Box:
+class KeyBox:
     """A rectangle from a place (frame, and value or pixels down the rows) to the mouse."""
 
     start: At
@@ -39,7 +39,7 @@ class Box:
 
 
 @dataclass(frozen=True)
-class Move:
+class KeyMove:
     """Chosen keys follow the mouse. `grabbed` is the frame of the one that it holds."""
 
     base: Animations
@@ -51,7 +51,7 @@ class Move:
     clicked: frozenset[Spot] | None = None
     """What is chosen instead if the mouse was let go without moving."""
 
-    def change(self, at: At, snap: bool, limits: Limits, *, across: bool = True, up: bool = True) -> Change:
+    def change(self, at: At, snap: bool, limits: Limits, *, across: bool = True, up: bool = True) -> KeyEdit:
         """What has become of the keys; on whole frames if `snap`."""
         by = at[0] - self.start[0] if across else 0.0
         if snap and across:
@@ -70,7 +70,7 @@ class Scale:
     start: float
     merge: str
 
-    def change(self, frame: float, snap: bool) -> Change:
+    def change(self, frame: float, snap: bool) -> KeyEdit:
         """What has become of the keys; on whole frames if `snap`."""
         reach = self.grabbed - self.about
         to = self.grabbed + frame - self.start
@@ -100,4 +100,4 @@ class Bend:
         return pulled(self.base, self.frame, self.channel, self.side, (to[0], 0.0) if flat else to, both)
 
 
-Gesture = Pan | Seek | Box | Move | Scale | Bend
+Gesture = PlotPan | Seek | KeyBox | KeyMove | Scale | Bend

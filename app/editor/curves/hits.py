@@ -10,7 +10,7 @@ import numpy as np
 from ...graph import Animation, Interpolation, Keys, Port
 from ..toolkit.plane import Plane, Rect
 from .editing import Side, has_handle
-from .rows import Lane, Row, Spot, spots_of
+from .rows import CurveRow, Lane, Spot, spots_of
 from .shapes import Line, level
 
 REACH = 7.0
@@ -55,7 +55,7 @@ class Entries:
     def __init__(self) -> None:
         self._known: dict[Port | str, tuple[tuple[Animation | None, ...], tuple[Entry, ...]]] = {}
 
-    def of(self, row: Row, animation: Mapping[Port, Animation]) -> tuple[Entry, ...]:
+    def of(self, row: CurveRow, animation: Mapping[Port, Animation]) -> tuple[Entry, ...]:
         """The keys of a value, or of all values of a node."""
         name = row.port or row.node
         made_of = tuple(animation.get(port) for port in row.ports)
@@ -67,7 +67,12 @@ class Entries:
 
 
 def sheet_marks(
-    rows: Sequence[Row], animation: Mapping[Port, Animation], entries: Entries, plane: Plane, top: float, high: float
+    rows: Sequence[CurveRow],
+    animation: Mapping[Port, Animation],
+    entries: Entries,
+    plane: Plane,
+    top: float,
+    high: float,
 ) -> list[list[Mark]]:
     """What is seen of the keys of every row; the first row begins at `top`, each is `high` pixels high."""
     found: list[list[Mark]] = []

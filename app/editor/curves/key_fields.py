@@ -17,8 +17,8 @@ from ..theme.style import ui_scale
 from ..toolkit.places import place
 from ..toolkit.words import write
 from . import commands
-from .editing import Change, has_handle, moved, with_number
-from .frame import Frame
+from .editing import KeyEdit, has_handle, moved, with_number
+from .frame import CurvesFrame
 from .hits import SIDES
 from .rows import spots_of
 
@@ -34,12 +34,12 @@ class KeyFields:
     def __init__(self) -> None:
         self._fields = Fields(DARK)
 
-    def height(self, frame: Frame) -> float:
+    def height(self, frame: CurvesFrame) -> float:
         """How high they are."""
         rows = len(self._shown(frame))
         return rows * self._line(frame) + 10.0 * frame.scale if rows else 0.0
 
-    def draw(self, frame: Frame, top: float) -> None:
+    def draw(self, frame: CurvesFrame, top: float) -> None:
         """Draw them; what was changed goes into the graph."""
         context, fields = frame.context, self._fields
         fields.palette, fields.places = context.palette, context.places
@@ -68,15 +68,15 @@ class KeyFields:
             context.log.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
         context.interface.dragging |= fields.dragging
 
-    def _line(self, frame: Frame) -> float:
+    def _line(self, frame: CurvesFrame) -> float:
         return imgui.get_frame_height() + 3.0 * frame.scale
 
-    def _shown(self, frame: Frame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+    def _shown(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
         """As many lines as leave room for the names."""
         room = (frame.list[3] - frame.list[1]) * _SHARE - 10.0 * frame.scale
         return self._rows(frame)[: max(int(room / self._line(frame)), 0)]
 
-    def _rows(self, frame: Frame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+    def _rows(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
         """Name, label, numbers and declaration of every line."""
         found = _found(frame)
         if found is None:
@@ -108,7 +108,7 @@ class KeyFields:
                 ]
         return rows
 
-    def _apply(self, frame: Frame, name: str, edit: Edit) -> None:
+    def _apply(self, frame: CurvesFrame, name: str, edit: Edit) -> None:
         found = _found(frame)
         if found is None or not isinstance(edit.value, tuple):
             return
@@ -121,18 +121,18 @@ class KeyFields:
             made = keys
             for channel, number in enumerate(numbers):
                 made = with_number(made, at, channel, number)
-            change = Change({port: made}, state.spots)
+            change = KeyEdit({port: made}, state.spots)
         else:
             across = min(numbers[0], 0.0) if name == "left" else max(numbers[0], 0.0)
             handle = (across, *numbers[1:])
             made = keys.with_handles(at, **{name: handle})
             state.free.add((port, at))
-            change = Change({port: made}, state.spots)
+            change = KeyEdit({port: made}, state.spots)
         commands.put(context, change.made, f"Set {name} of a key", edit.merge)
         state.spots = change.spots
 
 
-def _found(frame: Frame) -> tuple[Port, Keys, float] | None:
+def _found(frame: CurvesFrame) -> tuple[Port, Keys, float] | None:
     single = frame.state.single
     keys = frame.graph.animation.get(single[0]) if single else None
     if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:

@@ -9,9 +9,9 @@ from imgui_bundle import imgui
 
 from ...graph import Keys
 from . import commands
-from .editing import Change, aligned, extent
-from .frame import Frame, holds
-from .gestures import Bend, Box, Gesture, Move, Pan, Scale, Seek
+from .editing import KeyEdit, aligned, extent
+from .frame import CurvesFrame, holds
+from .gestures import Bend, Gesture, KeyBox, KeyMove, PlotPan, Scale, Seek
 from .hits import REACH, Mark, Tip, boxed, nearest
 from .paint import grips
 from .rows import Lane, Spot, limits
@@ -29,7 +29,7 @@ _LINE = 4.0
 Part = Literal["", "key", "tip", "left", "right", "bar", "now", "ruler", "curve", "open"]
 
 
-class Mouse:
+class CurvesMouse:
     """Which gesture is going on, and what is under the pointer."""
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Mouse:
         self._count = 0
         self._pressed: tuple[float, float] = (0.0, 0.0)
 
-    def update(self, frame: Frame) -> None:
+    def update(self, frame: CurvesFrame) -> None:
         """Go on with the gesture, or begin one."""
         io = imgui.get_io()
         self.menu = False
@@ -60,7 +60,7 @@ class Mouse:
 
     # --- what is there -----------------------------------------------------------------------------------------------
 
-    def _find(self, frame: Frame) -> None:
+    def _find(self, frame: CurvesFrame) -> None:
         x, y = frame.at
         reach = REACH * frame.scale
         if holds(frame.ruler, frame.at):
@@ -81,7 +81,7 @@ class Mouse:
 
     def _cursor(self) -> None:
         gesture = self.gesture
-        if isinstance(gesture, Pan):
+        if isinstance(gesture, PlotPan):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
         elif isinstance(gesture, Scale) or self.part in ("left", "right", "now") or isinstance(gesture, Seek):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
@@ -90,11 +90,11 @@ class Mouse:
 
     # --- beginning ---------------------------------------------------------------------------------------------------
 
-    def _begin(self, frame: Frame, io: imgui.IO) -> None:
+    def _begin(self, frame: CurvesFrame, io: imgui.IO) -> None:
         state = frame.state
         self._pressed = frame.at
         if imgui.is_mouse_clicked(MIDDLE):
-            self.gesture = Pan(frame.at, state.view, state.scroll)
+            self.gesture = PlotPan(frame.at, state.view, state.scroll)
         elif imgui.is_mouse_clicked(RIGHT):
             if self.mark and state.spots.isdisjoint(self.mark.spots):
                 state.choose(self.mark.spots)
@@ -104,7 +104,7 @@ class Mouse:
         elif imgui.is_mouse_clicked(LEFT):
             self._press(frame, io)
 
-    def _press(self, frame: Frame, io: imgui.IO) -> None:
+    def _press(self, frame: CurvesFrame, io: imgui.IO) -> None:
         state = frame.state
         match self.part:
             case "ruler" | "now":
@@ -130,9 +130,9 @@ class Mouse:
                     state.choose(lane, "toggle" if io.key_ctrl else "add" if io.key_shift else "replace")
             case _:
                 how = "add" if io.key_shift else "toggle" if io.key_ctrl else "replace"
-                self.gesture = Box(frame.where(), how)
+                self.gesture = KeyBox(frame.where(), how)
 
-    def _take_key(self, frame: Frame, io: imgui.IO, mark: Mark) -> None:
+    def _take_key(self, frame: CurvesFrame, io: imgui.IO, mark: Mark) -> None:
         state = frame.state
         clicked: frozenset[Spot] | None = None
         if mark.spots <= state.spots and not io.key_shift:
@@ -145,12 +145,12 @@ class Mouse:
         else:
             self._move(frame, grabbed, clicked)
 
-    def _move(self, frame: Frame, grabbed: float, clicked: frozenset[Spot] | None) -> None:
-        self.gesture = Move(
+    def _move(self, frame: CurvesFrame, grabbed: float, clicked: frozenset[Spot] | None) -> None:
+        self.gesture = KeyMove(
             frame.graph.animation, frame.state.spots, grabbed, frame.where(), self._token(), clicked=clicked
         )
 
-    def _scale(self, frame: Frame, grabbed: float) -> None:
+    def _scale(self, frame: CurvesFrame, grabbed: float) -> None:
         span = extent(frame.state.spots)
         if span and span[1] > span[0]:
             about = span[0] if abs(grabbed - span[0]) >= abs(grabbed - span[1]) else span[1]
@@ -158,7 +158,7 @@ class Mouse:
                 frame.graph.animation, frame.state.spots, about, grabbed, frame.where()[0], self._token()
             )
 
-    def _take_tip(self, frame: Frame, tip: Tip) -> None:
+    def _take_tip(self, frame: CurvesFrame, tip: Tip) -> None:
         keys = frame.graph.animation.get(tip.port)
         if not isinstance(keys, Keys):
             return
@@ -177,7 +177,7 @@ class Mouse:
             self._token(),
         )
 
-    def _insert(self, frame: Frame) -> None:
+    def _insert(self, frame: CurvesFrame) -> None:
         at = frame.where()[0]
         at = float(round(at)) if frame.state.snap else at
         row = frame.row_at(frame.at[1]) if frame.sheet else None
@@ -191,26 +191,26 @@ class Mouse:
 
     # --- going on ----------------------------------------------------------------------------------------------------
 
-    def _go_on(self, frame: Frame, io: imgui.IO) -> None:
+    def _go_on(self, frame: CurvesFrame, io: imgui.IO) -> None:
         context, state, gesture = frame.context, frame.state, self.gesture
         if imgui.is_key_pressed(imgui.Key.escape):
             self._cancel(frame)
             return
-        if not imgui.is_mouse_down(MIDDLE if isinstance(gesture, Pan) else LEFT):
+        if not imgui.is_mouse_down(MIDDLE if isinstance(gesture, PlotPan) else LEFT):
             self._end(frame, io)
             return
         at = frame.where()
         match gesture:
-            case Pan():
+            case PlotPan():
                 x, y = frame.at[0] - gesture.start[0], frame.at[1] - gesture.start[1]
                 up = 0.0 if frame.sheet else y / frame.plane.up
-                state.view = gesture.view.panned(-x / frame.plane.across, up)
+                state.view = gesture.view.pan(-x / frame.plane.across, up)
                 if frame.sheet:
                     state.scroll = gesture.scroll - y
             case Seek():
                 context.interface.dragging = True
                 context.session.seek(at[0])
-            case Move():
+            case KeyMove():
                 if not gesture.going and not self._far(frame):
                     return
                 self.gesture = gesture = replace(gesture, going=True)
@@ -232,11 +232,11 @@ class Mouse:
                 if io.key_alt:
                     state.free.add((gesture.port, gesture.frame))
                 made = gesture.change(at, gesture.both and not io.key_alt, flat=io.key_shift)
-                self._put(frame, Change({gesture.port: made}, state.spots), "Bend a curve", gesture.merge)
+                self._put(frame, KeyEdit({gesture.port: made}, state.spots), "Bend a curve", gesture.merge)
             case _:
                 pass
 
-    def _put(self, frame: Frame, change: Change, label: str, merge: str) -> None:
+    def _put(self, frame: CurvesFrame, change: KeyEdit, label: str, merge: str) -> None:
         context, state = frame.context, frame.state
         context.interface.dragging = True
 
@@ -246,18 +246,18 @@ class Mouse:
 
         context.log.attempt(act)
 
-    def _end(self, frame: Frame, io: imgui.IO) -> None:
+    def _end(self, frame: CurvesFrame, io: imgui.IO) -> None:
         gesture, self.gesture = self.gesture, None
         state = frame.state
         match gesture:
-            case Box():
+            case KeyBox():
                 rect = (*frame.back(gesture.start), *frame.at)
                 if self._far(frame):
                     found = boxed(frame.marks(), rect)
                     state.choose(found, gesture.how)  # type: ignore[arg-type]
                 elif gesture.how == "replace":
                     state.spots = frozenset()
-            case Move():
+            case KeyMove():
                 if not gesture.going and gesture.clicked is not None:
                     state.choose(gesture.clicked)
                 frame.context.session.seal()
@@ -266,25 +266,25 @@ class Mouse:
             case _:
                 pass
 
-    def _cancel(self, frame: Frame) -> None:
+    def _cancel(self, frame: CurvesFrame) -> None:
         gesture, self.gesture = self.gesture, None
-        if isinstance(gesture, Move | Scale | Bend):
+        if isinstance(gesture, KeyMove | Scale | Bend):
             frame.context.session.abandon(gesture.merge)
-        if isinstance(gesture, Move | Scale):
+        if isinstance(gesture, KeyMove | Scale):
             frame.state.spots = gesture.spots
 
-    def _far(self, frame: Frame) -> bool:
+    def _far(self, frame: CurvesFrame) -> bool:
         return max(abs(a - b) for a, b in zip(self._pressed, frame.at, strict=True)) > CLICK * frame.scale
 
     # --- the wheel ---------------------------------------------------------------------------------------------------
 
-    def _wheel(self, frame: Frame, io: imgui.IO) -> None:
+    def _wheel(self, frame: CurvesFrame, io: imgui.IO) -> None:
         """Zoom at the pointer: both axes in curves, Ctrl time alone, Shift values alone; in the sheet Shift scrolls."""
         state, turned, across = frame.state, io.mouse_wheel, io.mouse_wheel_h
         if io.key_shift and not turned:
             turned, across = across, 0.0  # some systems turn Shift and wheel sideways
         if across:
-            state.view = state.view.panned(-across * _NOTCH * frame.scale / frame.plane.across, 0.0)
+            state.view = state.view.pan(-across * _NOTCH * frame.scale / frame.plane.across, 0.0)
         if not turned:
             return
         factor = 1.15**turned
@@ -300,9 +300,9 @@ class Mouse:
             )
 
 
-def hot_of(mouse: Mouse) -> Mark | Tip | None:
+def hot_of(mouse: CurvesMouse) -> Mark | Tip | None:
     """What is lit under the pointer."""
     return mouse.tip or mouse.mark
 
 
-__all__ = ["Mouse", "hot_of"]
+__all__ = ["CurvesMouse", "hot_of"]

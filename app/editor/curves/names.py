@@ -11,11 +11,11 @@ from imgui_bundle import imgui
 from ...errors import HalationError
 from ...graph import Keys, Port
 from ..theme.style import mix, u32
-from ..toolkit.words import fitted
-from .frame import Frame, color_of, small
+from ..toolkit.words import cut_end
+from .frame import CurvesFrame, color_of, small
 from .hits import Entries
 from .paint import paint_key
-from .rows import Row
+from .rows import CurveRow
 from .shapes import number
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Names:
         self._values: dict[Port, Plain | None] = {}
         self._of: tuple[object, ...] = ()
 
-    def draw(self, frame: Frame, entries: Entries, bottom: float) -> bool:
+    def draw(self, frame: CurvesFrame, entries: Entries, bottom: float) -> bool:
         """Draw them down to `bottom`; True if the menu of a value is asked for."""
         draw, palette = imgui.get_window_draw_list(), frame.context.palette
         left, top, right, _ = frame.list
@@ -60,7 +60,7 @@ class Names:
 
     # --- the mouse ---------------------------------------------------------------------------------------------------
 
-    def _click(self, frame: Frame, row: Row, entries: Entries) -> None:
+    def _click(self, frame: CurvesFrame, row: CurveRow, entries: Entries) -> None:
         state, context, scale = frame.state, frame.context, frame.scale
         left, _, right, _ = frame.list
         x = frame.at[0]
@@ -88,18 +88,18 @@ class Names:
         else:
             state.shown, state.anchor = (frozenset() if state.shown == {port} else frozenset({port})), port
 
-    def _letter_at(self, frame: Frame, row: Row, x: float) -> int | None:
+    def _letter_at(self, frame: CurvesFrame, row: CurveRow, x: float) -> int | None:
         if frame.sheet or not 1 < len(row.channels) <= 4:
             return None
         place = int((x - self._letters(frame, row)) // (_LETTER * frame.scale))
         return place if 0 <= place < len(row.channels) else None
 
-    def _letters(self, frame: Frame, row: Row) -> float:
+    def _letters(self, frame: CurvesFrame, row: CurveRow) -> float:
         return frame.list[2] - (_KEY + _LETTER * len(row.channels) + 4.0) * frame.scale
 
     # --- painting ----------------------------------------------------------------------------------------------------
 
-    def _row(self, frame: Frame, row: Row, y: float, place: int, hot: bool) -> None:
+    def _row(self, frame: CurvesFrame, row: CurveRow, y: float, place: int, hot: bool) -> None:
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, _, right, _ = frame.list
         middle = y + frame.high * 0.5
@@ -125,17 +125,17 @@ class Names:
         self._label(frame, left + 28.0 * scale, end - 6.0 * scale, middle, row.label)
         self._diamond(frame, row, middle, hot)
 
-    def _label(self, frame: Frame, left: float, right: float, y: float, text: str, bold: bool = False) -> None:
+    def _label(self, frame: CurvesFrame, left: float, right: float, y: float, text: str, bold: bool = False) -> None:
         fonts, palette = frame.context.fonts, frame.context.palette
         size = 14.0 * frame.scale
         imgui.push_font(fonts.bold if bold and fonts else None, size / imgui.get_style().font_scale_main)
-        text = fitted(text, max(right - left, 0.0))
+        text = cut_end(text, max(right - left, 0.0))
         height = imgui.get_font_size()
         color = palette.text if bold else mix(palette.text, palette.dim, 0.3)
         imgui.get_window_draw_list().add_text((round(left), round(y - height * 0.52)), u32(color), text)
         imgui.pop_font()
 
-    def _channels(self, frame: Frame, row: Row, y: float) -> float:
+    def _channels(self, frame: CurvesFrame, row: CurveRow, y: float) -> float:
         """The letters of the channels in their colors; a hidden one is grey. Returns where they begin."""
         palette, start, scale = frame.context.palette, self._letters(frame, row), frame.scale
         assert row.port
@@ -152,7 +152,7 @@ class Names:
             )
         return start
 
-    def _value(self, frame: Frame, row: Row, right: float, y: float) -> float:
+    def _value(self, frame: CurvesFrame, row: CurveRow, right: float, y: float) -> float:
         """What the value is now, right-aligned. Returns its width."""
         assert row.port
         session = frame.context.session
@@ -175,7 +175,7 @@ class Names:
             text = f"{value:.5g}" if isinstance(value, int | float) else str(value)
         return small(frame, right, y, text, frame.context.palette.dim, align=1.0) + 4.0 * frame.scale if text else 0.0
 
-    def _diamond(self, frame: Frame, row: Row, y: float, hot: bool) -> None:
+    def _diamond(self, frame: CurvesFrame, row: CurveRow, y: float, hot: bool) -> None:
         """Filled where there is a key at the current frame; a click makes or removes it."""
         assert row.port
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
@@ -192,10 +192,10 @@ class Names:
             color = u32(palette.accent if lit else palette.dim, 1.0 if lit else 0.7)
             draw.add_ngon((x, y), 4.8 * scale, color, 4, 1.2 * scale)
 
-    def _expressed(self, row: Row) -> bool:
+    def _expressed(self, row: CurveRow) -> bool:
         return not isinstance(row.animation, Keys)
 
-    def _order(self, frame: Frame, place: int) -> int:
+    def _order(self, frame: CurvesFrame, place: int) -> int:
         return sum(1 for row in frame.rows[:place] if row.port)
 
 

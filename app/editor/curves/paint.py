@@ -9,7 +9,7 @@ from ..theme.palette import Palette
 from ..theme.style import mix, u32
 from ..toolkit.plane import Rect, ticks
 from .editing import extent
-from .frame import Frame, small
+from .frame import CurvesFrame, small
 
 KEY = 5.0
 """Half the width of a key, at UI scale 1."""
@@ -34,7 +34,7 @@ def ground(palette: Palette) -> int:
     return u32(palette.canvas)
 
 
-def paint_time(frame: Frame) -> None:
+def paint_time(frame: CurvesFrame) -> None:
     """Behind everything: the frames of the graph lighter than what lies outside, and lines of the ruler."""
     draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
     left, top, right, bottom = plane.rect
@@ -50,7 +50,7 @@ def paint_time(frame: Frame) -> None:
         draw.add_line((x, top), (x, bottom), strong if tick.label else faint)
 
 
-def paint_ruler(frame: Frame) -> None:
+def paint_ruler(frame: CurvesFrame) -> None:
     """Frames above, seconds below."""
     draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
     session = frame.context.session
@@ -81,7 +81,7 @@ def paint_ruler(frame: Frame) -> None:
     draw.pop_clip_rect()
 
 
-def paint_now(frame: Frame, held: bool) -> None:
+def paint_now(frame: CurvesFrame, held: bool) -> None:
     """The current frame, over everything."""
     draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
     left, top, right, bottom = frame.ruler
@@ -100,7 +100,7 @@ def paint_now(frame: Frame, held: bool) -> None:
     draw.pop_clip_rect()
 
 
-def grips(frame: Frame) -> tuple[float, float, float] | None:
+def grips(frame: CurvesFrame) -> tuple[float, float, float] | None:
     """Where the bar of the chosen keys begins and ends, and how wide its grips are; None without two frames."""
     span = extent(frame.state.spots)
     if span is None or span[1] <= span[0]:
@@ -109,7 +109,7 @@ def grips(frame: Frame) -> tuple[float, float, float] | None:
     return frame.plane.x(span[0]) - pad, frame.plane.x(span[1]) + pad, 8.0 * frame.scale
 
 
-def paint_bar(frame: Frame, hot: str) -> None:
+def paint_bar(frame: CurvesFrame, hot: str) -> None:
     """The bar above the keys: it spans what is chosen, its ends draw that out."""
     draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
     left, top, right, bottom = frame.bar
@@ -128,7 +128,7 @@ def paint_bar(frame: Frame, hot: str) -> None:
     draw.pop_clip_rect()
 
 
-def paint_box(frame: Frame, rect: Rect) -> None:
+def paint_box(frame: CurvesFrame, rect: Rect) -> None:
     """What is being drawn around keys."""
     draw, palette = imgui.get_window_draw_list(), frame.context.palette
     low, high = (min(rect[0], rect[2]), min(rect[1], rect[3])), (max(rect[0], rect[2]), max(rect[1], rect[3]))

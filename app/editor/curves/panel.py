@@ -11,17 +11,17 @@ from ...graph import Keys
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
 from ..toolkit.plane import Plane, View
-from ..toolkit.words import nothing_here
+from ..toolkit.words import draw_empty_panel
 from . import commands
-from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame, small
-from .gestures import Box, Scale, Seek
+from .frame import BAR, LIST, ROW, RULER, TOOLBAR, CurvesFrame, small
+from .gestures import KeyBox, Scale, Seek
 from .hits import Entries, Mark, nearest, sheet_marks, tips
 from .key_fields import KeyFields
-from .mouse import Mouse, hot_of
+from .mouse import CurvesMouse, hot_of
 from .names import Names, value_menu
 from .paint import paint_bar, paint_box, paint_now, paint_ruler, paint_time
 from .plot import Plot
-from .rows import Row
+from .rows import CurveRow
 from .sheet import SheetPainter
 from .toolbar import draw_toolbar, keys_menu, offered
 
@@ -36,14 +36,14 @@ _BUTTONS = (
 )
 
 
-class Animation:
+class AnimationPanel:
     """A dope sheet and a curve editor over one time line."""
 
     title = "Animation"
 
     def __init__(self, context: CurvesContext) -> None:
         self._context = context
-        self._mouse = Mouse()
+        self._mouse = CurvesMouse()
         self._entries = Entries()
         self._sheet = SheetPainter()
         self._plot = Plot()
@@ -82,7 +82,7 @@ class Animation:
 
     # --- where things are --------------------------------------------------------------------------------------------
 
-    def _frame(self, area: tuple[float, float, float, float]) -> Frame:
+    def _frame(self, area: tuple[float, float, float, float]) -> CurvesFrame:
         state, session, scale = self._context.curves, self._context.session, ui_scale()
         left, top, right, bottom = map(round, area)
         rows = state.rows(session.graph, session.selection)
@@ -97,7 +97,7 @@ class Animation:
         room = max(len(rows) * round(ROW * scale) - (bottom - bar), 0.0)
         state.scroll = min(max(state.scroll, 0.0), room)
         mouse = imgui.get_mouse_pos()
-        return Frame(
+        return CurvesFrame(
             self._context,
             rows,
             Plane(state.view, (middle, bar, right, bottom)),
@@ -121,7 +121,7 @@ class Animation:
 
     # --- drawing -----------------------------------------------------------------------------------------------------
 
-    def _draw(self, frame: Frame) -> None:
+    def _draw(self, frame: CurvesFrame) -> None:
         context, state, rect = frame.context, frame.state, frame.plane.rect
         left, top, right, bottom = frame.ruler[0], frame.ruler[1], rect[2], rect[3]
         imgui.set_cursor_screen_pos((left, top))
@@ -147,7 +147,7 @@ class Animation:
             self._plot.grid(frame)
             self._plot.paint(frame, shown, hot, self._mouse.lane)
             self._plot.labels(frame)
-        if isinstance(self._mouse.gesture, Box):
+        if isinstance(self._mouse.gesture, KeyBox):
             paint_box(frame, (*frame.back(self._mouse.gesture.start), *frame.at))
         draw.pop_clip_rect()
         paint_ruler(frame)
@@ -158,7 +158,7 @@ class Animation:
         self._menus(frame)
         self._record(frame)
 
-    def _see(self, frame: Frame, shown: tuple[Row, ...]) -> None:
+    def _see(self, frame: CurvesFrame, shown: tuple[CurveRow, ...]) -> None:
         """Find what is where."""
         if frame.sheet:
             self._grouped = sheet_marks(
@@ -173,7 +173,7 @@ class Animation:
         spots = [spot for spot in frame.state.spots if spot[0] in ports]
         frame.tips = tips(frame.graph.animation, spots, frame.state.hidden, frame.plane)
 
-    def _left(self, frame: Frame) -> None:
+    def _left(self, frame: CurvesFrame) -> None:
         """The names, and the numbers of the key that is chosen."""
         draw, palette = imgui.get_window_draw_list(), frame.context.palette
         left, _, right, bottom = frame.list
@@ -189,7 +189,7 @@ class Animation:
             draw.add_line((left, end), (right, end), u32(palette.border))
         self._fields.draw(frame, end)
 
-    def _menus(self, frame: Frame) -> None:
+    def _menus(self, frame: CurvesFrame) -> None:
         if self._mouse.menu:
             imgui.open_popup("menu of keys")
         if imgui.begin_popup("menu of keys"):
@@ -200,7 +200,7 @@ class Animation:
                 value_menu(frame.context, self._names.menu_for)
             imgui.end_popup()
 
-    def _record(self, frame: Frame) -> None:
+    def _record(self, frame: CurvesFrame) -> None:
         """Where keys and handles are."""
         places, size = frame.context.places, 4.0 * frame.scale
         for mark in frame.marks() if frame.count <= 200 else ():
@@ -218,7 +218,7 @@ class Animation:
             )
 
     def _nothing(self) -> None:
-        nothing_here(
+        draw_empty_panel(
             self._context,
             icons.ICON_FA_BEZIER_CURVE,
             "Nothing moves yet",
@@ -238,7 +238,7 @@ class Animation:
         )
 
 
-def _count(frame: Frame) -> str:
+def _count(frame: CurvesFrame) -> str:
     """How much there is, or is chosen."""
     if frame.state.spots:
         return f"{commands.spoken(frame.state.spots).replace('a key', '1 key')} selected"

@@ -12,10 +12,10 @@ from ...graph import Interpolation, Port
 from ..theme.style import mix, u32
 from ..toolkit.plane import Plane, View, ticks
 from .bundle import Bundle, Bundles
-from .frame import Frame, color_of, small
+from .frame import CurvesFrame, color_of, small
 from .hits import Mark, Tip
 from .paint import KEY, paint_key
-from .rows import Lane, Row
+from .rows import CurveRow, Lane
 from .shapes import Pieces, Samples, dashes
 
 Drawn = list[imgui.ImVec2Like]
@@ -71,7 +71,7 @@ class Plot:
         self._chosen: list[bool] = []
         self._inks: dict[Lane, tuple[int, int]] = {}
 
-    def see(self, frame: Frame, rows: tuple[Row, ...]) -> None:
+    def see(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> None:
         """Find curves and keys on the screen; nothing is made anew while nothing has changed."""
         hidden = frozenset(frame.state.hidden)
         if not _same(self._made_of[:1], (rows,)) or self._made_of[1:] != (hidden,):
@@ -91,7 +91,7 @@ class Plot:
         frame.marks, frame.count, frame.lane_at = seen.marks, len(seen.shown), seen.lane_at
         frame.near = lambda x, y, reach: seen.near(x, y, reach, spots)
 
-    def _project(self, frame: Frame, rows: tuple[Row, ...]) -> None:
+    def _project(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> None:
         """Put everything on the screen."""
         bundle = self._bundle
         seen = self._seen = bundle.seen(frame.plane)
@@ -111,7 +111,7 @@ class Plot:
             for dash in self._dashed(frame, row.port, channel)
         ]
 
-    def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:
+    def _dashed(self, frame: CurvesFrame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
         found: list[tuple[Lane, Drawn]] = []
         lane = port, channel
@@ -125,7 +125,7 @@ class Plot:
 
     # --- painting ----------------------------------------------------------------------------------------------------
 
-    def paint(self, frame: Frame, rows: tuple[Row, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
+    def paint(self, frame: CurvesFrame, rows: tuple[CurveRow, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
         """Draw the grid of values, the curves, and on top of them keys and handles."""
         draw, scale = imgui.get_window_draw_list(), frame.scale
         inks = self._colors(frame, rows)
@@ -154,7 +154,7 @@ class Plot:
         if hot:
             draw.add_circle((hot.x, hot.y), size * 1.9, u32(palette.accent, 0.9), 20, 1.5 * scale)
 
-    def _colors(self, frame: Frame, rows: tuple[Row, ...]) -> dict[Lane, tuple[int, int]]:
+    def _colors(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> dict[Lane, tuple[int, int]]:
         """What curves are drawn with inside and outside of their keys."""
         of = frame.rows, rows, frame.context.palette
         if not _same(self._inks_of, of):
@@ -167,7 +167,7 @@ class Plot:
                         self._inks[row.port, channel] = u32(color), u32(color, 0.32)
         return self._inks
 
-    def grid(self, frame: Frame) -> None:
+    def grid(self, frame: CurvesFrame) -> None:
         """Lines of values."""
         draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
         left, _, right, _ = plane.rect
@@ -177,7 +177,7 @@ class Plot:
             y = round(plane.y(tick.at)) + 0.5
             draw.add_line((left, y), (right, y), zero if abs(tick.at) < 1e-12 else strong if tick.label else faint)
 
-    def labels(self, frame: Frame) -> None:
+    def labels(self, frame: CurvesFrame) -> None:
         """The numbers of the lines of values, over the curves."""
         draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
         left, top, _, bottom = plane.rect
@@ -192,7 +192,7 @@ class Plot:
             )
             small(frame, left + 6.0 * scale, y, tick.label, palette.dim)
 
-    def _tips(self, frame: Frame) -> None:
+    def _tips(self, frame: CurvesFrame) -> None:
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         line, fill = u32(palette.text, 0.55), u32(palette.text)
         for tip in frame.tips:

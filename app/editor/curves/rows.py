@@ -20,7 +20,7 @@ COLORS, VECTORS = "rgba", "xyzw"
 
 
 @dataclass(frozen=True)
-class Row:
+class CurveRow:
     """A value of a node; one without a port is the node, which sums up the rows below it."""
 
     node: str
@@ -40,23 +40,23 @@ class Row:
 
 def rows(
     graph: Graph, selection: Collection[str] = (), only: bool = False, folded: Collection[str] = ()
-) -> tuple[Row, ...]:
+) -> tuple[CurveRow, ...]:
     """A row for every node and every value of it that is animated: selected nodes first, or `only` those."""
     by_node: dict[str, list[Port]] = {}
     for port in graph.animation:
         if port.node in graph.nodes:
             by_node.setdefault(port.node, []).append(port)
     order = {id: place for place, id in enumerate(graph.nodes)}
-    found: list[Row] = []
+    found: list[CurveRow] = []
     for node in sorted(by_node, key=lambda id: (id not in selection, order[id])):
         if only and node not in selection:
             continue
         names = list(_names(graph, node))
         ports = tuple(sorted(by_node[node], key=lambda port: _place(names, port.socket)))
-        found.append(Row(node, None, node, None, ports))
+        found.append(CurveRow(node, None, node, None, ports))
         if node not in folded:
             found.extend(
-                Row(node, port, value_label(graph, port), graph.animation[port], (port,), channels(graph, port))
+                CurveRow(node, port, value_label(graph, port), graph.animation[port], (port,), channels(graph, port))
                 for port in ports
             )
     return tuple(found)

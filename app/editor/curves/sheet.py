@@ -6,11 +6,11 @@ from imgui_bundle import imgui
 
 from ...graph import Expression, Keys, Port
 from ..theme.style import mix, u32
-from ..toolkit.words import fitted
-from .frame import SMALL, Frame, small
+from ..toolkit.words import cut_end
+from .frame import SMALL, CurvesFrame, small
 from .hits import Mark
 from .paint import KEY, paint_key
-from .rows import Row
+from .rows import CurveRow
 
 
 class SheetPainter:
@@ -19,7 +19,7 @@ class SheetPainter:
     def __init__(self) -> None:
         self._held: dict[Port, tuple[Keys, tuple[tuple[float, float], ...]]] = {}
 
-    def paint(self, frame: Frame, marks: list[list[Mark]], hot: Mark | None) -> None:
+    def paint(self, frame: CurvesFrame, marks: list[list[Mark]], hot: Mark | None) -> None:
         """Draw all rows that are seen."""
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, top, right, bottom = frame.plane.rect
@@ -52,7 +52,7 @@ class SheetPainter:
         if hot:
             draw.add_circle((hot.x, hot.y), size * 1.75, u32(palette.accent, 0.9), 20, 1.5 * scale)
 
-    def _spans(self, frame: Frame, row: Row, keys: Keys, y: float) -> None:
+    def _spans(self, frame: CurvesFrame, row: CurveRow, keys: Keys, y: float) -> None:
         """From the first key to the last; thicker where the value stays the same."""
         assert row.port
         if len(keys.keys) < 2:
@@ -66,7 +66,7 @@ class SheetPainter:
         for start, end in known[1]:
             draw.add_rect_filled((plane.x(start), y - high), (plane.x(end), y + high), thick)
 
-    def _expression(self, frame: Frame, expression: Expression, y: float) -> None:
+    def _expression(self, frame: CurvesFrame, expression: Expression, y: float) -> None:
         """A bar with the text, cut to fit."""
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, _, right, _ = frame.plane.rect
@@ -75,7 +75,7 @@ class SheetPainter:
         draw.add_rect_filled(low, high, u32(ink, 0.14))
         draw.add_rect(low, high, u32(ink, 0.45))
         room = (right - left - 16.0 * scale) * imgui.get_font_size() / (SMALL * scale)
-        text = fitted(f"= {expression.text}", room)
+        text = cut_end(f"= {expression.text}", room)
         small(frame, left + 8.0 * scale, y + frame.high * 0.5, text, mix(ink, palette.text, 0.45))
 
 

@@ -7,7 +7,7 @@ from typing import Literal
 
 from ...graph import Graph, Keys, Port
 from ..toolkit.plane import View
-from .rows import Row, Spot, rows
+from .rows import CurveRow, Spot, rows
 
 Mode = Literal["sheet", "curves"]
 Fit = Literal["", "all", "chosen"]
@@ -40,11 +40,11 @@ class CurvesState:
     """Keys whose handles do not turn together."""
     hovered: bool = False
     """True while the mouse is over the panel."""
-    _rows: tuple[tuple[object, ...], tuple[Row, ...]] = ((), ())
-    _curves: tuple[tuple[Row, ...] | None, frozenset[Port] | None, tuple[Row, ...]] = (None, None, ())
+    _rows: tuple[tuple[object, ...], tuple[CurveRow, ...]] = ((), ())
+    _curves: tuple[tuple[CurveRow, ...] | None, frozenset[Port] | None, tuple[CurveRow, ...]] = (None, None, ())
     _kept: tuple[object, ...] = ()
 
-    def rows(self, graph: Graph, selection: frozenset[str]) -> tuple[Row, ...]:
+    def rows(self, graph: Graph, selection: frozenset[str]) -> tuple[CurveRow, ...]:
         """The rows, made again only when something has changed."""
         asked = (self.only_selected, frozenset(self.folded), selection)
         of = (graph.animation, graph.nodes, asked)
@@ -53,7 +53,7 @@ class CurvesState:
             self._rows = of, rows(graph, selection, self.only_selected, self.folded)
         return self._rows[1]
 
-    def curves(self, all: tuple[Row, ...]) -> tuple[Row, ...]:
+    def curves(self, all: tuple[CurveRow, ...]) -> tuple[CurveRow, ...]:
         """The rows whose curves are drawn; values of folded nodes are not."""
         known, shown, found = self._curves
         if known is not all or shown is not self.shown:

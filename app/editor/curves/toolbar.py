@@ -13,7 +13,7 @@ from imgui_bundle import imgui
 from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
 from ..theme.style import u32, ui_scale, vec4
-from ..toolkit.buttons import dropdown, entry, quiet, room_for, tip_of, tool
+from ..toolkit.buttons import dropdown, entry, quiet_button, tip_of, tool, width_of_buttons
 from ..toolkit.words import tip
 from . import commands
 from .paint import paint_key
@@ -43,7 +43,7 @@ _MOUSE = (
 
 
 @dataclass(frozen=True)
-class _Tool:
+class _CurveTool:
     width: float
     draw: Callable[[], object]
     apart: bool = False
@@ -53,7 +53,7 @@ def draw_toolbar(context: CurvesContext, room: float) -> None:
     """Draw the tools in one row; what does not fit is in the context menu, behind dots."""
     scale = ui_scale()
     tools = _tools(context)
-    more = room_for(icons.ICON_FA_ELLIPSIS) + _APART * scale
+    more = width_of_buttons(icons.ICON_FA_ELLIPSIS) + _APART * scale
     first = True
     for place, one in enumerate(tools):
         gap = 0.0 if first else (_APART if one.apart else _GAP) * scale
@@ -69,30 +69,32 @@ def draw_toolbar(context: CurvesContext, room: float) -> None:
         one.draw()
 
 
-def _tools(context: CurvesContext) -> list[_Tool]:
+def _tools(context: CurvesContext) -> list[_CurveTool]:
     state = context.curves
     some, square = commands.some(context), imgui.get_frame_height()
 
-    def mode(which: Mode, icon: str, label: str) -> _Tool:
+    def mode(which: Mode, icon: str, label: str) -> _CurveTool:
         def draw() -> None:
-            if quiet(context, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
+            if quiet_button(context, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
                 state.mode = which
 
-        return _Tool(square, draw)
+        return _CurveTool(square, draw)
 
-    def menu(icon: str, name: str, doc: str, actions: str, apart: bool = False) -> _Tool:
-        return _Tool(
-            room_for(icon),
+    def menu(icon: str, name: str, doc: str, actions: str, apart: bool = False) -> _CurveTool:
+        return _CurveTool(
+            width_of_buttons(icon),
             lambda: dropdown(context, icon, f"button keys {name}", doc, lambda: draw_entries(context, actions)),
             apart,
         )
 
     rows = "Selected nodes" if state.only_selected else "All values"
-    width = max(map(room_for, (f"{icons.ICON_FA_FILTER}  Selected nodes", f"{icons.ICON_FA_FILTER}  All values")))
+    width = max(
+        map(width_of_buttons, (f"{icons.ICON_FA_FILTER}  Selected nodes", f"{icons.ICON_FA_FILTER}  All values"))
+    )
     found = [
         mode("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
         mode("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
-        _Tool(
+        _CurveTool(
             width,
             lambda: dropdown(
                 context,
@@ -105,7 +107,7 @@ def _tools(context: CurvesContext) -> list[_Tool]:
             ),
             True,
         ),
-        _Tool(
+        _CurveTool(
             square,
             lambda: dropdown(
                 context,
@@ -116,9 +118,9 @@ def _tools(context: CurvesContext) -> list[_Tool]:
             ),
         ),
     ]
-    found += [_Tool(square, lambda look=look: _shape(context, look, some), look == "constant") for look in LOOKS]
+    found += [_CurveTool(square, lambda look=look: _shape(context, look, some), look == "constant") for look in LOOKS]
     found += [
-        _Tool(square, lambda how=how: _ease(context, how), how == "keys.ease_in")
+        _CurveTool(square, lambda how=how: _ease(context, how), how == "keys.ease_in")
         for how in ("keys.ease_in", "keys.ease", "keys.ease_out")
     ]
     found += [
@@ -132,9 +134,9 @@ def _tools(context: CurvesContext) -> list[_Tool]:
         menu(
             f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key", "keys outside"
         ),
-        _Tool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
-        _Tool(square, lambda: tool(context, icons.ICON_FA_EXPAND, "keys.fit_all")),
-        _Tool(
+        _CurveTool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
+        _CurveTool(square, lambda: tool(context, icons.ICON_FA_EXPAND, "keys.fit_all")),
+        _CurveTool(
             square,
             lambda: dropdown(
                 context,
@@ -150,7 +152,7 @@ def _tools(context: CurvesContext) -> list[_Tool]:
 
 def _shape(context: CurvesContext, look: Interpolation, some: bool) -> None:
     action = context.actions[f"keys.{look}"]
-    if quiet(context, " ", f"button keys.{look}", tip_of(context, action), enabled=some):
+    if quiet_button(context, " ", f"button keys.{look}", tip_of(context, action), enabled=some):
         context.actions.run(action.id)
     left, top, right, bottom = context.places[f"button keys.{look}"]
     ink = u32(context.palette.text, 1.0 if some else 0.4)
@@ -161,7 +163,7 @@ def _ease(context: CurvesContext, id: str) -> None:
     """A button with a small curve on it."""
     action = context.actions[id]
     enabled = context.actions.is_enabled(action)
-    if quiet(context, " ", f"button {id}", tip_of(context, action), enabled=enabled):
+    if quiet_button(context, " ", f"button {id}", tip_of(context, action), enabled=enabled):
         context.actions.run(id)
     left, top, right, bottom = context.places[f"button {id}"]
     pad = (right - left) * 0.26

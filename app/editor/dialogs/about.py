@@ -10,9 +10,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ..theme.style import ui_scale
-from ..toolkit.buttons import close_button, quiet
-from ..toolkit.dialogs import backdrop, dialog, escaped
-from ..toolkit.words import dim, font, wrapped
+from ..toolkit.buttons import close_button, quiet_button
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.words import draw_dim, draw_wrapped, font
 
 if TYPE_CHECKING:
     from .context import DialogContext
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
 
 
-class About:
+class AboutDialog:
     """Version and what it runs on, ready to be copied into a report."""
 
     def __init__(self, context: DialogContext) -> None:
@@ -34,7 +34,7 @@ class About:
         with dialog(self._context, "About", (440, 0)):
             with font(self._context, "bold", 26.0):
                 imgui.text_unformatted("Halation")
-            wrapped(self._context.palette.dim, metadata.metadata("halation")["Summary"])
+            draw_wrapped(self._context.palette.dim, metadata.metadata("halation")["Summary"])
             imgui.dummy((0, 6 * ui_scale()))
             lines = _versions()
             if imgui.begin_table("versions", 2):
@@ -43,15 +43,15 @@ class About:
                 for name, version in lines:
                     imgui.table_next_row()
                     imgui.table_next_column()
-                    dim(self._context, name)
+                    draw_dim(self._context, name)
                     imgui.table_next_column()
                     imgui.text_wrapped(version)
                 imgui.end_table()
             imgui.dummy((0, 6 * ui_scale()))
-            if quiet(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
+            if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
                 self._context.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
-            close = close_button(self._context, "close about") or close or escaped()
+            close = close_button(self._context, "close about") or close or escape_pressed()
         if close:
             self._context.dialogs.open.discard("about")
 

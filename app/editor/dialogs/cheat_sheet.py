@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 
 from ..shared.action import Action
-from ..shared.shortcut_groups import MOUSE, columns, condensed, groups
+from ..shared.shortcut_groups import MOUSE, balance_columns, condense_rows, group_actions
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import close_button
-from ..toolkit.dialogs import backdrop, dialog, escaped
-from ..toolkit.keys import shown
-from ..toolkit.words import dim, font
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.keys import display_shortcut
+from ..toolkit.words import draw_dim, font
 
 if TYPE_CHECKING:
     from .context import DialogContext
@@ -39,18 +39,18 @@ class CheatSheet:
             with font(self._context, "bold", 20.0):
                 imgui.text_unformatted("Shortcuts")
             blocks = [
-                *((title, _lines(self._context, actions)) for title, actions in groups(self._context.actions)),
+                *((title, _lines(self._context, actions)) for title, actions in group_actions(self._context.actions)),
                 ("Mouse", MOUSE),
             ]
             room = imgui.get_content_region_avail().x
             count = max(int(room / (310 * ui_scale())), 1)
-            made = columns(tuple(len(lines) + 2 for _, lines in blocks), count)
+            made = balance_columns(tuple(len(lines) + 2 for _, lines in blocks), count)
             _sheet(self._context, blocks, made)
             if imgui.button("Change shortcuts"):
                 self._context.dialogs.open.add("preferences")
                 close = True
             imgui.same_line()
-            close = close_button(self._context, "close shortcuts") or close or escaped()
+            close = close_button(self._context, "close shortcuts") or close or escape_pressed()
             close = close or (imgui.is_key_pressed(imgui.Key.f1, False) and not imgui.is_window_appearing())
         if close:
             self._context.dialogs.open.discard("shortcuts")
@@ -72,8 +72,10 @@ def _sheet(context: DialogContext, blocks: Blocks, made: Sequence[Sequence[int]]
 
 
 def _lines(context: DialogContext, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
-    lines = ((shown(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
-    return condensed(lines)
+    lines = (
+        (display_shortcut(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions
+    )
+    return condense_rows(lines)
 
 
 def _block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
@@ -89,4 +91,4 @@ def _block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...
         imgui.text_unformatted(label)
         imgui.same_line()
         imgui.set_cursor_pos_x(left + (right - start.x) - imgui.calc_text_size(keys).x)
-        dim(context, keys)
+        draw_dim(context, keys)

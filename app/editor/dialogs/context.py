@@ -10,7 +10,7 @@ from ..toolkit.context import PanelContext
 if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard
+    from ..shared.protocols import SystemText
 
 
 @dataclass(frozen=True)
@@ -19,4 +19,4 @@ class DialogContext(PanelContext):
 
     dialogs: Dialogs
     actions: Actions
-    clipboard: Clipboard
+    clipboard: SystemText

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ..shared.dialogs import Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import main_button
-from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.places import record
 from ..toolkit.words import font
 
@@ -37,7 +37,7 @@ class QuestionDialog:
             imgui.text_wrapped(question.sentence)
             imgui.dummy((0, 8 * ui_scale()))
             chosen = _buttons(self._context, question)
-            if escaped():
+            if escape_pressed():
                 chosen = len(question.answers) - 1
             elif imgui.is_key_pressed(imgui.Key.enter, False) and not imgui.is_window_appearing():
                 chosen = 0

@@ -63,7 +63,7 @@ def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
     start: list[float | str] = []
     if relative := _RELATIVE.match(text):
         start, text = [old, relative[1] or relative[2]], text[relative.end() :]
-    reader = _Reader([*start, *_tokens(text, unit)])
+    reader = _ExpressionReader([*start, *_tokens(text, unit)])
     try:
         number = reader.sum()
     except _FAULTS as error:
@@ -102,7 +102,7 @@ def _factor(word: str, unit: Unit | None) -> float:
     return factor
 
 
-class _Reader:
+class _ExpressionReader:
     """Recursive descent over tokens; powers bind tighter than signs, and to the right, as in Python."""
 
     def __init__(self, tokens: list[float | str]) -> None:

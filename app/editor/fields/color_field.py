@@ -11,10 +11,10 @@ from imgui_bundle import imgui
 from ...errors import UsageError
 from ..theme.palette import RGB
 from ..theme.style import u32
-from ..toolkit.buttons import quiet
+from ..toolkit.buttons import quiet_button
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
-from ..toolkit.words import dim, write
+from ..toolkit.words import draw_dim, write
 from .colors import RGBA, brightened, dimmed, from_hexadecimal, hexadecimal, intensity, picked, swatch
 from .fields import Edit, Fields
 from .number_field import NO_VALUE, number_field, row_of_numbers
@@ -155,14 +155,14 @@ def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha: bool
     found = None
     gap = imgui.get_style().item_inner_spacing.x
     imgui.same_line(0.0, gap)
-    if quiet(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the linear numbers"):
+    if quiet_button(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the linear numbers"):
         imgui.set_clipboard_text(" ".join(f"{part:g}" for part in (color if alpha else color[:3])))
     imgui.same_line(0.0, gap)
-    if quiet(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
+    if quiet_button(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
         found = _from_text(imgui.get_clipboard_text(), color)
     if eyedropper:
         imgui.same_line(0.0, gap)
-        if quiet(fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", "Pick the color from the viewer"):
+        if quiet_button(fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", "Pick the color from the viewer"):
             fields.eyedropper = id.removesuffix(" picker")
             imgui.close_current_popup()
     return found
@@ -188,7 +188,7 @@ def _from_text(text: str, color: RGBA) -> Edit | None:
 def _label(fields: Fields, text: str, side: float) -> None:
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
-    dim(fields, text)
+    draw_dim(fields, text)
     imgui.same_line(left + side)
 
 

@@ -19,7 +19,7 @@ _SUNLIGHT = 3.0
 
 
 @dataclass(frozen=True)
-class Part:
+class LightProperty:
     """One thing about a light: its name in `Light`, how it is edited, and the kinds of light that have it."""
 
     name: str
@@ -51,7 +51,7 @@ _ANGLE = Value("", "float", 0.0, low=0.0, high=90.0, minimum=0.0, maximum=180.0,
 _LENGTH = Value("", "float", 0.0, low=0.0, high=20.0, minimum=0.0, unit="scene")
 
 PARTS = (
-    Part(
+    LightProperty(
         "place",
         Value(
             "place",
@@ -65,7 +65,7 @@ PARTS = (
         ),
         (_POINT, _SPOT, _SPHERE),
     ),
-    Part(
+    LightProperty(
         "direction",
         Value(
             "direction",
@@ -78,8 +78,8 @@ PARTS = (
         ),
         (_SPOT, _SUN),
     ),
-    Part("color", Value("color", "color", (), 4, doc="Scene-linear; it is multiplied with the intensity.")),
-    Part(
+    LightProperty("color", Value("color", "color", (), 4, doc="Scene-linear; it is multiplied with the intensity.")),
+    LightProperty(
         "intensity",
         Value(
             "intensity",
@@ -91,7 +91,7 @@ PARTS = (
             "d is the intensity / d²; W/m² for a sun, the same everywhere. Below 0 it takes light away.",
         ),
     ),
-    Part(
+    LightProperty(
         "reach",
         structs.replace(
             _LENGTH,
@@ -100,7 +100,7 @@ PARTS = (
         ),
         (_POINT, _SPOT, _SPHERE),
     ),
-    Part(
+    LightProperty(
         "inner",
         structs.replace(
             _ANGLE,
@@ -109,7 +109,7 @@ PARTS = (
         ),
         (_SPOT,),
     ),
-    Part(
+    LightProperty(
         "outer",
         structs.replace(
             _ANGLE,
@@ -118,7 +118,7 @@ PARTS = (
         ),
         (_SPOT,),
     ),
-    Part(
+    LightProperty(
         "size",
         structs.replace(
             _LENGTH,
@@ -133,7 +133,7 @@ PARTS = (
 
 
 @cache
-def parts_of(kind: LightKind) -> tuple[Part, ...]:
+def parts_of(kind: LightKind) -> tuple[LightProperty, ...]:
     """What a light of that kind has; each declares as its default what a new one has."""
     new = fresh(kind)
     return tuple(

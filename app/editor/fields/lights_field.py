@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from msgspec import structs
 
 from ..theme.style import mix, u32, ui_scale, vec4
-from ..toolkit.buttons import dropdown, quiet
+from ..toolkit.buttons import dropdown, quiet_button
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import tip, write
 from .colors import swatch
@@ -207,7 +207,7 @@ def _buttons(fields: Fields, id: str, value: Numbers, width: float, words: str) 
     for act in _acts(value, index):
         imgui.same_line(0.0, 0.0)
         doc = f"{act.label}: the selected light"
-        if quiet(fields, act.icon, f"button {act.label.lower()} {id}", doc, enabled=act.enabled):
+        if quiet_button(fields, act.icon, f"button {act.label.lower()} {id}", doc, enabled=act.enabled):
             found = _done(fields, id, act.do())
     left = item_rect()[2] + imgui.get_style().item_inner_spacing.x
     write((left, rect[1], rect[2], rect[3]), words, fields.palette.dim, align=1.0)

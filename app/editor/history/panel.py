@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.places import record
-from ..toolkit.words import nothing_here
+from ..toolkit.words import draw_empty_panel
 
 if TYPE_CHECKING:
     from .context import HistoryContext
@@ -30,7 +30,7 @@ class HistoryPanel:
         history = self._context.session.history
         if not history.steps:
             icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
-            nothing_here(self._context, icon, "Nothing was changed yet", "Every step can be gone back to.")
+            draw_empty_panel(self._context, icon, "Nothing was changed yet", "Every step can be gone back to.")
             return
         labels = ("The beginning", *history.steps)
         moved, self._seen = self._seen != (len(labels), history.position), (len(labels), history.position)

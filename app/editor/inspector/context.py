@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard, ElementView, PixelPicker, Player
+    from ..shared.protocols import ElementView, PixelPicker, Player, SystemText
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class InspectorContext(PanelContext):
     preview: Preview
     actions: Actions
     dialogs: Dialogs
-    clipboard: Clipboard
+    clipboard: SystemText
     canvas: ElementView
     viewer: PixelPicker
     timeline: Player

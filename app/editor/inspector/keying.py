@@ -19,7 +19,7 @@ from ..theme.palette import RGB, Palette
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, item_rect, place
-from ..toolkit.words import SMALL, font, note_below, tip, wrapped
+from ..toolkit.words import SMALL, draw_wrapped, font, note_below, tip
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -168,7 +168,7 @@ class Keying:
         fault = fault or value_now(session, port)[1]
         if fault:
             with font(rows.context, "mono", SMALL * 0.92):
-                wrapped(rows.palette.error, fault.removeprefix(f"{port}: "))
+                draw_wrapped(rows.palette.error, fault.removeprefix(f"{port}: "))
         else:
             rows.field_note(f"= {shown}")
 

@@ -15,7 +15,7 @@ from ...graph.values import value_fault
 from ..fields.choice_field import choice_field
 from ..fields.color_field import color_field
 from ..fields.fields import Edit
-from ..fields.lights import KINDS, Numbers, Part, changed, light_at, parts_of, turned
+from ..fields.lights import KINDS, LightProperty, Numbers, changed, light_at, parts_of, turned
 from ..fields.lights_field import selected
 from ..fields.number_field import number_field, vector_field
 from ..fields.numbers import described, worded
@@ -58,7 +58,9 @@ def _kind(rows: Rows, key: str, light: Light, put: Callable[[Light], object]) ->
 class _Row:
     """One of them."""
 
-    def __init__(self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: Part, put: Put) -> None:
+    def __init__(
+        self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: LightProperty, put: Put
+    ) -> None:
         self.rows, self.id, self.value, self.index, self.light, self.part = rows, id, value, index, light, part
         self.key, self.plain, self.put = f"{id} {index} {part.name}", part.of(light), put
 
@@ -85,7 +87,7 @@ class _Row:
             self._menu()
             imgui.end_popup()
 
-    def _field(self, part: Part, declaration: Value, width: float) -> Edit | None:
+    def _field(self, part: LightProperty, declaration: Value, width: float) -> Edit | None:
         fields, plain = self.rows.fields, self.plain
         match declaration.type:
             case "vector":

@@ -18,7 +18,7 @@ from ..shared.render_facts import FOUND, overview_of, render_path, rule_words
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
 from ..toolkit.places import item_rect, place
-from ..toolkit.words import SMALL, elided, font, tip, wrapped, write
+from ..toolkit.words import SMALL, cut_middle, draw_wrapped, font, tip, write
 from .matte_rows import MatteRows
 from .value_rows import ValueRows
 
@@ -135,7 +135,7 @@ class RenderRows:
             else (item.role.words if item.role else item.reason)
         )
         with font(rows.context, "text", SMALL):
-            wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
+            draw_wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
 
     def _offer_mattes(self, rows: Rows, id: str, seen: Overview) -> None:
         """What cryptomattes there are, and a button for a node that cuts out."""
@@ -209,9 +209,9 @@ def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: fl
         rect = place(width or rows.name_width, imgui.get_text_line_height())
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
         tip(name)
-        write(rect, elided(name, rect[2] - rect[0]), rows.palette.dim, align=1.0)
+        write(rect, cut_middle(name, rect[2] - rect[0]), rows.palette.dim, align=1.0)
         imgui.same_line(0.0, rows.gap)
-        wrapped(color or rows.palette.text, words)
+        draw_wrapped(color or rows.palette.text, words)
 
 
 def _opened(rows: Rows, label: str, key: str) -> bool:

@@ -9,9 +9,9 @@ from imgui_bundle import imgui
 
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
-from ..toolkit.buttons import quiet
+from ..toolkit.buttons import quiet_button
 from ..toolkit.places import item_rect, place
-from ..toolkit.words import SMALL, font, tip, wrapped, write
+from ..toolkit.words import SMALL, draw_wrapped, font, tip, write
 
 if TYPE_CHECKING:
     from ..fields.fields import Fields
@@ -108,17 +108,17 @@ class Rows:
 
     def note(self, text: str, color: RGB | None = None, *, icon: str = "") -> None:
         """A sentence over the whole width."""
-        wrapped(color or self.palette.dim, f"{icon}  {text}" if icon else text)
+        draw_wrapped(color or self.palette.dim, f"{icon}  {text}" if icon else text)
 
     def field_note(self, text: str, color: RGB | None = None) -> None:
         """A sentence below a field."""
         self.indent()
         with font(self.context, "text", SMALL):
-            wrapped(color or self.palette.dim, text)
+            draw_wrapped(color or self.palette.dim, text)
 
     def icon(self, glyph: str, key: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
         """A quiet square button."""
-        return quiet(self.context, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
+        return quiet_button(self.context, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
 
     def chip(self, text: str, key: str, width: float, color: RGB, doc: str) -> bool:
         """A link or the like, as a button cut to a width."""

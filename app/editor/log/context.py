@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
-    from ..shared.protocols import Clipboard
+    from ..shared.protocols import SystemText
 
 
 @dataclass(frozen=True)
 class LogContext(PanelContext):
     """The collaborators of the Log panel and the messages."""
 
-    clipboard: Clipboard
+    clipboard: SystemText

@@ -10,9 +10,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.log import Level, LogEntry
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.buttons import align_right, quiet_button
 from ..toolkit.places import record
-from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, wrapped
+from ..toolkit.words import ICONS, draw_dim, draw_empty_panel, draw_wrapped, font, level_color
 
 if TYPE_CHECKING:
     from .context import LogContext
@@ -39,7 +39,7 @@ class LogPanel:
         if not entries:
             what = "was said yet" if self._least == "info" else "of this kind happened"
             sentence = "Messages stay here until they are cleared."
-            nothing_here(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {what}", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {what}", sentence)
             return
         if imgui.begin_child("entries"):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
@@ -62,24 +62,24 @@ class LogPanel:
             imgui.pop_style_color(2)
             record(self._context, f"log {level}")
             imgui.same_line(0, 2 * ui_scale())
-        right_aligned(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
-        if quiet(self._context, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
+        align_right(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
+        if quiet_button(self._context, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
             self._context.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
         some = bool(self._context.log.entries)
-        if quiet(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
+        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
             self._context.log.entries.clear()
 
 
 def _row(context: LogContext, index: int, entry: LogEntry) -> None:
     scale = ui_scale()
     with font(context, "mono", 14.0):
-        dim(context, strftime("%H:%M:%S", localtime(entry.at)))
+        draw_dim(context, strftime("%H:%M:%S", localtime(entry.at)))
     imgui.same_line(0, 8 * scale)
     imgui.text_colored(vec4(level_color(context.palette, entry.level)), ICONS[entry.level])
     imgui.same_line(0, 6 * scale)
     imgui.begin_group()
-    wrapped(context.palette.text, entry.sentence)
+    draw_wrapped(context.palette.text, entry.sentence)
     record(context, f"log entry {index}")
     if imgui.begin_popup_context_item("menu"):
         if imgui.menu_item(f"{icons.ICON_FA_COPY} Copy", "", False)[0]:
@@ -87,7 +87,7 @@ def _row(context: LogContext, index: int, entry: LogEntry) -> None:
         imgui.end_popup()
     if entry.detail and imgui.tree_node("Details for a report"):
         with font(context, "mono", 13.0):
-            wrapped(context.palette.dim, entry.detail.rstrip())
+            draw_wrapped(context.palette.dim, entry.detail.rstrip())
         imgui.tree_pop()
     imgui.end_group()
     imgui.dummy(ImVec2(0, 0))

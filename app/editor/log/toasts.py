@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from ...authoring.log import TOAST_SECONDS, LogEntry
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import FIXED
-from ..toolkit.words import ICONS, level_color, wrapped
+from ..toolkit.words import ICONS, draw_wrapped, level_color
 
 if TYPE_CHECKING:
     from .context import LogContext
@@ -56,7 +56,7 @@ class Toasts:
         imgui.text_colored(vec4(level_color(self._context.palette, entry.level)), ICONS[entry.level])
         imgui.same_line()
         imgui.push_text_wrap_pos((_WIDTH - 12) * scale)
-        wrapped(self._context.palette.text, entry.sentence)
+        draw_wrapped(self._context.palette.text, entry.sentence)
         imgui.pop_text_wrap_pos()
         if imgui.is_window_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand.value)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard
+    from ..shared.protocols import SystemText
 
 
 @dataclass(frozen=True)
@@ -23,4 +23,4 @@ class PreferencesContext(PanelContext):
     actions: Actions
     dialogs: Dialogs
     recovery: RecoveryFile
-    clipboard: Clipboard
+    clipboard: SystemText

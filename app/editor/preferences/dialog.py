@@ -13,11 +13,11 @@ from ...authoring.background.shader_files import CUSTOMARY
 from ...authoring.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ...authoring.recovery.recovery import LONGEST
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import close_button, quiet
-from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.buttons import close_button, quiet_button
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
-from ..toolkit.words import dim, font, wrapped
+from ..toolkit.words import draw_dim, draw_wrapped, font
 from .shortcut_editor import ShortcutEditor
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class PreferencesDialog:
             pages[_PAGES.index(self._page)]()
             imgui.end_child()
             close = close_button(self._context, "close preferences") or close
-            close = close or (escaped() and not listening)
+            close = close or (escape_pressed() and not listening)
         if close:
             self._context.dialogs.open.discard("preferences")
 
@@ -73,7 +73,7 @@ class PreferencesDialog:
 
     def _interface(self) -> None:
         now = self._context.store.current
-        _heading(self._context, "Appearance")
+        _draw_heading(self._context, "Appearance")
         label("Theme", _LABELS)
         for theme in ("dark", "light"):
             if imgui.radio_button(theme.capitalize(), now.theme == theme):
@@ -87,32 +87,32 @@ class PreferencesDialog:
             _change(self._context, ui_scale=names[chosen])
         if now.ui_scale not in _SCALES or not MIN_SCALE <= (now.ui_scale or 1.0) <= MAX_SCALE:
             imgui.same_line()
-            dim(self._context, "own")
-        _heading(self._context, "Graph")
+            draw_dim(self._context, "own")
+        _draw_heading(self._context, "Graph")
         _switch(self._context, "thumbnails", "Thumbnails on nodes")
         _switch(self._context, "timings", "Time and memory of each node")
         _switch(self._context, "minimap", "Overview in the corner")
-        _heading(self._context, "Viewer")
+        _draw_heading(self._context, "Viewer")
         _switch(self._context, "proxy_while_dragging", "Coarser pictures while a value is dragged")
 
     def _system(self) -> None:
-        _heading(self._context, "Recovery")
+        _draw_heading(self._context, "Recovery")
         label("Autosave every", _LABELS)
         self._number("autosave", "%.1f s", 0.5, 10.0)
-        wrapped(
+        draw_wrapped(
             self._context.palette.dim, "Unsaved work is kept apart from your files and offered again after a crash."
         )
-        _heading(self._context, "Memory")
+        _draw_heading(self._context, "Memory")
         label("For pictures", _LABELS)
         self._number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
-        wrapped(
+        draw_wrapped(
             self._context.palette.dim, "On the graphics card. More keeps more results; it holds from the next start on."
         )
-        _heading(self._context, "Shaders")
+        _draw_heading(self._context, "Shaders")
         self._folders()
-        _heading(self._context, "Files")
+        _draw_heading(self._context, "Files")
         folder = str(self._context.store.file.parent)
-        wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are kept in {folder}")
+        draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are kept in {folder}")
         if imgui.button("Copy the path"):
             self._context.clipboard.put(folder)
         imgui.same_line()
@@ -125,13 +125,13 @@ class PreferencesDialog:
     def _folders(self) -> None:
         """Where shaders in the Interactive Shader Format are looked for."""
         now = self._context.store.current.isf_folders
-        wrapped(
+        draw_wrapped(
             self._context.palette.dim,
             "Folders with .fs files in the Interactive Shader Format; what is in them can be "
             f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.",
         )
         for index, folder in enumerate(now):
-            if quiet(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
+            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
                 _change(self._context, isf_folders=tuple(one for one in now if one != folder))
             imgui.same_line()
             imgui.align_text_to_frame_padding()
@@ -177,7 +177,7 @@ def _change(context: PreferencesContext, **values: Any) -> None:
     context.recovery.interval = min(context.store.current.autosave, LONGEST)
 
 
-def _heading(context: PreferencesContext, title: str) -> None:
+def _draw_heading(context: PreferencesContext, title: str) -> None:
     imgui.dummy(ImVec2(0, 4 * ui_scale()))
     with font(context, "bold"):
         imgui.text_colored(vec4(context.palette.accent), title)

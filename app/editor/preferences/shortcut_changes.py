@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from .context import PreferencesContext
 
 
-def assigned(context: PreferencesContext, id: str, keys: str) -> None:
+def assign_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut, "" for none."""
     own = {**context.store.current.shortcuts, id: keys}
     if context.actions[id].shortcut == keys:
@@ -16,13 +16,13 @@ def assigned(context: PreferencesContext, id: str, keys: str) -> None:
     context.store.change(shortcuts=own)
 
 
-def taken_over(context: PreferencesContext, id: str, keys: str) -> None:
+def take_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut that others have: they have none then."""
     for other in context.actions.conflicts(id, keys):
-        assigned(context, other.id, "")
-    assigned(context, id, keys)
+        assign_shortcut(context, other.id, "")
+    assign_shortcut(context, id, keys)
 
 
-def reset(context: PreferencesContext, id: str) -> None:
+def reset_shortcut(context: PreferencesContext, id: str) -> None:
     """Give an action the shortcut that it came with; who has it meanwhile loses it."""
-    taken_over(context, id, context.actions[id].shortcut)
+    take_shortcut(context, id, context.actions[id].shortcut)

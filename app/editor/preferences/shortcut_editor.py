@@ -9,13 +9,13 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..shared.action import Action
 from ..shared.fuzzy import match
-from ..shared.shortcut_groups import groups
+from ..shared.shortcut_groups import group_actions
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import quiet, right_aligned
-from ..toolkit.keys import pressed, shown
+from ..toolkit.buttons import align_right, quiet_button
+from ..toolkit.keys import display_shortcut, pressed
 from ..toolkit.places import record
-from ..toolkit.words import dim, tip, wrapped
-from .shortcut_changes import assigned, reset, taken_over
+from ..toolkit.words import draw_dim, draw_wrapped, tip
+from .shortcut_changes import assign_shortcut, reset_shortcut, take_shortcut
 
 if TYPE_CHECKING:
     from .context import PreferencesContext
@@ -42,14 +42,14 @@ class ShortcutEditor:
         hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search actions"
         self._query = imgui.input_text_with_hint("##actions", hint, self._query)[1]
         record(self._context, "shortcut search")
-        right_aligned(label)
+        align_right(label)
         own, icon = bool(self._context.store.current.shortcuts), icons.ICON_FA_ROTATE_LEFT
-        if quiet(self._context, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
+        if quiet_button(self._context, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
             self._context.log.attempt(lambda: self._context.store.change(shortcuts={}))
         self._listen()
         self._ask()
         if imgui.begin_child("list"):
-            for title, actions in groups(self._context.actions, every=True):
+            for title, actions in group_actions(self._context.actions, every=True):
                 labels = tuple(action.label for action in actions)
                 kept = sorted(one.index for one in match(self._query, labels))
                 if kept:
@@ -73,7 +73,7 @@ class ShortcutEditor:
         width = 170 * scale
         imgui.same_line(left + room - width - 34 * scale)
         waiting = self._waiting == action.id
-        text = "Press keys..." if waiting else shown(self._context.actions.shortcut(action.id)) or "none"
+        text = "Press keys..." if waiting else display_shortcut(self._context.actions.shortcut(action.id)) or "none"
         changed = action.id in self._context.store.current.shortcuts
         imgui.push_style_color(imgui.Col_.button, vec4(palette.field))
         imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if waiting or changed else palette.text))
@@ -83,8 +83,8 @@ class ShortcutEditor:
         record(self._context, f"shortcut {action.id}")
         if changed:
             imgui.same_line(0, 4 * scale)
-            if quiet(self._context, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
-                self._context.log.attempt(lambda: reset(self._context, action.id))
+            if quiet_button(self._context, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
+                self._context.log.attempt(lambda: reset_shortcut(self._context, action.id))
 
     def _listen(self) -> None:
         if not self._waiting:
@@ -97,26 +97,28 @@ class ShortcutEditor:
             return
         id, self._waiting = self._waiting, ""
         if keys in ("Delete", "Backspace") and self._context.actions[id].shortcut != keys:
-            self._context.log.attempt(lambda: assigned(self._context, id, ""))
+            self._context.log.attempt(lambda: assign_shortcut(self._context, id, ""))
         elif self._context.actions.conflicts(id, keys):
             self._offered = (id, keys)
         else:
-            self._context.log.attempt(lambda: assigned(self._context, id, keys))
+            self._context.log.attempt(lambda: assign_shortcut(self._context, id, keys))
 
     def _ask(self) -> None:
         """Say who has a shortcut already, and offer to take it over."""
         if self._waiting:
-            dim(self._context, "Press the keys; Escape keeps what was, Delete leaves the action without a shortcut.")
+            draw_dim(
+                self._context, "Press the keys; Escape keeps what was, Delete leaves the action without a shortcut."
+            )
             return
         if self._offered is None:
-            dim(self._context, "Click a shortcut to change it.")
+            draw_dim(self._context, "Click a shortcut to change it.")
             return
         id, keys = self._offered
         others = " and ".join(f"'{other.label}'" for other in self._context.actions.conflicts(id, keys))
-        wrapped(self._context.palette.warning, f"{shown(keys)} is the shortcut of {others}.")
+        draw_wrapped(self._context.palette.warning, f"{display_shortcut(keys)} is the shortcut of {others}.")
         if imgui.button("Take it over"):
             self._offered = None
-            self._context.log.attempt(lambda: taken_over(self._context, id, keys))
+            self._context.log.attempt(lambda: take_shortcut(self._context, id, keys))
         record(self._context, "take over")
         imgui.same_line()
         if imgui.button("Leave it"):

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...watch.watching import Watcher
-    from ..shared.protocols import Clipboard, ElementView
+    from ..shared.protocols import ElementView, SystemText
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class ProblemsContext(PanelContext):
     session: Session
     preview: Preview
     canvas: ElementView
-    clipboard: Clipboard
+    clipboard: SystemText
     recovery: RecoveryFile
     watcher: Watcher
     store: PreferenceStore

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Finding:
+class ListedProblem:
     """One thing that is wrong. `where` is the path of a node, such as `glow/blur` or `inputs.beauty`, or ""."""
 
     level: Level
@@ -22,33 +22,33 @@ class Finding:
     detail: str = ""
 
 
-def findings(context: ProblemsContext) -> tuple[Finding, ...]:
+def list_problems(context: ProblemsContext) -> tuple[ListedProblem, ...]:
     """Problems of the graph, of its pictures, of the services and of panels; worst first, each once."""
-    found = dict.fromkeys(_found(context))
+    found = dict.fromkeys(_collect(context))
     return tuple(sorted(found, key=lambda finding: finding.level != "error"))
 
 
-def _found(context: ProblemsContext) -> Iterator[Finding]:
+def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
     """What the preview says about a node that the graph itself has a problem with is the same thing in other words."""
     inside = "/".join(context.session.place)
     for node, problems in context.session.problems.items():
         for problem in problems:
-            yield Finding(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
+            yield ListedProblem(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
     known = {"/".join(filter(None, (inside, node))) for node in context.session.problems}
     for where, sentence in context.preview.faults.items():
         if where not in known:
-            yield Finding("error", where, sentence)
+            yield ListedProblem("error", where, sentence)
     for sentence in _services(context):
-        yield Finding("warning", "", sentence)
+        yield ListedProblem("warning", "", sentence)
     for name, detail in context.faults.items():
-        yield Finding("error", "", f"the panel {name} failed; the document is safe", detail)
+        yield ListedProblem("error", "", f"the panel {name} failed; the document is safe", detail)
 
 
 def _services(context: ProblemsContext) -> Iterable[str]:
     return filter(None, (context.recovery.fault, context.watcher.fault, *context.store.faults))
 
 
-def show(context: ProblemsContext, where: str) -> None:
+def show_element(context: ProblemsContext, where: str) -> None:
     """Go to a node by its path, select it and bring it into view."""
     *place, key = where.split("/")
     if tuple(place) != context.session.place:

@@ -8,10 +8,10 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.buttons import align_right, quiet_button
 from ..toolkit.places import record
-from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, tip, wrapped
-from .findings import Finding, findings, show
+from ..toolkit.words import ICONS, draw_dim, draw_empty_panel, draw_wrapped, font, level_color, tip
+from .findings import ListedProblem, list_problems, show_element
 
 if TYPE_CHECKING:
     from .context import ProblemsContext
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _COPY = f"{icons.ICON_FA_COPY} Copy"
 
 
-class Problems:
+class ProblemsPanel:
     """Sentences that say what is wrong; a click leads to the node."""
 
     title = "Problems"
@@ -29,16 +29,16 @@ class Problems:
 
     def draw(self) -> None:
         """Draw into the current window."""
-        found = findings(self._context)
+        found = list_problems(self._context)
         if not found:
-            nothing_here(
+            draw_empty_panel(
                 self._context, icons.ICON_FA_CIRCLE_CHECK, "Nothing is wrong", "What stops a picture appears here."
             )
             return
         imgui.align_text_to_frame_padding()
-        dim(self._context, "1 problem" if len(found) == 1 else f"{len(found)} problems")
-        right_aligned(_COPY)
-        if quiet(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
+        draw_dim(self._context, "1 problem" if len(found) == 1 else f"{len(found)} problems")
+        align_right(_COPY)
+        if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
             self._context.clipboard.put("\n".join(_text(finding) for finding in found))
         if imgui.begin_child("problems"):
             for index, finding in enumerate(found):
@@ -47,7 +47,7 @@ class Problems:
                 imgui.pop_id()
         imgui.end_child()
 
-    def _row(self, index: int, finding: Finding) -> None:
+    def _row(self, index: int, finding: ListedProblem) -> None:
         scale, style = ui_scale(), imgui.get_style()
         indent = 26 * scale
         room = imgui.get_content_region_avail().x - indent - 6 * scale
@@ -56,7 +56,7 @@ class Problems:
         height = lines + (imgui.get_text_line_height_with_spacing() if title else 0) + 2 * style.frame_padding.y
         start = imgui.get_cursor_pos()
         if imgui.selectable("##row", False, 0, ImVec2(0, height))[0] and finding.where:
-            self._context.log.attempt(lambda: show(self._context, finding.where))
+            self._context.log.attempt(lambda: show_element(self._context, finding.where))
         record(self._context, f"problem {index}")
         if finding.where:
             tip("Click to show the node")
@@ -73,7 +73,7 @@ class Problems:
         if title:
             with font(self._context, "bold"):
                 imgui.text_unformatted(title)
-        wrapped(self._context.palette.text, finding.sentence)
+        draw_wrapped(self._context.palette.text, finding.sentence)
         imgui.pop_text_wrap_pos()
         imgui.end_group()
         imgui.set_cursor_pos(after)
@@ -88,13 +88,13 @@ def _detail(context: ProblemsContext, detail: str, name: str) -> None:
     record(context, name)
     if not opened:
         return
-    if quiet(context, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
+    if quiet_button(context, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
         context.clipboard.put(detail)
     with font(context, "mono", 13.0):
-        wrapped(context.palette.dim, detail.rstrip())
+        draw_wrapped(context.palette.dim, detail.rstrip())
     imgui.tree_pop()
 
 
-def _text(finding: Finding) -> str:
+def _text(finding: ListedProblem) -> str:
     head = f"{finding.where}: " if finding.where else ""
     return f"{head}{finding.sentence}" + (f"\n{finding.detail}" if finding.detail else "")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...authoring.render_queue.queue import RenderQueue
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard, PlayedSpan
+    from ..shared.protocols import PlayedSpan, SystemText
     from ..workflows.flipbook import FlipbookPlayer
 
 
@@ -26,6 +26,6 @@ class RendersContext(PanelContext):
     store: PreferenceStore
     timeline: PlayedSpan
     dialogs: Dialogs
-    clipboard: Clipboard
+    clipboard: SystemText
     coloring: ColorFallback
     flipbooks: FlipbookPlayer

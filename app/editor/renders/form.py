@@ -40,7 +40,7 @@ _FRESH = 1.0
 
 
 @dataclass(frozen=True)
-class Aim:
+class RenderTargets:
     """What a render would write: so many files, of which some `exist`, or why it cannot be."""
 
     files: int = 0
@@ -51,7 +51,7 @@ class Aim:
 
 
 @dataclass
-class Form:
+class RenderForm:
     """What was chosen. `files` are the paths that were typed, by output; "" takes the suggestion."""
 
     context: RendersContext
@@ -69,7 +69,7 @@ class Form:
     """The frames that were typed."""
     jobs: int = 1
     resume: bool = False
-    _seen: tuple[object, float, Aim] = (None, 0.0, Aim())
+    _seen: tuple[object, float, RenderTargets] = (None, 0.0, RenderTargets())
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
@@ -83,7 +83,7 @@ class Form:
             low, high = self.context.timeline.span(session)
             if (low, high) != (first, last):
                 found["what is played"] = tuple(range(low, high + 1))
-        found["some frames"] = _listed(self.listed)[0]
+        found["some frames"] = _parse_listed(self.listed)[0]
         return found
 
     def extent_of(self) -> Extent:
@@ -102,30 +102,30 @@ class Form:
             self.listed = format_frames(self.frames())
         self.extent = extent
         if extent != "this frame":
-            self.files = {name: _numbered(path) if path else "" for name, path in self.files.items()}
+            self.files = {name: _add_number(path) if path else "" for name, path in self.files.items()}
 
     @property
     def list_fault(self) -> str:
         """What is wrong with the frames that were typed."""
-        return _listed(self.listed)[1]
+        return _parse_listed(self.listed)[1]
 
     # --- files -------------------------------------------------------------------------------------------------------
 
-    def suggested(self, output: str) -> Path:
+    def suggest_file(self, output: str) -> Path:
         """Where an output goes if nothing else is said."""
         last = self.context.store.folder("export")
         session = self.context.session
         folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
         name = session.name if len(session.root.outputs) == 1 else f"{session.name}_{output}"
         plain = f"{name}{self.format}"
-        return folder / (plain if self.extent_of() == "this frame" else _numbered(plain))
+        return folder / (plain if self.extent_of() == "this frame" else _add_number(plain))
 
     def file(self, output: str) -> Path:
         """Where an output goes."""
         typed = self.files.get(output, "")
-        return Path(typed).expanduser() if typed else self.suggested(output)
+        return Path(typed).expanduser() if typed else self.suggest_file(output)
 
-    def wanted(self) -> tuple[str, ...]:
+    def chosen_outputs(self) -> tuple[str, ...]:
         """The outputs that are chosen; at first those that are pictures."""
         kinds = {name: output.kind for name, output in self.context.session.root.outputs.items()}
         return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
@@ -138,14 +138,14 @@ class Form:
 
     def number(self) -> None:
         """Give all files a place for the frame number."""
-        self.files = {name: _numbered(str(self.file(name))) for name in self.wanted()}
+        self.files = {name: _add_number(str(self.file(name))) for name in self.chosen_outputs()}
 
     # --- all together ------------------------------------------------------------------------------------------------
 
-    def aim(self) -> Aim:
+    def aim(self) -> RenderTargets:
         """What would be written now."""
         frames = self.frames()
-        paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.wanted()))
+        paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.chosen_outputs()))
         key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
         if self._seen[0] != key or now - self._seen[1] > _FRESH:
             self._seen = (key, now, _aim(paths, frames, key[2]))
@@ -158,7 +158,7 @@ class Form:
             frames=frames,
             precision=self.precision or None,
             view=self.view,
-            resume=self.resume and not any(is_video(str(self.file(name))) for name in self.wanted()),
+            resume=self.resume and not any(is_video(str(self.file(name))) for name in self.chosen_outputs()),
             processes=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
@@ -167,7 +167,7 @@ class Form:
 
     def start(self) -> QueuedRender:
         """Put it into the queue. Raises UsageError or GraphError."""
-        files = [(name, self.file(name)) for name in self.wanted()]
+        files = [(name, self.file(name)) for name in self.chosen_outputs()]
         if not self.frames():
             raise UsageError(self.list_fault)
         made = self.context.exports.start(
@@ -175,7 +175,7 @@ class Form:
         )
         if files:
             self.context.store.note_folder("export", files[0][1])
-        self._seen = (None, 0.0, Aim())
+        self._seen = (None, 0.0, RenderTargets())
         return made
 
 
@@ -185,7 +185,7 @@ def formats() -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=8)
-def _listed(text: str) -> tuple[tuple[int, ...], str]:
+def _parse_listed(text: str) -> tuple[tuple[int, ...], str]:
     """The frames of a text, or what is wrong with it."""
     try:
         return parse_frames(text), ""
@@ -193,7 +193,7 @@ def _listed(text: str) -> tuple[tuple[int, ...], str]:
         return (), str(fault)
 
 
-def _numbered(path: str) -> str:
+def _add_number(path: str) -> str:
     """The path with a place for the number, unless it has one, or needs none."""
     try:
         return path if is_video(path) or Pattern.parse(path) else numbered(path)
@@ -201,18 +201,18 @@ def _numbered(path: str) -> str:
         return path
 
 
-def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> Aim:
+def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> RenderTargets:
     if fault or not paths:
-        return Aim(fault=fault or "Choose an output to render.")
+        return RenderTargets(fault=fault or "Choose an output to render.")
     try:
         for path in paths:
             check_numbered(path, frames)
         names = [_at(path, frame) for path, frame in ((paths[0], frames[0]), (paths[-1], frames[-1]))]
-        exist = sum(_existing(path, frames) for path in paths)
+        exist = sum(_count_existing(path, frames) for path in paths)
     except HalationError as error:
-        return Aim(fault=str(error))
+        return RenderTargets(fault=str(error))
     count = sum(1 if is_video(path) else len(frames) for path in paths)
-    return Aim(count, names[0], names[1], exist)
+    return RenderTargets(count, names[0], names[1], exist)
 
 
 def _at(path: str, frame: int) -> str:
@@ -220,7 +220,7 @@ def _at(path: str, frame: int) -> str:
     return pattern.name(frame) if pattern else path
 
 
-def _existing(path: str, frames: tuple[int, ...]) -> int:
+def _count_existing(path: str, frames: tuple[int, ...]) -> int:
     """How many of the files are there."""
     if Pattern.parse(path) is None or len(frames) == 1:
         return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows

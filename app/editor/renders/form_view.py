@@ -15,11 +15,11 @@ from ...graph.frames import format_frames
 from ..shared.coloring import settings_in_use
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import main_button, quiet, room_for
+from ..toolkit.buttons import main_button, quiet_button, width_of_buttons
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
-from ..toolkit.words import SMALL, dim, elided, fitted, font, tip, wrapped
-from .form import DEPTHS, VIEWED, Aim, Extent, Form, Sizing, formats
+from ..toolkit.words import SMALL, cut_end, cut_middle, draw_dim, draw_wrapped, font, tip
+from .form import DEPTHS, VIEWED, Extent, RenderForm, RenderTargets, Sizing, formats
 from .wording import aim_text, exist_text
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ _SIZINGS: tuple[Sizing, ...] = ("as it is", "scale", "size")
 _LONGEST = 24
 
 
-def draw_form(context: RendersContext, form: Form) -> None:
+def draw_form(context: RendersContext, form: RenderForm) -> None:
     """Everything that can be chosen, what would be written, and the button."""
     _files(context, form)
     _frames(context, form)
@@ -44,13 +44,13 @@ def draw_form(context: RendersContext, form: Form) -> None:
         context.log.attempt(lambda: form.start())
 
 
-def _files(context: RendersContext, form: Form) -> None:
-    wanted = form.wanted()
-    button = room_for(icons.ICON_FA_FOLDER_OPEN)
+def _files(context: RendersContext, form: RenderForm) -> None:
+    wanted = form.chosen_outputs()
+    button = width_of_buttons(icons.ICON_FA_FOLDER_OPEN)
     for name in context.session.root.outputs:
         imgui.push_id(name)
         left, column = imgui.get_cursor_pos_x(), _LABELS * ui_scale()
-        shown = fitted(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
+        shown = cut_end(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
         changed, on = imgui.checkbox(f"{shown}##on", name in wanted)
         record(context, f"render {name}")
         tip(name)
@@ -66,20 +66,20 @@ def _files(context: RendersContext, form: Form) -> None:
         tip(path)
         record(context, f"render file {name}")
         imgui.same_line(0, 4 * ui_scale())
-        if quiet(context, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
-            chosen = partial(_chosen, context, form, name)
+        if quiet_button(context, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
+            chosen = partial(_take_file, context, form, name)
             file = form.file(name)
             context.dialogs.browse = Browse(f"Render {name} to", "export", chosen, saving=True, name=file.name)
         imgui.end_disabled()
         imgui.pop_id()
 
 
-def _chosen(context: RendersContext, form: Form, output: str, path: Path) -> None:
+def _take_file(context: RendersContext, form: RenderForm, output: str, path: Path) -> None:
     form.files[output] = str(path)
     form.extend(form.extent_of())
 
 
-def _frames(context: RendersContext, form: Form) -> None:
+def _frames(context: RendersContext, form: RenderForm) -> None:
     offered, now = form.extents(), form.extent_of()
     labels: dict[str, Extent] = {_extent_text(extent, frames): extent for extent, frames in offered.items()}
     if chosen := choice(context, "Frames", _extent_text(now, offered[now]), tuple(labels)):
@@ -112,7 +112,7 @@ def _short(frames: tuple[int, ...]) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}\u2026"
 
 
-def _list(context: RendersContext, form: Form) -> None:
+def _list(context: RendersContext, form: RenderForm) -> None:
     """Frames that are typed, checked while they are."""
     label("", _LABELS)
     imgui.set_next_item_width(-1)
@@ -127,13 +127,13 @@ def _list(context: RendersContext, form: Form) -> None:
     if wrong:
         imgui.indent(_LABELS * ui_scale())
         with font(context, "text", SMALL):
-            wrapped(context.palette.error, form.list_fault)
+            draw_wrapped(context.palette.error, form.list_fault)
         record(context, "render list fault")
         imgui.unindent(_LABELS * ui_scale())
 
 
-def _options(context: RendersContext, form: Form) -> None:
-    kinds = {form.file(name).suffix.lower() for name in form.wanted()}
+def _options(context: RendersContext, form: RenderForm) -> None:
+    kinds = {form.file(name).suffix.lower() for name in form.chosen_outputs()}
     now = kinds.pop() if len(kinds) == 1 else "mixed"
     if chosen := choice(context, "Format", now, formats()):
         form.reform(chosen)
@@ -164,32 +164,32 @@ def _options(context: RendersContext, form: Form) -> None:
     )
 
 
-def _consequences(context: RendersContext, form: Form, aim: Aim) -> None:
+def _consequences(context: RendersContext, form: RenderForm, aim: RenderTargets) -> None:
     """What would be written, and what is in the way."""
     palette = context.palette
     if aim.fault:
         if aim.fault != form.list_fault:
-            wrapped(palette.error, aim.fault)
+            draw_wrapped(palette.error, aim.fault)
             record(context, "render fault")
-        if len(form.frames()) > 1 and quiet(
+        if len(form.frames()) > 1 and quiet_button(
             context, f"{icons.ICON_FA_HASHTAG}  Add a place for the frame number", "render number", "shot.####.exr"
         ):
             form.number()
         return
-    dim(context, elided(aim_text(aim), imgui.get_content_region_avail().x))
+    draw_dim(context, cut_middle(aim_text(aim), imgui.get_content_region_avail().x))
     record(context, "render aim")
     tip(aim.first if aim.files == 1 else f"{aim.first}\n{aim.last}")
     if aim.exist:
         if not form.resume:
             imgui.align_text_to_frame_padding()
-        wrapped(palette.dim if form.resume else palette.warning, exist_text(aim, form.resume))
+        draw_wrapped(palette.dim if form.resume else palette.warning, exist_text(aim, form.resume))
         record(context, "render exists")
         if not form.resume:
             imgui.same_line()
-            if imgui.get_content_region_avail().x < room_for("Resume instead"):
+            if imgui.get_content_region_avail().x < width_of_buttons("Resume instead"):
                 imgui.new_line()
             doc = "Keep those that would come out the same"
-            if quiet(context, "Resume instead", "render resume instead", doc):
+            if quiet_button(context, "Resume instead", "render resume instead", doc):
                 form.resume = True
 
 

@@ -9,8 +9,8 @@ from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..theme.style import ui_scale
-from ..toolkit.words import nothing_here
-from .form import Form
+from ..toolkit.words import draw_empty_panel
+from .form import RenderForm
 from .form_view import draw_form
 from .queue_view import Queue
 
@@ -21,14 +21,14 @@ _FORM, _WIDE = 420.0, 760.0
 """Width of the form, and from which width on the queue is beside it."""
 
 
-class Renders:
+class RendersPanel:
     """A form and a queue. Rendering runs beside the editor, on the graph as it was when it was asked for."""
 
     title = "Renders"
 
     def __init__(self, context: RendersContext) -> None:
         self._context = context
-        self._forms: dict[Path | None, Form] = {}
+        self._forms: dict[Path | None, RenderForm] = {}
         """What was chosen last, by document."""
         self._queue = Queue(context)
 
@@ -40,9 +40,9 @@ class Renders:
         """Draw into the current window."""
         if not self._context.session.root.outputs and not self._context.exports.all:
             sentence = "Add a graph output and link a node to it."
-            nothing_here(self._context, icons.ICON_FA_FILM, "There is nothing to render", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILM, "There is nothing to render", sentence)
             return
-        form = self._forms.setdefault(self._context.session.path, Form(self._context))
+        form = self._forms.setdefault(self._context.session.path, RenderForm(self._context))
         room, scale = imgui.get_content_region_avail(), ui_scale()
         if room.x < _WIDE * scale:
             draw_form(self._context, form)

@@ -15,11 +15,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...authoring.flipbook import FlipbookStrip
 from ...authoring.render_queue.queue import QueuedRender, RenderState
 from ..theme.style import u32, ui_scale, vec4
-from ..toolkit.buttons import quiet, right_aligned, room_for
+from ..toolkit.buttons import align_right, quiet_button, width_of_buttons
 from ..toolkit.places import record
-from ..toolkit.textures import Textures, fitted
-from ..toolkit.thumbnails import Pictures
-from ..toolkit.words import SMALL, dim, elided, font, nothing_here, tip, wrapped
+from ..toolkit.textures import Textures, fit_picture
+from ..toolkit.thumbnails import FileThumbnails
+from ..toolkit.words import SMALL, cut_middle, draw_dim, draw_empty_panel, draw_wrapped, font, tip
 from .folders import show_folder
 from .wording import progress_text, state_text, title, under_way
 
@@ -61,7 +61,7 @@ class Queue:
         self._context = context
         self._open: set[QueuedRender] = set()
         """Those whose notes are shown."""
-        self._pictures: Pictures | None = None
+        self._pictures: FileThumbnails | None = None
         self._textures = Textures()
         self._seen: dict[QueuedRender, tuple[Path, float, float]] = {}
         """The file that stands for a render, when that was written, and when it was chosen."""
@@ -78,17 +78,17 @@ class Queue:
         exports = self._context.exports
         if not exports.all:
             sentence = "They appear here; you can go on working meanwhile."
-            nothing_here(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
             return
         running, waiting = exports.running, exports.waiting
         ended = [one for one in exports.all if one not in running and one not in waiting]
         ended.sort(key=lambda one: -one.ended_at)
         imgui.align_text_to_frame_padding()
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
-        dim(self._context, ", ".join(f"{count} {what}" for count, what in counts if count))
-        right_aligned(f"{icons.ICON_FA_TRASH} Clear")
+        draw_dim(self._context, ", ".join(f"{count} {what}" for count, what in counts if count))
+        align_right(f"{icons.ICON_FA_TRASH} Clear")
         doc = "Forget what has ended"
-        if quiet(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
+        if quiet_button(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
             exports.clear()
         self._forget(exports.all)
         for index, export in enumerate((*running, *waiting, *ended)):
@@ -117,11 +117,11 @@ class Queue:
         with font(self._context, "text", SMALL):
             self._details(export)
         if export.failure:
-            wrapped(palette.error, export.failure)
+            draw_wrapped(palette.error, export.failure)
             record(self._context, f"export fault {index}")
         if export in self._open:
             for note in export.notes:
-                wrapped(palette.dim, note)
+                draw_wrapped(palette.dim, note)
             record(self._context, f"export notes {index}")
         imgui.unindent(indent)
         low = start.y + _HEIGHT * scale
@@ -133,15 +133,15 @@ class Queue:
         shown, spacing = [button.icon for button in buttons], 2 * ui_scale()
         imgui.align_text_to_frame_padding()
         with font(self._context, "bold"):
-            room = imgui.get_content_region_avail().x - room_for(*shown) - 12 * ui_scale()
-            imgui.text_unformatted(elided(title(export), room))
+            room = imgui.get_content_region_avail().x - width_of_buttons(*shown) - 12 * ui_scale()
+            imgui.text_unformatted(cut_middle(title(export), room))
         tip("\n".join(str(path) for _, path in export.destinations))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(spacing, imgui.get_style().item_spacing.y))
-        right_aligned(*shown)
+        align_right(*shown)
         for place, button in enumerate(buttons):
             if place:
                 imgui.same_line()
-            if quiet(self._context, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
+            if quiet_button(self._context, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
                 self._context.log.attempt(button.act)
         imgui.pop_style_var()
         self._compare_menu(index, export)
@@ -207,7 +207,7 @@ class Queue:
         parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
         if last is not None and export.state == "running":
             parts.append(f"last: {last.name}")
-        dim(self._context, elided("   ".join(parts), imgui.get_content_region_avail().x))
+        draw_dim(self._context, cut_middle("   ".join(parts), imgui.get_content_region_avail().x))
         tip(f"{last}" if last is not None else "")
 
     # --- small pictures ----------------------------------------------------------------------------------------------
@@ -218,10 +218,10 @@ class Queue:
         width, height = _WIDTH * scale, _HEIGHT * scale
         corner = ImVec2(start.x + width, start.y + height)
         lines.add_rect_filled(start, corner, u32(palette.field), 4 * scale)
-        chosen = self._chosen(export)
+        chosen = self._choose_picture(export)
         if chosen is not None:
             if self._pictures is None:
-                self._pictures = Pictures(self._context.store.file.parent / "thumbnails")
+                self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
             found = self._pictures.get(*chosen)
             if found is not None and not isinstance(found, str):
                 self._shown[export] = chosen
@@ -233,14 +233,14 @@ class Queue:
             face = self._context.fonts.text if self._context.fonts else imgui.get_font()
             lines.add_text(face, size, middle, u32(palette.dim, 0.6), _ICONS[export.state])
             return
-        across, down = fitted(pixels, width, height)
+        across, down = fit_picture(pixels, width, height)
         left, top = start.x + (width - across) / 2, start.y + (height - down) / 2
         texture = self._textures.get(shown, lambda: pixels)
         lines.add_image_rounded(
             texture, (left, top), (left + across, top + down), (0, 0), (1, 1), u32((1.0, 1.0, 1.0)), 4 * scale
         )
 
-    def _chosen(self, export: QueuedRender) -> tuple[Path, float] | None:
+    def _choose_picture(self, export: QueuedRender) -> tuple[Path, float] | None:
         """The file that stands for it: a new one only now and then, for decoding takes time too."""
         if not export.written_files:
             return None

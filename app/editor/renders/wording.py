@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ...authoring.render_queue.queue import QueuedRender
-from .form import Aim
+from .form import RenderTargets
 
 
 def title(export: QueuedRender) -> str:
@@ -64,14 +64,14 @@ def time_text(seconds: float) -> str:
     return f"{minutes}:{rest:02d}" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
 
 
-def aim_text(aim: Aim) -> str:
+def aim_text(aim: RenderTargets) -> str:
     """What a render would write."""
     if aim.files == 1:
         return f"Writes {Path(aim.first).name}"
     return f"Writes {aim.files:,} files: {Path(aim.first).name} \u2026 {Path(aim.last).name}"
 
 
-def exist_text(aim: Aim, resume: bool) -> str:
+def exist_text(aim: RenderTargets, resume: bool) -> str:
     """What happens to files that are there already."""
     which = "It is" if aim.files == 1 else "All of them are" if aim.exist == aim.files else f"{aim.exist:,} of them are"
     they = "It is kept where it" if aim.files == 1 else "They are kept where they"

@@ -16,7 +16,7 @@ GROUP, GRAPH, SHADER = "group", "graph", "code"
 
 
 @dataclass(frozen=True)
-class Entry:
+class CatalogEntry:
     """Something to add. `id` is a node type, a path (of presets) or a word such as `frame`, by category."""
 
     id: str
@@ -32,50 +32,52 @@ class Entry:
         return f"{self.title}  {self.category}  {self.doc}"
 
 
-def words(name: str) -> str:
+def spell_out(name: str) -> str:
     """A name with spaces, as people read it."""
     return name.replace("_", " ")
 
 
-def node_entries(types: Mapping[str, type[Node]]) -> tuple[Entry, ...]:
+def node_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
     """Every node type, in the order of the menu."""
     return tuple(
-        Entry(id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
+        CatalogEntry(id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
         for id, kind in types.items()
     )
 
 
-def code_entries() -> tuple[Entry, ...]:
+def code_entries() -> tuple[CatalogEntry, ...]:
     """What is made by writing it."""
     doc = "GLSL of your own: the function's signature declares sockets and values."
-    return (Entry(CODE, "code", make_starter_node().category, doc),)
+    return (CatalogEntry(CODE, "code", make_starter_node().category, doc),)
 
 
-def shader_entries(files: Iterable[ShaderFile]) -> tuple[Entry, ...]:
+def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
     """Shaders of this machine, under what they say they are."""
     return tuple(
-        Entry(str(one.path), words(one.path.stem), f"ISF {one.category.lower()}", one.doc, SHADER) for one in files
+        CatalogEntry(str(one.path), spell_out(one.path.stem), f"ISF {one.category.lower()}", one.doc, SHADER)
+        for one in files
     )
 
 
-def preset_entries(files: Iterable[Path]) -> tuple[Entry, ...]:
+def preset_entries(files: Iterable[Path]) -> tuple[CatalogEntry, ...]:
     """The graphs that come with the program."""
     return tuple(
-        Entry(str(path), words(path.stem), GROUP, "A preset: a ready graph, added as a group.") for path in files
+        CatalogEntry(str(path), spell_out(path.stem), GROUP, "A preset: a ready graph, added as a group.")
+        for path in files
     )
 
 
-def graph_entries() -> tuple[Entry, ...]:
+def graph_entries() -> tuple[CatalogEntry, ...]:
     """What is no node."""
     ends = [
-        Entry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
+        CatalogEntry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
         for side, doc in (("input", "Where it enters the graph."), ("output", "Where it leaves the graph."))
         for kind in Kind
     ]
     return (
         *ends,
-        Entry("frame", "frame", GRAPH, "A titled area; what lies on it moves with it."),
-        Entry("comment", "comment", GRAPH, "A note on the canvas."),
+        CatalogEntry("frame", "frame", GRAPH, "A titled area; what lies on it moves with it."),
+        CatalogEntry("comment", "comment", GRAPH, "A note on the canvas."),
     )
 
 
@@ -84,10 +86,10 @@ class Section:
     """Entries under a heading."""
 
     title: str
-    entries: tuple[Entry, ...]
+    entries: tuple[CatalogEntry, ...]
 
 
-def found(entries: Sequence[Entry], query: str, recent: Sequence[str] = ()) -> tuple[Section, ...]:
+def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequence[str] = ()) -> tuple[Section, ...]:
     """What the list shows: the best matches of `query`, or without one the recent ones and then all by category."""
     if query.strip():
         titles = match(query, [entry.title for entry in entries])
@@ -97,20 +99,20 @@ def found(entries: Sequence[Entry], query: str, recent: Sequence[str] = ()) -> t
         return (Section("", (*named, *rest)),)
     by_id = {entry.id: entry for entry in entries}
     last = tuple(by_id[id] for id in recent if id in by_id)
-    groups: dict[str, list[Entry]] = {}
+    groups: dict[str, list[CatalogEntry]] = {}
     for entry in entries:
         groups.setdefault(entry.category, []).append(entry)
     listed = [Section(title, tuple(group)) for title, group in groups.items()]
     return (*([Section("recent", last)] if last else []), *listed)
 
 
-def narrowed(entries: Collection[Entry], fitting: Collection[str]) -> tuple[Entry, ...]:
+def keep_fitting(entries: Collection[CatalogEntry], fitting: Collection[str]) -> tuple[CatalogEntry, ...]:
     """Those that a link fits."""
     known = set(fitting)
     return tuple(entry for entry in entries if entry.id in known)
 
 
-def _says(entry: Entry, query: str) -> bool:
+def _says(entry: CatalogEntry, query: str) -> bool:
     """True if every word of the query stands in the category or description as it was typed."""
     text = entry.searched.lower()
     return all(word in text for word in query.lower().split())

@@ -24,7 +24,7 @@ def match(query: str, candidates: Sequence[str]) -> tuple[Match, ...]:
     Starts of words, runs of letters and short candidates are worth more; equally good ones stay in order. Letter case
     does not matter. Asking the same again costs nothing, so a panel may ask in every frame.
     """
-    return _ranked(" ".join(query.lower().split()), tuple(candidates))
+    return _rank(" ".join(query.lower().split()), tuple(candidates))
 
 
 def runs(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bool]]:
@@ -38,16 +38,16 @@ def runs(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bool]]:
 
 
 @lru_cache(maxsize=64)
-def _ranked(query: str, candidates: tuple[str, ...]) -> tuple[Match, ...]:
+def _rank(query: str, candidates: tuple[str, ...]) -> tuple[Match, ...]:
     words = query.split()
-    found = (_matched(index, words, text) for index, text in enumerate(candidates))
+    found = (_match_words(index, words, text) for index, text in enumerate(candidates))
     return tuple(sorted((one for one in found if one), key=lambda one: (-one.score, one.index)))
 
 
-def _matched(index: int, words: list[str], text: str) -> Match | None:
+def _match_words(index: int, words: list[str], text: str) -> Match | None:
     score, positions = 0.0, set[int]()
     for word in words:
-        best = _aligned(word, text)
+        best = _align_letters(word, text)
         if best is None:
             return None
         score += best[0]
@@ -55,7 +55,7 @@ def _matched(index: int, words: list[str], text: str) -> Match | None:
     return Match(index, score - _SHORT * len(text) if words else 0.0, tuple(sorted(positions)))
 
 
-def _aligned(word: str, text: str) -> tuple[float, tuple[int, ...]] | None:
+def _align_letters(word: str, text: str) -> tuple[float, tuple[int, ...]] | None:
     """The best way to find the letters of a word in order: its score and their positions."""
     lower = text.lower()
     if len(lower) != len(text):
@@ -65,10 +65,10 @@ def _aligned(word: str, text: str) -> tuple[float, tuple[int, ...]] | None:
         reached: dict[int, tuple[float, tuple[int, ...]]] = {}
         at = lower.find(letter)
         while at >= 0:
-            before = [(_step(last, at, score), places) for last, (score, places) in ends.items() if last < at]
+            before = [(_score_step(last, at, score), places) for last, (score, places) in ends.items() if last < at]
             if before:
                 score, places = max(before, key=lambda way: way[0])
-                reached[at] = score + _worth(text, at), (*places, at)
+                reached[at] = score + _score_letter(text, at), (*places, at)
             at = lower.find(letter, at + 1)
         if not reached:
             return None
@@ -76,14 +76,14 @@ def _aligned(word: str, text: str) -> tuple[float, tuple[int, ...]] | None:
     return max(ends.values(), key=lambda way: way[0])
 
 
-def _step(last: int, at: int, score: float) -> float:
+def _score_step(last: int, at: int, score: float) -> float:
     """The score of going on at a letter: better right after the last one."""
     if last < 0:
         return score - _GAP * min(at, 8)
     return score + _NEXT if at == last + 1 else score - _GAP * min(at - last, 8)
 
 
-def _worth(text: str, at: int) -> float:
+def _score_letter(text: str, at: int) -> float:
     here, before = text[at], text[at - 1] if at else " "
     starts = (here.isalnum() and not before.isalnum()) or (here.isupper() and before.islower())
     return _LETTER + (_WORD_START if starts else 0.0) + (_FIRST if at == 0 else 0.0)

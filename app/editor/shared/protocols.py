@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
 
 
-class Clipboard(Protocol):
+class SystemText(Protocol):
     """The clipboard of the system."""
 
     def get(self) -> str:
@@ -71,7 +71,7 @@ class PlayState(Protocol):
         ...
 
 
-class CodeFault(Protocol):
+class ReportedFault(Protocol):
     """The Code panel, for panels that would repeat its message."""
 
     @property

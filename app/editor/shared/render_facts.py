@@ -51,10 +51,10 @@ def overview_of(context: RenderContext, id: str) -> Overview | str | None:
     """What the render of a node holds, a sentence if it cannot be read or none is named, None while nobody knows."""
     graph = context.session.graph
     file = render_file(graph, id)
-    return "no file" if file is None else context.renders.overview(file, named(graph.nodes[id]))
+    return "no file" if file is None else context.renders.overview(file, named_layers(graph.nodes[id]))
 
 
-def named(item: object) -> Mapping[str, str]:
+def named_layers(item: object) -> Mapping[str, str]:
     """The layers that a node names, by the roles that they are to have."""
     values = item.values.values() if isinstance(item, Node) else ()
     return {value.role: str(getattr(item, value.name)) for value in values if value.role and value.type == "text"}

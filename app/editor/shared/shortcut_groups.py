@@ -23,7 +23,7 @@ MOUSE: tuple[tuple[str, str], ...] = (
 )
 
 
-def groups(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
+def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
     """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
     found: dict[str, list[Action]] = {}
     for action in actions.all:
@@ -33,7 +33,7 @@ def groups(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[A
     return ((title, tuple(group)) for title, group in found.items())
 
 
-def condensed(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+def condense_rows(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Keys and labels, where a row that only counts up is one line: `1 - 9`, `View 1 - 9`."""
     made: list[tuple[str, str]] = []
     for keys, label in lines:
@@ -54,19 +54,19 @@ def _through(text: str, digit: str) -> str:
     return re.sub(r"(\d)( - \d)?", rf"\1 - {digit}", text)
 
 
-def columns(sizes: tuple[int, ...], count: int) -> tuple[tuple[int, ...], ...]:
+def balance_columns(sizes: tuple[int, ...], count: int) -> tuple[tuple[int, ...], ...]:
     """Blocks of these heights in columns as equal as their order allows: the indices of the blocks of each column."""
     lowest, highest = max(sizes, default=0), sum(sizes)
     while lowest < highest:
         middle = (lowest + highest) // 2
-        if len(_filled(sizes, middle)) <= count:
+        if len(_fill_columns(sizes, middle)) <= count:
             highest = middle
         else:
             lowest = middle + 1
-    return _filled(sizes, highest)
+    return _fill_columns(sizes, highest)
 
 
-def _filled(sizes: tuple[int, ...], height: int) -> tuple[tuple[int, ...], ...]:
+def _fill_columns(sizes: tuple[int, ...], height: int) -> tuple[tuple[int, ...], ...]:
     made: list[list[int]] = []
     room = 0
     for index, size in enumerate(sizes):

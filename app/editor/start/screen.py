@@ -15,12 +15,12 @@ from ...authoring.recovery.recovery import RecoveredWork
 from ...custom_nodes.plugins import preset_paths
 from ...media.pictures.thumbnail import load_thumbnail
 from ..theme.style import mix, u32, ui_scale, vec4
-from ..toolkit.buttons import main_button, outline, quiet
-from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.buttons import main_button, outline, quiet_button
+from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import chord
 from ..toolkit.places import record
 from ..toolkit.textures import Textures
-from ..toolkit.words import dim, elided, font, tip, wrapped
+from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
 
 if TYPE_CHECKING:
     from .context import StartContext
@@ -72,7 +72,7 @@ class StartScreen:
             self._presets()
             imgui.end_child()
             if not covered:
-                close = close or escaped()
+                close = close or escape_pressed()
                 self._keys()
         if close:
             self._context.dialogs.open.discard("start")
@@ -87,7 +87,7 @@ class StartScreen:
     def _begin(self) -> None:
         with font(self._context, "bold", 30.0):
             imgui.text_unformatted("Halation")
-        dim(self._context, "Screen-space effects, node by node")
+        draw_dim(self._context, "Screen-space effects, node by node")
         imgui.dummy(ImVec2(0, 8 * ui_scale()))
         width = imgui.get_content_region_avail().x
         if main_button(self._context, f"{icons.ICON_FA_PLUS}  New graph", "start new", width=width):
@@ -103,8 +103,8 @@ class StartScreen:
         with font(self._context, "bold"):
             imgui.text_unformatted("First time here?")
         for line in HINTS:
-            wrapped(self._context.palette.dim, line)
-        if quiet(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
+            draw_wrapped(self._context.palette.dim, line)
+        if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
 
     def _recent(self) -> None:
@@ -112,7 +112,7 @@ class StartScreen:
         with font(self._context, "bold"):
             imgui.text_unformatted("Recent")
         if not self._context.store.current.recent:
-            dim(self._context, "Files that you open appear here.")
+            draw_dim(self._context, "Files that you open appear here.")
         for index, recent in enumerate(self._context.store.current.recent):
             imgui.push_id(index)
             self._recent_row(index, recent)
@@ -131,12 +131,12 @@ class StartScreen:
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
         faint = mix(self._context.palette.dim, self._context.palette.panel, 0.4)
-        imgui.text_colored(vec4(self._context.palette.text if there else faint), elided(path.stem, room))
+        imgui.text_colored(vec4(self._context.palette.text if there else faint), cut_middle(path.stem, room))
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + line + 3 * scale))
-        imgui.text_colored(vec4(self._context.palette.dim if there else faint), elided(str(path.parent), room))
+        imgui.text_colored(vec4(self._context.palette.dim if there else faint), cut_middle(str(path.parent), room))
         if over:
             imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
-            if quiet(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
+            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
                 self._context.store.forget(recent.path)
                 clicked = False
         imgui.set_cursor_pos(after)
@@ -163,10 +163,10 @@ class StartScreen:
                 self._found = None
             record(self._context, f"discard {index}")
             imgui.same_line()
-            imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
+            imgui.text_unformatted(cut_middle(one.title, 200 * ui_scale()))
             tip(str(one.path or "never saved"))
             imgui.same_line()
-            dim(self._context, elided(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
+            draw_dim(self._context, cut_middle(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
 
     def _presets(self) -> None:

@@ -154,7 +154,7 @@ class Ruler:
 
 
 def _plane(context: TimelineContext, rect: Rect) -> Plane:
-    low, high = context.timeline.seen(context.session)
+    low, high = context.timeline.visible_range(context.session)
     return Plane(View(low, high), rect)
 
 

@@ -75,7 +75,7 @@ class TimelineState:
         """Another way to go on at the end."""
         self.loop = LOOPS[(LOOPS.index(self.loop) + 1) % len(LOOPS)]
 
-    def seen(self, session: Session) -> tuple[float, float]:
+    def visible_range(self, session: Session) -> tuple[float, float]:
         """The frames at the borders of the ruler."""
         first, last = session.frames
         if self.view is None:
@@ -84,7 +84,7 @@ class TimelineState:
 
     def zoom(self, session: Session, frame: float, factor: float) -> None:
         """See so many times as much detail, with one frame staying where it is; all of it is what is seen at most."""
-        low, high = self.seen(session)
+        low, high = self.visible_range(session)
         first, last = session.frames
         widest = max(last - first + 1.0, LEAST_VIEW) * 1.5
         wide = min(max((high - low) / factor, LEAST_VIEW), widest)

@@ -12,7 +12,7 @@ from ..fields.number_field import number_field
 from ..fields.numbers import RATE, near
 from ..theme.palette import DARK
 from ..theme.style import ui_scale
-from ..toolkit.buttons import entry, quiet, tip_of, tool
+from ..toolkit.buttons import entry, quiet_button, tip_of, tool
 from ..toolkit.places import item_rect
 from ..toolkit.words import SMALL, font, tip, write
 from .playback import Loop
@@ -98,7 +98,7 @@ class Timeline:
         imgui.same_line()
         action = self._context.actions[f"time.{timeline.loop.replace('-', '_')}"]
         doc = f"{tip_of(self._context, action)}\nClick for another way"
-        if quiet(self._context, _LOOPS[timeline.loop], "button time.loops", doc):
+        if quiet_button(self._context, _LOOPS[timeline.loop], "button time.loops", doc):
             timeline.next_loop()
 
     def _frame(self, width: float) -> None:

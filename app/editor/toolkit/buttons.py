@@ -9,23 +9,30 @@ from imgui_bundle import ImVec2, imgui
 
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
-from .keys import shown
-from .places import Surface, item_rect, record
+from .keys import display_shortcut
+from .places import WidgetSurface, item_rect, record
 from .words import tip
 
 if TYPE_CHECKING:
     from ..shared.action import Action, Actions
 
 
-class ActionSurface(Surface, Protocol):
+class ActionSurface(WidgetSurface, Protocol):
     """A surface whose widgets run actions."""
 
     @property
     def actions(self) -> Actions: ...
 
 
-def quiet(
-    surface: Surface, label: str, name: str, doc: str, *, lit: bool = False, enabled: bool = True, width: float = 0.0
+def quiet_button(
+    surface: WidgetSurface,
+    label: str,
+    name: str,
+    doc: str,
+    *,
+    lit: bool = False,
+    enabled: bool = True,
+    width: float = 0.0,
 ) -> bool:
     """A button without a background, a square one if `label` is an icon; `name` is its place, `doc` its tooltip."""
     palette, square = surface.palette, len(label) == 1
@@ -43,7 +50,7 @@ def quiet(
     return clicked
 
 
-def room_for(*labels: str, gap: float | None = None) -> float:
+def width_of_buttons(*labels: str, gap: float | None = None) -> float:
     """Width of quiet buttons of these labels side by side."""
     style = imgui.get_style()
     between = style.item_spacing.x if gap is None else gap
@@ -54,9 +61,9 @@ def room_for(*labels: str, gap: float | None = None) -> float:
     return sum(widths) + between * (len(labels) - 1)
 
 
-def right_aligned(*labels: str) -> None:
+def align_right(*labels: str) -> None:
     """Move to where buttons of these labels end at the right border: on the same line, if they fit there."""
-    width = room_for(*labels)
+    width = width_of_buttons(*labels)
     imgui.same_line()
     if imgui.get_content_region_avail().x < width:
         imgui.new_line()
@@ -64,7 +71,7 @@ def right_aligned(*labels: str) -> None:
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
 
 
-def main_button(surface: Surface, label: str, name: str, *, width: float = 0.0, enabled: bool = True) -> bool:
+def main_button(surface: WidgetSurface, label: str, name: str, *, width: float = 0.0, enabled: bool = True) -> bool:
     """The button that most people want."""
     palette = surface.palette
     for color, lit in ((imgui.Col_.button, 0.0), (imgui.Col_.button_hovered, 0.12), (imgui.Col_.button_active, 0.25)):
@@ -78,7 +85,7 @@ def main_button(surface: Surface, label: str, name: str, *, width: float = 0.0, 
     return clicked
 
 
-def close_button(surface: Surface, name: str) -> bool:
+def close_button(surface: WidgetSurface, name: str) -> bool:
     """The button at the lower right that ends a dialog."""
     width = 96 * ui_scale()
     imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
@@ -95,7 +102,7 @@ def outline(color: RGB, thickness: float = 2.0) -> None:
 
 
 def dropdown(
-    surface: Surface,
+    surface: WidgetSurface,
     label: str,
     name: str,
     doc: str,
@@ -105,7 +112,7 @@ def dropdown(
     width: float = 0.0,
 ) -> None:
     """A quiet button that opens a menu below it."""
-    if quiet(surface, label, name, doc, lit=lit, width=width):
+    if quiet_button(surface, label, name, doc, lit=lit, width=width):
         imgui.open_popup(name)
     left, _, _, bottom = surface.places[name]
     imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
@@ -122,7 +129,7 @@ def tip_of(surface: ActionSurface, action: Action) -> str:
     """What the tooltip of an action says."""
     shortcut = surface.actions.shortcut(action.id)
     title = action.label.removesuffix("...")
-    title = f"{title} ({shown(shortcut)})" if shortcut else title
+    title = f"{title} ({display_shortcut(shortcut)})" if shortcut else title
     return f"{title}\n{action.doc}" if action.doc else title
 
 
@@ -130,7 +137,7 @@ def tool(surface: ActionSurface, icon: str, id: str) -> None:
     """A quiet button that runs an action, lit while the action is checked."""
     action = surface.actions[id]
     lit = surface.actions.is_checked(action)
-    if quiet(
+    if quiet_button(
         surface, icon, f"button {id}", tip_of(surface, action), lit=lit, enabled=surface.actions.is_enabled(action)
     ):
         surface.actions.run(id)
@@ -140,7 +147,7 @@ def entry(surface: ActionSurface, action: Action, icon: str = "") -> None:
     """An action as an entry of the menu that is open."""
     checked = surface.actions.is_checked(action)
     label = f"{icon}  {action.label}" if icon else action.label
-    shortcut = shown(surface.actions.shortcut(action.id))
+    shortcut = display_shortcut(surface.actions.shortcut(action.id))
     clicked, _ = imgui.menu_item(f"{label}##{action.id}", shortcut, checked, surface.actions.is_enabled(action))
     record(surface, f"menu {action.id}")
     tip(action.doc)

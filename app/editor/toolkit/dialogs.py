@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from ..theme.style import ui_scale, vec4
-from .places import Surface
+from .places import WidgetSurface
 
 FIXED = (
     int(imgui.WindowFlags_.no_docking)
@@ -19,7 +19,7 @@ FIXED = (
 )
 
 
-def backdrop(surface: Surface, name: str, opacity: float = 0.45) -> bool:
+def backdrop(surface: WidgetSurface, name: str, opacity: float = 0.45) -> bool:
     """Cover everything below a dialog, so that nothing else can be clicked; True if it was clicked itself."""
     view = imgui.get_main_viewport()
     imgui.set_next_window_pos(view.pos)
@@ -38,7 +38,7 @@ def backdrop(surface: Surface, name: str, opacity: float = 0.45) -> bool:
 
 @contextmanager
 def dialog(
-    surface: Surface,
+    surface: WidgetSurface,
     title: str,
     size: tuple[float, float],
     *,
@@ -73,7 +73,7 @@ def dialog(
     imgui.end()
 
 
-def escaped() -> bool:
+def escape_pressed() -> bool:
     """True if Escape was pressed in this dialog, with nothing else open in it."""
     inside = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
     return inside and imgui.is_key_pressed(imgui.Key.escape, False)

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ..theme.palette import Palette
 from ..theme.style import mix, u32, ui_scale, vec4
-from .places import Rect, Surface, record
+from .places import Rect, WidgetSurface, record
 from .words import tip
 
 
@@ -40,7 +40,7 @@ def label(text: str, width: float) -> None:
     imgui.same_line(left + width * ui_scale())
 
 
-def combo(surface: Surface, name: str, now: str, choices: Sequence[str], width: float = -1.0) -> str:
+def combo(surface: WidgetSurface, name: str, now: str, choices: Sequence[str], width: float = -1.0) -> str:
     """A list of texts; what was chosen in this frame, or ""."""
     imgui.set_next_item_width(width)
     chosen = ""
@@ -57,7 +57,7 @@ def combo(surface: Surface, name: str, now: str, choices: Sequence[str], width: 
 
 
 def number(
-    surface: Surface,
+    surface: WidgetSurface,
     name: str,
     value: float,
     form: str,

@@ -57,7 +57,7 @@ def text(chord: int) -> str:
     return "+".join([*modifiers, _names()[chord & ~sum(_MODIFIERS.values())]])
 
 
-def shown(text: str) -> str:
+def display_shortcut(text: str) -> str:
     """A shortcut as people read it: `Ctrl+,` for `Ctrl+Comma`, and Cmd for Ctrl on macOS."""
     control = "Cmd" if sys.platform == "darwin" else "Ctrl"
     return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
@@ -78,7 +78,7 @@ def _keys() -> Mapping[str, int]:
     names = list(imgui.Key.__members__)  # `dir` leaves out names that share a number
     other = re.compile(r"^(mouse|gamepad|reserved|named|mod|none)|_(ctrl|shift|alt|super)$")
     plain = [name for name in names if not other.search(name)]
-    return MappingProxyType({_named(name): int(getattr(imgui.Key, name)) for name in plain})
+    return MappingProxyType({_name_key(name): int(getattr(imgui.Key, name)) for name in plain})
 
 
 @cache
@@ -86,6 +86,6 @@ def _names() -> Mapping[int, str]:
     return MappingProxyType({key: name for name, key in _keys().items()})
 
 
-def _named(name: str) -> str:
+def _name_key(name: str) -> str:
     """`left_bracket` as LeftBracket, `_0` as 0."""
     return "".join(part[:1].upper() + part[1:] for part in name.split("_"))

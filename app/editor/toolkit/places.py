@@ -13,7 +13,7 @@ Rect = tuple[float, float, float, float]
 """Left, top, right, bottom in screen pixels."""
 
 
-class Surface(Protocol):
+class WidgetSurface(Protocol):
     """What widgets are drawn on, such as the context of a panel: it knows their colors, and keeps where they are."""
 
     @property
@@ -23,7 +23,7 @@ class Surface(Protocol):
     def places(self) -> dict[str, Rect]: ...
 
 
-class TextSurface(Surface, Protocol):
+class TextSurface(WidgetSurface, Protocol):
     """A surface with the fonts of the window."""
 
     @property
@@ -36,7 +36,7 @@ def item_rect() -> Rect:
     return low.x, low.y, high.x, high.y
 
 
-def record(surface: Surface, name: str) -> None:
+def record(surface: WidgetSurface, name: str) -> None:
     """Note where the last widget is."""
     surface.places[name] = item_rect()
 

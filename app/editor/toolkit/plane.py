@@ -25,7 +25,7 @@ class View:
     low: float = -0.1
     high: float = 1.1
 
-    def panned(self, frames: float, values: float) -> View:
+    def pan(self, frames: float, values: float) -> View:
         """Moved on."""
         return View(self.first + frames, self.last + frames, self.low + values, self.high + values)
 

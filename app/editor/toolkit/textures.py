@@ -36,7 +36,7 @@ class Textures:
         self._kept.clear()
 
 
-def fitted(pixels: Array, width: float, height: float) -> tuple[float, float]:
+def fit_picture(pixels: Array, width: float, height: float) -> tuple[float, float]:
     """The size of a picture that fills a box as far as its shape allows, never enlarged more than twice."""
     across, down = pixels.shape[1], pixels.shape[0]
     scale = min(width / across, height / down, 2.0)

@@ -18,7 +18,7 @@ WIDTH, HEIGHT = 192, 108
 _IN_MEMORY, _ON_DISK, _WAITING = 400, 2000, 48
 
 
-class Pictures:
+class FileThumbnails:
     """What was asked for last is decoded first. `folder` keeps what was decoded, for the next time."""
 
     def __init__(self, folder: Path) -> None:

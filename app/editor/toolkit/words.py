@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.log import Level
 from ..theme.palette import RGB, Palette
 from ..theme.style import EM, mix, u32, ui_scale, vec4
-from .places import Rect, Surface, TextSurface
+from .places import Rect, TextSurface, WidgetSurface
 
 SMALL, TITLE, BIG = EM * 0.86, EM * 1.125, EM * 1.6
 """Font sizes besides that of everything else: notes and headings of sections, titles of dialogs, the program's name."""
@@ -39,12 +39,12 @@ def font(surface: TextSurface, name: Literal["text", "bold", "mono"], size: floa
         imgui.pop_font()
 
 
-def dim(surface: Surface, text: str) -> None:
+def draw_dim(surface: WidgetSurface, text: str) -> None:
     """Text of less weight."""
     imgui.text_colored(vec4(surface.palette.dim), text)
 
 
-def wrapped(color: RGB, text: str) -> None:
+def draw_wrapped(color: RGB, text: str) -> None:
     """Text in a color, as many lines as it needs."""
     imgui.push_style_color(imgui.Col_.text, vec4(color))
     imgui.text_wrapped(text)
@@ -60,12 +60,12 @@ def tip(text: str) -> None:
         imgui.end_tooltip()
 
 
-def fitted(text: str, width: float) -> str:
+def cut_end(text: str, width: float) -> str:
     """`text`, or as much of its beginning as fits in `width` pixels, with an ellipsis."""
     return _cut(text, width, lambda kept: text[:kept] + "…")
 
 
-def elided(text: str, width: float) -> str:
+def cut_middle(text: str, width: float) -> str:
     """`text`, or its two ends if it is wider than `width` pixels: for paths."""
     return _cut(text, width, lambda kept: text[: kept // 2] + "…" + text[len(text) - (kept - kept // 2) :])
 
@@ -82,7 +82,7 @@ def _cut(text: str, width: float, shorter: Callable[[int], str]) -> str:
 
 def write(rect: Rect, text: str, color: RGB, align: float = 0.0, alpha: float = 1.0) -> float:
     """One line of text in a box, cut to fit; `align` 0 is left, 1 right. Returns its width."""
-    text = fitted(text, rect[2] - rect[0])
+    text = cut_end(text, rect[2] - rect[0])
     size = imgui.calc_text_size(text)
     x = rect[0] + (rect[2] - rect[0] - size.x) * align
     y = rect[1] + (rect[3] - rect[1] - size.y) * 0.5
@@ -105,7 +105,7 @@ def note_below(palette: Palette, rect: Rect, text: str, color: RGB) -> None:
     lines.add_text(imgui.get_font(), imgui.get_font_size(), (x + pad.x, y + pad.y), u32(color), text, wrap_width=wrap)
 
 
-def nothing_here(surface: TextSurface, icon: str, title: str, sentence: str) -> None:
+def draw_empty_panel(surface: TextSurface, icon: str, title: str, sentence: str) -> None:
     """What an empty panel says, in its middle."""
     room, scale = imgui.get_content_region_avail(), ui_scale()
     width = max(min(room.x, 320 * scale), 1.0)
@@ -122,5 +122,5 @@ def nothing_here(surface: TextSurface, icon: str, title: str, sentence: str) -> 
             imgui.text_colored(vec4(color), text)
     imgui.set_cursor_pos_x(left + max((room.x - min(size.x, width)) / 2, 0.0))
     imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + min(size.x, width) + scale)
-    dim(surface, sentence)
+    draw_dim(surface, sentence)
     imgui.pop_text_wrap_pos()

@@ -9,8 +9,8 @@ from imgui_bundle import imgui
 
 from ...authoring.flipbook import SIDES
 from ..theme.style import mix, u32, ui_scale, vec4
-from ..toolkit.buttons import quiet, room_for
-from ..toolkit.words import dim, elided, font, tip
+from ..toolkit.buttons import quiet_button, width_of_buttons
+from ..toolkit.words import cut_middle, draw_dim, font, tip
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -36,7 +36,7 @@ def draw_banner(context: ViewerContext) -> None:
     with font(context, "bold"):
         imgui.text_unformatted("Flipbook")
     buttons = (_BACK,) if len(book.strips) > 1 else (_WITH, _BACK)
-    room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(*buttons) - 130 * scale) / len(book.strips)
+    room = (inner.max.x - imgui.get_cursor_screen_pos().x - width_of_buttons(*buttons) - 130 * scale) / len(book.strips)
     colors = {"A": palette.accent, "B": palette.good}
     same = len({strip.name for strip in book.strips}) < len(book.strips)
     for side, strip in zip(SIDES, book.strips, strict=False):
@@ -45,18 +45,18 @@ def draw_banner(context: ViewerContext) -> None:
         if len(book.strips) > 1:
             imgui.text_colored(vec4(colors[side]), side)
             imgui.same_line(0.0, 5 * scale)
-        imgui.text_unformatted(elided(name, room - 30 * scale))
+        imgui.text_unformatted(cut_middle(name, room - 30 * scale))
         tip(str(strip.path))
         if strip.export is not None and strip.export.state in ("running", "waiting"):
             imgui.same_line(0.0, 6 * scale)
-            dim(context, f"{strip.export.done} of {strip.export.total}")
+            draw_dim(context, f"{strip.export.done} of {strip.export.total}")
     imgui.same_line(0.0, 0.0)
-    imgui.set_cursor_screen_pos((inner.max.x - room_for(*buttons) - 4 * scale, start.y))
+    imgui.set_cursor_screen_pos((inner.max.x - width_of_buttons(*buttons) - 4 * scale, start.y))
     if len(book.strips) == 1:
-        if quiet(context, _WITH, "compare flipbook", "Play other pictures beside these"):
+        if quiet_button(context, _WITH, "compare flipbook", "Play other pictures beside these"):
             context.actions.run("flipbook.compare")
         imgui.same_line()
     doc = "The viewer and the timeline show the document again"
-    if quiet(context, _BACK, "close flipbook", doc):
+    if quiet_button(context, _BACK, "close flipbook", doc):
         context.actions.run("flipbook.close")
     imgui.set_cursor_screen_pos((start.x, bottom + 3 * scale))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ...renderer.viewing.probe import Probe
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import Clipboard, CodeFault, ElementView, PlayState
+    from ..shared.protocols import ElementView, PlayState, ReportedFault, SystemText
     from ..shared.stage import Stage
     from .state import ViewerState
 
@@ -34,10 +34,10 @@ class ViewerContext(PanelContext):
     store: PreferenceStore
     actions: Actions
     dialogs: Dialogs
-    clipboard: Clipboard
+    clipboard: SystemText
     timeline: PlayState
     canvas: ElementView
-    code: CodeFault
+    code: ReportedFault
     renders: RenderOverviews
     coloring: ColorFallback
     lights: dict[str, int]

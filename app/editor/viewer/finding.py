@@ -16,7 +16,7 @@ BUDGET = 0.010
 """Seconds per frame."""
 
 
-class Finder:
+class InvalidPixelSearch:
     """A search that goes on while `editor.viewer.finding`."""
 
     def __init__(self, context: ViewerContext) -> None:

@@ -20,7 +20,7 @@ def focuses(item: object) -> bool:
     return isinstance(item, Node) and "depth" in item.inputs and {_CHOICE, _POINT, _DISTANCE} <= item.values.keys()
 
 
-def focused(session: Session) -> Port | None:
+def find_focus_port(session: Session) -> Port | None:
     """The value of the active node that says what is sharp, if the mouse may change it."""
     item = session.graph.nodes.get(session.active)
     if item is None or not focuses(item):
@@ -47,7 +47,7 @@ def focused_by(session: Session, id: str) -> str:
 
 def pick_focus(context: ViewerContext) -> None:
     """Let the next click on the picture say what is sharp; asked for again, not."""
-    port = focused(context.session)
+    port = find_focus_port(context.session)
     if port is not None:
         context.viewer.picking = "" if context.viewer.picking == str(port) else str(port)
 

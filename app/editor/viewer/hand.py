@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from ..theme.style import ui_scale
 from .geometry import Point, Sight
-from .holding import Aim, Hold, aim
+from .holding import HandleTarget, MouseHold, aim
 from .lights import add, can_add, put, token, turn
 from .orbit import Orbit, scene_at
 from .orbit import put as put_camera
@@ -42,13 +42,13 @@ _CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType(
 )
 
 
-class Hand:
+class ViewerInput:
     """What the mouse does with the picture. To be used right after the item that catches the mouse."""
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
-        self._hold: Hold | None = None
-        self.aim = Aim("pan")
+        self._hold: MouseHold | None = None
+        self.aim = HandleTarget("pan")
         self._turned = "", 0.0
         """What the wheel changed last, and when."""
         self.picked: Point | None = None
@@ -86,13 +86,13 @@ class Hand:
             else:
                 imgui.open_popup("viewer menu")
             return
-        taken = self.aim if left else Aim("track" if self._context.viewer.orbits else "pan")
-        taken = Aim("pan") if imgui.is_key_down(imgui.Key.space) else taken
+        taken = self.aim if left else HandleTarget("track" if self._context.viewer.orbits else "pan")
+        taken = HandleTarget("pan") if imgui.is_key_down(imgui.Key.space) else taken
         twice = left and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
         if twice and taken.what in ("pan", "orbit") and sight.under(at) and can_add(self._context):
             add(self._context, sight.fraction(at))
             return
-        self._hold = Hold.begin(self._context, sight, at, taken, ui_scale())
+        self._hold = MouseHold.begin(self._context, sight, at, taken, ui_scale())
 
     def _drag(self, sight: Sight, at: Point, active: bool) -> None:
         assert self._hold is not None

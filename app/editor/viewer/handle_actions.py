@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..shared.action import Action
-from .focus import focused, pick_focus
+from .focus import find_focus_port, pick_focus
 from .lights import can_remove, remove
 from .orbit import frame_scene
 
@@ -22,7 +22,7 @@ def _has_scene(context: ViewerContext) -> bool:
 
 
 def _picks(context: ViewerContext) -> bool:
-    port = focused(context.session)
+    port = find_focus_port(context.session)
     return port is not None and context.viewer.picking == str(port)
 
 
@@ -59,7 +59,7 @@ HANDLES: tuple[Action, ...] = (
         "Viewer/Handles",
         "E",
         "viewer",
-        lambda context: focused(context.session) is not None,
+        lambda context: find_focus_port(context.session) is not None,
         _picks,
         doc="Of the selected depth of field: click on the picture, and what is there is sharp.",
     ),

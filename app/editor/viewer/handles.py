@@ -15,24 +15,24 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Handle:
+class ViewerHandle:
     """A value that is a position, as a fraction of the picture."""
 
     port: Port
     at: Point
 
 
-def handles(session: Session) -> tuple[Handle, ...]:
+def handles(session: Session) -> tuple[ViewerHandle, ...]:
     """Those of the active node that matter, and that nothing else drives."""
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
-    found: list[Handle] = []
+    found: list[ViewerHandle] = []
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
         if value.handle and session.linked(port) is None and not is_idle(session, port):
             x, y = cast("Point", session.graph_now.value(port))
-            found.append(Handle(port, (x, y)))
+            found.append(ViewerHandle(port, (x, y)))
     return tuple(found)
 
 

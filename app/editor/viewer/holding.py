@@ -52,7 +52,7 @@ DOUBLINGS = 3.0
 
 
 @dataclass(frozen=True)
-class Aim:
+class HandleTarget:
     """What a press of the button would take hold of."""
 
     what: What
@@ -70,54 +70,56 @@ def aim(
     ctrl: bool = False,
     alt: bool = False,
     shift: bool = False,
-) -> Aim:
+) -> HandleTarget:
     """What is under the mouse. `scale` is that of the interface."""
     viewer, reach = context.viewer, REACH * scale
     if viewer.picking:
-        return Aim("pick")
+        return HandleTarget("pick")
     if viewer.drawing_region:
-        return Aim("new region")
+        return HandleTarget("new region")
     if ctrl:
-        return Aim("measure")
+        return HandleTarget("measure")
     for handle in handles(context.session):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
-            return Aim("handle", port=handle.port)
+            return HandleTarget("handle", port=handle.port)
     if found := _light(context, sight, at, scale, alt, shift):
         return found
     if viewer.compare == "wipe" and sight.under(at):
         grip = wipe_grip(at, sight.place(viewer.wipe), viewer.wipe_angle, ARM * scale, reach)
         if grip:
-            return Aim("wipe", grip)
+            return HandleTarget("wipe", grip)
     if viewer.region is not None:
         grip = box_grip(at, sight.rectangle(viewer.region), reach)
         if grip:
-            return Aim("region", grip)
+            return HandleTarget("region", grip)
     if viewer.orbits or (alt and viewer.scene):
-        return Aim("track" if shift else "orbit")
-    return Aim("matte" if picks(context) else "pan")
+        return HandleTarget("track" if shift else "orbit")
+    return HandleTarget("matte" if picks(context) else "pan")
 
 
-def _light(context: ViewerContext, sight: Sight, at: Point, scale: float, alt: bool, shift: bool) -> Aim | None:
+def _light(
+    context: ViewerContext, sight: Sight, at: Point, scale: float, alt: bool, shift: bool
+) -> HandleTarget | None:
     """The light there, or what it shines to; the selected one first."""
     near = REACH * scale * 1.6
     if math.dist(at, middle_of(sight, scale)) <= RADIUS * scale + near:
         for lamp in reversed(suns(context)):
             if math.dist(at, knob_of(sight, scale, lamp.camera, lamp.light.direction)) <= near:
-                return Aim("sun", lamp=lamp)
+                return HandleTarget("sun", lamp=lamp)
     for lamp in reversed(lamps(context)):
         if math.dist(at, sight.place(lamp.at)) <= near:
-            return Aim("light depth" if alt else "light drop" if shift else "light", lamp=lamp)
+            return HandleTarget("light depth" if alt else "light drop" if shift else "light", lamp=lamp)
         if lamp.aims and math.dist(at, sight.place(lamp.aims[0])) <= near:
-            return Aim("goal depth" if alt else "goal", lamp=lamp)
+            return HandleTarget("goal depth" if alt else "goal", lamp=lamp)
     return None
 
 
 @dataclass
-class Hold:
+class MouseHold:
     """Something that the mouse holds, from press to release."""
 
     context: ViewerContext
-    aim: Aim
+    aim: HandleTarget
     start: Point
     """Where it was pressed on the screen."""
     offset: Point = (0.0, 0.0)
@@ -132,7 +134,7 @@ class Hold:
     """How far away it is what was pressed on."""
 
     @classmethod
-    def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: Aim, scale: float = 1.0) -> Hold:
+    def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
         """Take hold of what is aimed at."""
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
         held = next((one.at for one in handles(context.session) if one.port == aim.port), None)

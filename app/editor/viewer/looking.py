@@ -55,7 +55,7 @@ def measures(state: ViewerState, kind: Kind) -> bool:
     return meaning in ("field", "vector") and state.low == state.high
 
 
-def asked_view(graph: Graph, port: Port) -> str:
+def requested_view(graph: Graph, port: Port) -> str:
     """The view that an output of the graph asks for: also of what is linked to it, for it is the same picture."""
     for name, output in graph.outputs.items():
         end = Port(OUTPUTS, name)

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 from ..theme.palette import RGB
 from ..theme.style import u32, ui_scale
 from .axes import draw_axes
-from .focus import distance_in_words, focused, is_distance
+from .focus import distance_in_words, find_focus_port, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
 from .ground import depth_at
 from .handles import handles
@@ -42,7 +42,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
     draw_dome(context, lines, sight)
     if viewer.orbits or (viewer.scene and viewer.hovered and imgui.get_io().key_alt):
         draw_axes(context, lines, sight)
-    _picked_depth(context, lines, sight)
+    _draw_picked_depth(context, lines, sight)
     draw_name(context, sight)
 
 
@@ -118,16 +118,16 @@ def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> N
         lines.add_circle((x, y), 5.0 * scale, u32(BLACK, 0.6), 0, 3.0 * scale)
         lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
         port, words = handle.port, [str(handle.port)] if near else []
-        if port == focused(context.session):
+        if port == find_focus_port(context.session):
             words.append(distance_in_words(depth_at(context, handle.at)))
         if words:
             context.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
         context.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
 
 
-def _picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
+def _draw_picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """While a distance is picked: the one that is under the pointer."""
-    viewer, port = context.viewer, focused(context.session)
+    viewer, port = context.viewer, find_focus_port(context.session)
     if not viewer.hovered or port is None or viewer.picking != str(port) or not is_distance(port):
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()

@@ -65,7 +65,7 @@ class Pace:
 
 
 @dataclass
-class Stopwatch:
+class PictureTimer:
     """Measures how long pictures take, from what is seen once per frame."""
 
     _started: float | None = None

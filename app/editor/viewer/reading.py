@@ -23,7 +23,7 @@ BAND = 2**19
 """Pixels that are looked through per frame."""
 
 
-class Reader:
+class ValueReader:
     """What was read last, by what it is of."""
 
     def __init__(self) -> None:

@@ -13,12 +13,12 @@ from imgui_bundle import imgui
 from ...renderer.viewing.plates import Plate
 from ..shared.coloring import settings_in_use
 from ..theme.style import u32, ui_scale
-from ..toolkit.buttons import quiet, room_for, tool
-from ..toolkit.words import nothing_here
+from ..toolkit.buttons import quiet_button, tool, width_of_buttons
+from ..toolkit.words import draw_empty_panel
 from . import graticules, scope_images
 from .geometry import Box, Sight, texels
-from .looking import asked_view, displayed, look_of, meaning_of, range_of
-from .reading import Reader
+from .looking import displayed, look_of, meaning_of, range_of, requested_view
+from .reading import ValueReader
 from .scopes import clipped, extent, rgb_of
 from .state import SCOPES
 from .wanted import A
@@ -33,14 +33,14 @@ SECONDS = 0.2
 _ICONS = (icons.ICON_FA_CHART_AREA, icons.ICON_FA_WAVE_SQUARE, icons.ICON_FA_CHART_COLUMN, icons.ICON_FA_CIRCLE_DOT)
 
 
-class Scopes:
+class ScopesPanel:
     """Draws the scopes that are chosen, below each other or side by side, as fits."""
 
     title = "Scopes"
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
-        self._reader = Reader()
+        self._reader = ValueReader()
         self._plates: dict[str, Plate] = {}
         self._textures: dict[str, int] = {}
         self._mark: object = None
@@ -57,17 +57,17 @@ class Scopes:
         self._draw_tools()
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
-            nothing_here(
+            draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on."
             )
             return
         if shown is None:
-            nothing_here(
+            draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows."
             )
             return
         if shown.kind in (Kind.NUMBER, Kind.COLOR):
-            nothing_here(
+            draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture."
             )
             return
@@ -93,13 +93,15 @@ class Scopes:
             tool(self._context, icon, f"scopes.{name}")
             imgui.same_line(0.0, gap)
         _wrap("Log")
-        if quiet(self._context, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic):
+        if quiet_button(
+            self._context, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic
+        ):
             viewer.scopes_logarithmic = not viewer.scopes_logarithmic
         imgui.same_line(0.0, gap)
         label, lit = ("Scene", True) if viewer.scopes_of_scene else ("Display", False)
         _wrap(label)
         doc = "What is measured: scene-linear numbers, or what the display shows"
-        if quiet(self._context, label, "button measured", doc, lit=lit):
+        if quiet_button(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
     def _refresh(self, shown: DisplayedImage, names: list[str]) -> None:
@@ -152,7 +154,7 @@ class Scopes:
             return rgb_of(part)
         meaning = meaning_of(viewer, shown.kind, lambda: whole)
         port = self._context.session.viewed("A")
-        view = asked_view(self._context.session.graph, port) if port else ""
+        view = requested_view(self._context.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
         span = range_of(viewer, meaning, lambda: whole)
         return displayed(
@@ -194,7 +196,7 @@ class Scopes:
 
 def _wrap(label: str) -> None:
     """Begin another line where a button with that label would not fit."""
-    if room_for(label) > imgui.get_content_region_avail().x:
+    if width_of_buttons(label) > imgui.get_content_region_avail().x:
         imgui.new_line()
 
 

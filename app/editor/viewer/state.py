@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from .pacing import Pace
-from .reading import Reader
+from .reading import ValueReader
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
@@ -87,7 +87,7 @@ class ViewerState:
     """True lets the mouse move the camera of the scene that is seen, not the picture."""
     scene: str = ""
     """The node whose camera that is; "" where there is none."""
-    reader: Reader = field(default_factory=Reader)
+    reader: ValueReader = field(default_factory=ValueReader)
     """The numbers that handles know."""
     compare_after: Compare = "off"
     """How to compare when the flipbook is closed."""
@@ -110,7 +110,7 @@ class ViewerState:
         """Show these channels; asked for again, all of them."""
         self.channels = "color" if self.channels == channels else channels
 
-    def comparing(self, mode: Compare) -> None:
+    def toggle_comparison(self, mode: Compare) -> None:
         """Compare that way; asked for again, not at all."""
         self.compare = "off" if self.compare == mode else mode
 

@@ -9,10 +9,10 @@ from imgui_bundle import imgui
 
 from ...errors import HalationError
 from ..theme.style import ui_scale, vec4
-from ..toolkit.words import dim, font
+from ..toolkit.words import draw_dim, font
 from .geometry import Pixels
 from .measuring import written
-from .reading import Reader
+from .reading import ValueReader
 from .wanted import layer
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _FLAGS = (
 _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", "A / W")))
 
 
-def rows_of(context: ViewerContext, reader: Reader) -> list[tuple[str, str, tuple[float, ...]]]:
+def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str, tuple[float, ...]]]:
     """Every row of the table: name, place, numbers."""
     viewer = context.viewer
     rows: list[tuple[str, str, tuple[float, ...]]] = []
@@ -62,7 +62,7 @@ def rows_of(context: ViewerContext, reader: Reader) -> list[tuple[str, str, tupl
     return rows
 
 
-def draw_table(context: ViewerContext, reader: Reader, height: float) -> None:
+def draw_table(context: ViewerContext, reader: ValueReader, height: float) -> None:
     """Draw it, `height` high."""
     try:
         rows = rows_of(context, reader)
@@ -87,7 +87,7 @@ def _row(context: ViewerContext, name: str, place: str, values: tuple[float, ...
     imgui.table_next_column()
     imgui.text(name)
     imgui.table_next_column()
-    dim(context, place)
+    draw_dim(context, place)
     for value in values:
         imgui.table_next_column()
         color = context.palette.text if np.isfinite(value) else context.palette.error

@@ -13,9 +13,9 @@ from imgui_bundle import imgui
 from ...color.transforms import NO_LOOK, displays, looks, views
 from ..shared.coloring import settings_in_use
 from ..theme.style import ui_scale
-from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
+from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
 from ..toolkit.fields import number
-from .focus import focused
+from .focus import find_focus_port
 from .picking import list_ports, pick_port
 from .state import MEANINGS
 from .wanted import A, B
@@ -41,7 +41,7 @@ Draw = Callable[[], object]
 
 
 @dataclass(frozen=True)
-class _Tool:
+class _ViewerTool:
     """How wide a tool is in the row, how it is drawn there, and how in the menu of what does not fit."""
 
     width: float
@@ -71,15 +71,15 @@ def draw_toolbar(context: ViewerContext, asked_view: str, is_data: bool) -> None
         dropdown(context, icons.ICON_FA_ELLIPSIS, "button more tools", "More tools", rest)
 
 
-def _space(one: _Tool) -> float:
+def _space(one: _ViewerTool) -> float:
     return (_APART if one.apart else _GAP) * ui_scale()
 
 
-def _fitting(tools: list[_Tool], room: float) -> int:
+def _fitting(tools: list[_ViewerTool], room: float) -> int:
     """How many tools fit, with the button of the menu for the others."""
     if sum(one.width + _space(one) for one in tools) <= room:
         return len(tools)
-    room -= room_for(icons.ICON_FA_ELLIPSIS) + _GAP * ui_scale()
+    room -= width_of_buttons(icons.ICON_FA_ELLIPSIS) + _GAP * ui_scale()
     count = 0
     while count < len(tools) and room >= tools[count].width:
         room -= tools[count].width + _space(tools[min(count + 1, len(tools) - 1)])
@@ -87,7 +87,7 @@ def _fitting(tools: list[_Tool], room: float) -> int:
     return count
 
 
-def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_Tool]:
+def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_ViewerTool]:
     viewer = context.viewer
     found = [_port(context, A), _menu(context, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
     if viewer.compares:
@@ -96,9 +96,9 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_Tool
         found += _range(context)
     if viewer.scene:
         found.append(_action(context, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
-    if focused(context.session):
+    if find_focus_port(context.session):
         found.append(_action(context, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
-    lit, widest = viewer.channels != "color", max(map(room_for, _SHORT.values()))
+    lit, widest = viewer.channels != "color", max(map(width_of_buttons, _SHORT.values()))
     found.append(_menu(context, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
         found += _brightness(context)
@@ -134,10 +134,13 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_Tool
     return found
 
 
-def _action(context: ViewerContext, icon: str, id: str, apart: bool = False) -> _Tool:
+def _action(context: ViewerContext, icon: str, id: str, apart: bool = False) -> _ViewerTool:
     glyph = icon if len(icon) == 1 else ""
-    return _Tool(
-        room_for(icon), lambda: tool(context, icon, id), lambda: entry(context, context.actions[id], glyph), apart
+    return _ViewerTool(
+        width_of_buttons(icon),
+        lambda: tool(context, icon, id),
+        lambda: entry(context, context.actions[id], glyph),
+        apart,
     )
 
 
@@ -150,7 +153,7 @@ def _dropdown(
     lit: bool,
     apart: bool = False,
     width: float = 0.0,
-) -> _Tool:
+) -> _ViewerTool:
     def listed() -> None:
         if imgui.begin_menu(f"{doc}##{name}"):
             fill()
@@ -159,7 +162,7 @@ def _dropdown(
     def draw() -> None:
         dropdown(context, label, f"button {name}", doc, fill, lit=lit, width=width)
 
-    return _Tool(width or room_for(label), draw, listed, apart)
+    return _ViewerTool(width or width_of_buttons(label), draw, listed, apart)
 
 
 def _menu(
@@ -172,7 +175,7 @@ def _menu(
     apart: bool = False,
     more: Draw | None = None,
     width: float = 0.0,
-) -> _Tool:
+) -> _ViewerTool:
     """A menu of the menu bar."""
 
     def fill() -> None:
@@ -184,7 +187,7 @@ def _menu(
     return _dropdown(context, label, name, doc, fill, lit, apart, width)
 
 
-def _port(context: ViewerContext, side: str) -> _Tool:
+def _port(context: ViewerContext, side: str) -> _ViewerTool:
     port = context.session.viewed("A" if side == A else "B")
     name = str(port) if port else "nothing"
     label = f"{side}  {name if len(name) <= 22 else f'{name[:21]}…'}"
@@ -194,14 +197,14 @@ def _port(context: ViewerContext, side: str) -> _Tool:
             list_ports(context, side)
             imgui.end_menu()
 
-    return _Tool(room_for(label), lambda: pick_port(context, side, label), listed)
+    return _ViewerTool(width_of_buttons(label), lambda: pick_port(context, side, label), listed)
 
 
-def _number(width: float, draw: Callable[[float], object], apart: bool = False) -> _Tool:
-    return _Tool(width, lambda: draw(width), lambda: draw(imgui.get_font_size() * 9), apart)
+def _number(width: float, draw: Callable[[float], object], apart: bool = False) -> _ViewerTool:
+    return _ViewerTool(width, lambda: draw(width), lambda: draw(imgui.get_font_size() * 9), apart)
 
 
-def _brightness(context: ViewerContext) -> list[_Tool]:
+def _brightness(context: ViewerContext) -> list[_ViewerTool]:
     viewer, font = context.viewer, imgui.get_font_size()
     doc = "Gain of the difference" if viewer.compare == "difference" else "Exposure"
 
@@ -236,7 +239,7 @@ def _brightness(context: ViewerContext) -> list[_Tool]:
     return [_number(font * 4.6, exposure), _number(font * 3.6, gamma), reset]
 
 
-def _range(context: ViewerContext) -> list[_Tool]:
+def _range(context: ViewerContext) -> list[_ViewerTool]:
     """How data is made visible."""
     viewer, font = context.viewer, imgui.get_font_size()
     measured, (low, high) = viewer.low == viewer.high, viewer.span
@@ -265,7 +268,7 @@ def _range(context: ViewerContext) -> list[_Tool]:
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
-def _view(context: ViewerContext, asked: str) -> _Tool:
+def _view(context: ViewerContext, asked: str) -> _ViewerTool:
     viewer, color = context.viewer, settings_in_use(context)
 
     def menu() -> None:

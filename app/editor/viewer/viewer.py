@@ -15,19 +15,19 @@ from ..shared.coloring import settings_in_use
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner
-from .finding import Finder
+from .finding import InvalidPixelSearch
 from .focus import is_distance
 from .geometry import Sight
 from .ground import depth_at
-from .hand import Hand
+from .hand import ViewerInput
 from .handles import pixel_place, takes_position
-from .looking import asked_view, look_of, meaning_of, range_of
+from .looking import look_of, meaning_of, range_of, requested_view
 from .mattes import picks
 from .measuring import copied, picked_color, written
 from .orbit import orbited
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
-from .pacing import Stopwatch
-from .reading import Reader, Scan
+from .pacing import PictureTimer
+from .reading import Scan, ValueReader
 from .saving import ask_to_save
 from .strokes import label
 from .table import draw_table
@@ -74,11 +74,11 @@ class Viewer:
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
-        self._hand = Hand(context)
-        self._reader = Reader()
+        self._hand = ViewerInput(context)
+        self._reader = ValueReader()
         self._scan = Scan()
-        self._finder = Finder(context)
-        self._watch = Stopwatch()
+        self._finder = InvalidPixelSearch(context)
+        self._watch = PictureTimer()
         self._seconds = 0.0
         self._busy_since: float | None = None
         self._search = 0
@@ -90,7 +90,7 @@ class Viewer:
         viewer, preview = self._context.viewer, self._context.preview
         port = self._context.session.viewed("A")
         b = preview.seen(B) if viewer.compares else None
-        now = _Now(preview.seen(A), b, asked_view(self._context.session.graph, port) if port else "")
+        now = _Now(preview.seen(A), b, requested_view(self._context.session.graph, port) if port else "")
         viewer.scene = orbited(self._context.session)
         self._time(now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()

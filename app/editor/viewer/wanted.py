@@ -23,14 +23,14 @@ def layer(name: str) -> str:
 
 def effective_scale(context: ViewerContext) -> float:
     """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
-    viewer, seen = context.viewer, glimpse(context)
+    viewer, seen = context.viewer, find_visible_region(context)
     share = seen.share(viewer.proxy) if seen else 1.0
     return viewer.pace.at(
         viewer.proxy, context.interface.dragging and context.store.current.proxy_while_dragging, share
     )
 
 
-def wanted(context: ViewerContext) -> tuple[dict[str, Port], float]:
+def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
     """What panels show by name, as ports of the graph that one is in, and the scale to compute it at.
 
     That is A, B where it is compared with, every input of the graph while their values are shown, and what says how far
@@ -43,7 +43,7 @@ def wanted(context: ViewerContext) -> tuple[dict[str, Port], float]:
     return found | depths(context), effective_scale(context)
 
 
-def glimpse(context: ViewerContext) -> VisibleRegion | None:
+def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
     """What can be seen of A, and of B where it is compared with; None where all is needed to show it.
 
     So it is while frames are played, which are kept for the next time, and where numbers of the whole picture say how

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ...renderer.viewing.display import Display
     from ...renderer.viewing.probe import Probe
     from ..shared.action import Actions, Scope
-    from ..shared.protocols import Clipboard
+    from ..shared.protocols import SystemText
 
 
 @dataclass
@@ -43,7 +43,7 @@ class Editor:
     store: PreferenceStore
     actions: Actions
     recovery: RecoveryFile
-    clipboard: Clipboard
+    clipboard: SystemText
     display: Display
     probe: Probe
     interface: Interface

@@ -13,7 +13,7 @@ from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrated, shader_folder
 from ...watch.sequence_files import all_files
 from ...watch.watching import Change, groups_of, pictures_of
-from ..viewer.wanted import glimpse, wanted
+from ..viewer.wanted import find_visible_region, list_wanted_ports
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -68,8 +68,8 @@ class FrameUpdater:
         preview.thumbnailing, preview.timed = preferences.thumbnails, preferences.timings
         preview.paused = editor.viewer.paused
         self._play(session)
-        ports, scale = wanted(context)
-        preview.glimpse = glimpse(context)
+        ports, scale = list_wanted_ports(context)
+        preview.glimpse = find_visible_region(context)
         place = session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
         preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.frame)

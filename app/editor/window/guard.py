@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 from .editor import Editor
 
 
-def guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
+def draw_guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
     """Draw a panel; False if it failed. Then the stacks of the window library are put right, and Problems says why."""
     state = imgui.internal.ErrorRecoveryState()
     imgui.internal.error_recovery_store_state(state)
@@ -30,7 +30,7 @@ def guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
     return True
 
 
-def forgive() -> None:
+def enable_error_recovery() -> None:
     """What a panel leaves open is closed for it, instead of ending the program; to be called once in a window."""
     io = imgui.get_io()
     io.config_error_recovery_enable_assert = io.config_error_recovery_enable_tooltip = False
@@ -41,12 +41,12 @@ def _recover(state: imgui.internal.ErrorRecoveryState) -> None:
     """End all that was begun since. What is left open is no news here, though tests want to hear of it elsewhere."""
     io = imgui.get_io()
     strict = io.config_error_recovery_enable_assert
-    forgive()
+    enable_error_recovery()
     imgui.internal.error_recovery_try_to_recover_state(state)
     io.config_error_recovery_enable_assert = strict
 
 
-def failed(editor: Editor, name: str) -> None:
+def draw_failure(editor: Editor, name: str) -> None:
     """What a panel shows in place of itself."""
     imgui.text_wrapped(f"{name} could not be drawn. The document is safe; Problems has the details.")
     if imgui.button("Try again"):

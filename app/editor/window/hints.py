@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..toolkit.keys import shown
+from ..toolkit.keys import display_shortcut
 from ..viewer.context import ViewerContext
 from ..viewer.lights import can_add
 from ..viewer.mattes import picks
@@ -26,7 +26,7 @@ def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint
                 ("Shift+drag", "move the scene"),
                 ("Wheel", "nearer"),
                 ("Space+drag", "move the picture"),
-                (_key(editor, "viewer.frame_scene"), "show all of it"),
+                (key_text(editor, "viewer.frame_scene"), "show all of it"),
             )
         if picks(context):
             return ("Click", "pick an object, or no longer"), ("Drag", "move the picture"), ("Wheel", "zoom")
@@ -36,16 +36,18 @@ def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint
                 ("Alt+drag or wheel", "nearer or farther"),
                 ("Shift+drag", "onto a surface"),
                 ("Double click", "add one"),
-                (_key(editor, "viewer.remove_light"), "remove it"),
+                (key_text(editor, "viewer.remove_light"), "remove it"),
             )
     if panel == "Graph" and canvas.tool:
         return ("Drag", "across links"), ("Escape", "leave it")
-    return tuple((_key(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if _key(editor, keys))
+    return tuple(
+        (key_text(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if key_text(editor, keys)
+    )
 
 
-def _key(editor: Editor, keys: str) -> str:
+def key_text(editor: Editor, keys: str) -> str:
     """`keys`, or the shortcut in force if they name an action."""
-    return shown(editor.actions.shortcut(keys)) if "." in keys else keys
+    return display_shortcut(editor.actions.shortcut(keys)) if "." in keys else keys
 
 
 _HINTS: dict[str, tuple[Hint, ...]] = {

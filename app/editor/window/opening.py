@@ -20,7 +20,7 @@ def open_window(path: Path | None, bindings: Mapping[str, str]) -> None:
     state = state_folder()
     window = Window(path, bindings, version=best_version(), state=state)
     keep_layout(window.params, state)
-    with _asked_to_end(window) as asked:
+    with _close_on_signals(window) as asked:
         run(window)
     if signal.SIGINT in asked:
         raise KeyboardInterrupt
@@ -52,7 +52,7 @@ def keep_layout(params: hello_imgui.RunnerParams, state: Path) -> None:
 
 
 @contextmanager
-def _asked_to_end(window: Window) -> Iterator[list[int]]:
+def _close_on_signals(window: Window) -> Iterator[list[int]]:
     """Signals that ask the process to end close the window; unsaved work is offered at the next start.
 
     They are heard between two frames: an exception at any moment could cut a save in two.

@@ -10,8 +10,8 @@ from ..browser.browser import FileBrowser
 from ..canvas.canvas import Canvas
 from ..code.panel import CodePanel
 from ..command_palette.palette import CommandPalette
-from ..curves.panel import Animation
-from ..dialogs.about import About
+from ..curves.panel import AnimationPanel
+from ..dialogs.about import AboutDialog
 from ..dialogs.cheat_sheet import CheatSheet
 from ..dialogs.question import QuestionDialog
 from ..history.panel import HistoryPanel
@@ -19,11 +19,11 @@ from ..inspector.inspector import Inspector
 from ..log.panel import LogPanel
 from ..log.toasts import Toasts
 from ..preferences.dialog import PreferencesDialog
-from ..problems.panel import Problems
-from ..renders.panel import Renders
+from ..problems.panel import ProblemsPanel
+from ..renders.panel import RendersPanel
 from ..shared.window_commands import PanelTitle
 from ..start.screen import StartScreen
-from ..viewer.scopes_panel import Scopes
+from ..viewer.scopes_panel import ScopesPanel
 from ..viewer.viewer import Viewer
 from .contexts import Contexts
 
@@ -47,13 +47,13 @@ class Docked:
 DOCKED = (
     Docked("Viewer", "MainDockSpace", lambda contexts: Viewer(contexts.viewer), bare=True),
     Docked("Graph", "Lower", lambda contexts: Canvas(contexts.canvas), bare=True),
-    Docked("Animation", "Lower", lambda contexts: Animation(contexts.curves), bare=True),
+    Docked("Animation", "Lower", lambda contexts: AnimationPanel(contexts.curves), bare=True),
     Docked("Code", "Lower", lambda contexts: CodePanel(contexts.code)),
-    Docked("Problems", "Lower", lambda contexts: Problems(contexts.problems)),
-    Docked("Renders", "Lower", lambda contexts: Renders(contexts.renders)),
+    Docked("Problems", "Lower", lambda contexts: ProblemsPanel(contexts.problems)),
+    Docked("Renders", "Lower", lambda contexts: RendersPanel(contexts.renders)),
     Docked("Log", "Lower", lambda contexts: LogPanel(contexts.log)),
     Docked("Inspector", "Right", lambda contexts: Inspector(contexts.inspector)),
-    Docked("Scopes", "RightLower", lambda contexts: Scopes(contexts.viewer)),
+    Docked("Scopes", "RightLower", lambda contexts: ScopesPanel(contexts.viewer)),
     Docked("History", "RightLower", lambda contexts: HistoryPanel(contexts.history)),
 )
 
@@ -63,7 +63,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),
     ("Files", lambda contexts: FileBrowser(contexts.browser)),
-    ("About", lambda contexts: About(contexts.dialogs)),
+    ("About", lambda contexts: AboutDialog(contexts.dialogs)),
     ("Question", lambda contexts: QuestionDialog(contexts.dialogs)),
     ("Messages", lambda contexts: Toasts(contexts.log)),
 )

@@ -26,14 +26,14 @@ def run_shortcuts(editor: Editor) -> None:
     done = False
     for action in editor.actions.all:
         text = editor.actions.shortcut(action.id)
-        if not done and text and action.scope in ("", editor.scope) and _pressed(editor, text, action.repeats):
+        if not done and text and action.scope in ("", editor.scope) and _is_pressed(editor, text, action.repeats):
             editor.actions.run(action.id)
             done = True
     for key in _TAKEN:
         imgui.internal.set_key_owner(key, _OURS)
 
 
-def _pressed(editor: Editor, text: str, repeats: bool) -> bool:
+def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
     keys = chord(text)
     key = imgui.Key(keys & ~_MODIFIERS)
     if key not in _TAKEN:

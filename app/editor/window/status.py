@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from ..theme.style import EM, vec4
 from ..toolkit.places import record
-from ..toolkit.words import dim, fitted, font, level_color
+from ..toolkit.words import cut_end, draw_dim, font, level_color
 from ..viewer.wanted import A
 from .contexts import Contexts
 from .editor import Editor
@@ -28,12 +28,12 @@ def draw_status(editor: Editor, contexts: Contexts) -> None:
     newest = editor.log.entries[-1] if editor.log.entries else None
     imgui.set_cursor_pos_x(imgui.get_style().window_padding.x)
     if newest and time() - newest.at < SECONDS:
-        text = fitted(newest.sentence.splitlines()[0], left - 2 * EM)
+        text = cut_end(newest.sentence.splitlines()[0], left - 2 * EM)
         imgui.text_colored(vec4(level_color(editor.palette, newest.level)), text)
     else:
         _draw_hints(editor, contexts, left)
     imgui.same_line(left)
-    dim(editor, figures)
+    draw_dim(editor, figures)
     record(editor, "status figures")
 
 
@@ -49,9 +49,9 @@ def _draw_hints(editor: Editor, contexts: Contexts, end: float) -> None:
             imgui.text_unformatted("")
             break
         with font(contexts.dialogs, "bold"):
-            dim(editor, keys)
+            draw_dim(editor, keys)
         imgui.same_line(0.0, gap * 0.4)
-        dim(editor, does)
+        draw_dim(editor, does)
 
 
 def _panel_below(editor: Editor) -> str:

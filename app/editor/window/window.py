@@ -22,7 +22,7 @@ from .contexts import Contexts, compose_contexts
 from .dropped_files import take_files
 from .editor import Editor
 from .frame_updater import FrameUpdater
-from .guard import failed, forgive, guarded
+from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .menus import draw_menus
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .screenshot import save_screenshot
@@ -120,7 +120,7 @@ class Window:
             self.params.app_shall_exit = True
 
     def _prepare(self) -> None:
-        forgive()
+        enable_error_recovery()
         self.device = adopt_window(self._form)
         self.editor = assemble(self.device, self._state)
         open_first(self.editor, self._path, self._bindings)
@@ -165,7 +165,7 @@ class Window:
         note_scope(editor)
         editor.canvas.hovered = editor.viewer.hovered = editor.curves.hovered = False
         try:
-            guarded(editor, "Rendering", self._updater.update)
+            draw_guarded(editor, "Rendering", self._updater.update)
         finally:
             self.device.target_window()
         if self._dropped:
@@ -182,12 +182,12 @@ class Window:
     def _draw_menus(self) -> None:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
         visible = {title: window.is_visible for title, window in windows.items()}
-        guarded(self.editor, "Menus", lambda: draw_menus(self._contexts.dialogs, visible))
+        draw_guarded(self.editor, "Menus", lambda: draw_menus(self._contexts.dialogs, visible))
         for title, shown in visible.items():
             windows[title].is_visible = shown
 
     def _draw_status(self) -> None:
-        guarded(self.editor, "Status", lambda: draw_status(self.editor, self._contexts))
+        draw_guarded(self.editor, "Status", lambda: draw_status(self.editor, self._contexts))
 
     def _draw_timeline(self) -> None:
         self._draw_inside("Timeline")
@@ -211,14 +211,14 @@ class Window:
         corner, size = imgui.get_window_pos(), imgui.get_window_size()
         self.editor.places[title] = (corner.x, corner.y, corner.x + size.x, corner.y + size.y)
         if title in self.editor.faults:
-            failed(self.editor, title)
+            draw_failure(self.editor, title)
         else:
-            guarded(self.editor, title, self._panels[title].draw)
+            draw_guarded(self.editor, title, self._panels[title].draw)
 
     def _draw_overlays(self) -> None:
         for name, overlay in self._overlays.items():
             failed_before = name in self.editor.faults
-            if not guarded(self.editor, name, overlay.draw) and not failed_before:
+            if not draw_guarded(self.editor, name, overlay.draw) and not failed_before:
                 self.editor.dialogs.close()  # one that nobody can see would keep all keys for itself
         run_shortcuts(self.editor)
 

@@ -7,8 +7,8 @@ from halation.authoring.edits.decor import add_frame
 from halation.authoring.edits.layout import pin_places, positions
 from halation.editor.canvas.gestures import (
     Link,
-    Move,
-    Resize,
+    MoveGesture,
+    ResizeGesture,
     dotted,
     fitting,
     insertable,
@@ -19,9 +19,9 @@ from halation.editor.canvas.gestures import (
     shown,
     touched,
 )
-from halation.editor.canvas.scene import Scene
-from halation.editor.canvas.staging import Stage, comment_height
-from halation.editor.shared.entries import GROUP, found, graph_entries, narrowed, node_entries
+from halation.editor.canvas.scene import CanvasScene
+from halation.editor.canvas.staging import SceneBuilder, comment_height
+from halation.editor.shared.entries import GROUP, arrange_entries, graph_entries, keep_fitting, node_entries
 from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import catalogue
 
@@ -30,11 +30,13 @@ from gui_canvas import chain  # isort: skip
 P = Port.parse
 
 
-def staged(graph: Graph, stage: Stage | None = None, pictures: frozenset[str] = frozenset(), open: str = "") -> Scene:
-    return (stage or Stage()).build(graph, positions(pin_places(graph)).__getitem__, (), pictures, open)
+def staged(
+    graph: Graph, stage: SceneBuilder | None = None, pictures: frozenset[str] = frozenset(), open: str = ""
+) -> CanvasScene:
+    return (stage or SceneBuilder()).build(graph, positions(pin_places(graph)).__getitem__, (), pictures, open)
 
 
-def pin(scene: Scene, port: str, output: bool) -> tuple[float, float]:
+def pin(scene: CanvasScene, port: str, output: bool) -> tuple[float, float]:
     return next((box.x + one.x, box.y + one.y) for name, box, one in scene.pins(output) if name == P(port))
 
 
@@ -53,7 +55,7 @@ def test_hits_pins_fields_titles_and_links() -> None:
 
 def test_what_is_drawn_last_is_hit_first() -> None:
     graph = chain("exposure", "bloom")
-    scene = Stage().build(graph, lambda key: (0.0, 0.0), ["exposure"])
+    scene = SceneBuilder().build(graph, lambda key: (0.0, 0.0), ["exposure"])
     assert scene.hit(60.0, 12.0, 1.0).key == "exposure"
 
 
@@ -67,7 +69,7 @@ def test_links_follow_what_moves_and_nothing_else_does() -> None:
 
 
 def test_layouts_are_built_again_only_where_something_changed() -> None:
-    stage, graph = Stage(), chain("exposure", "bloom")
+    stage, graph = SceneBuilder(), chain("exposure", "bloom")
     first = staged(graph, stage)
     second = staged(graph.set(P("exposure.stops"), 2.0), stage)
     assert second.boxes["bloom"].layout is first.boxes["bloom"].layout
@@ -75,7 +77,7 @@ def test_layouts_are_built_again_only_where_something_changed() -> None:
 
 
 def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
-    stage, graph = Stage(), pin_places(chain("exposure", "bloom"))
+    stage, graph = SceneBuilder(), pin_places(chain("exposure", "bloom"))
     first = staged(graph, stage)
     second = staged(graph.set(P("exposure.stops"), 2.0), stage)
     assert second.net is first.net
@@ -95,7 +97,7 @@ def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
     ],
 )
 def test_what_is_staged_again_is_what_is_staged_anew(change) -> None:
-    stage, graph = Stage(), pin_places(chain("exposure", "bloom"))
+    stage, graph = SceneBuilder(), pin_places(chain("exposure", "bloom"))
     staged(graph, stage)
     assert staged(pin_places(change(graph)), stage) == staged(pin_places(change(graph)))
 
@@ -181,31 +183,41 @@ def test_rectangles_take_what_they_touch_but_frames_only_whole() -> None:
 
 def test_moving_snaps_to_the_grid_and_resizing_keeps_the_other_edges() -> None:
     scene = staged(chain("exposure"))
-    move = moved(Move("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
+    move = moved(MoveGesture("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
     box = shown(scene, move).boxes["exposure"]
     assert box.x % 16 == 0 and box.y % 16 == 0
     before = (0.0, 0.0, 200.0, 100.0)
-    assert resized(Resize("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (0, 0, 260, 100)
-    assert resized(Resize("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (104, 36, 200, 100)
+    assert resized(ResizeGesture("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (
+        0,
+        0,
+        260,
+        100,
+    )
+    assert resized(ResizeGesture("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (
+        104,
+        36,
+        200,
+        100,
+    )
 
 
 @pytest.mark.parametrize(("query", "first"), [("gaus", "gaussian_blur"), ("edge", "edge_detect"), ("expo", "exposure")])
 def test_a_few_letters_find_a_node(query: str, first: str) -> None:
-    assert found(node_entries(catalogue()), query)[0].entries[0].id == first
+    assert arrange_entries(node_entries(catalogue()), query)[0].entries[0].id == first
 
 
 def test_without_letters_the_recent_come_first_and_all_are_listed_by_category() -> None:
     entries = (*node_entries(catalogue()), *graph_entries())
-    sections = found(entries, "", ["bloom", "gone"])
+    sections = arrange_entries(entries, "", ["bloom", "gone"])
     assert [entry.id for entry in sections[0].entries] == ["bloom"]
     assert sum(len(section.entries) for section in sections[1:]) == len(entries)
     assert GROUP not in {section.title for section in sections}
-    assert [entry.id for entry in narrowed(entries, ["bloom", "clip"])] == ["clip", "bloom"]
+    assert [entry.id for entry in keep_fitting(entries, ["bloom", "clip"])] == ["clip", "bloom"]
 
 
 def test_words_of_the_description_find_too() -> None:
     entries = node_entries(catalogue())
-    assert "exposure" in {entry.id for entry in found(entries, "stops")[0].entries}
+    assert "exposure" in {entry.id for entry in arrange_entries(entries, "stops")[0].entries}
 
 
 def test_ends_and_outputs_are_boxes_with_one_pin() -> None:

@@ -7,7 +7,7 @@ import json
 import pytest
 from halation.editor.curves import editing
 from halation.editor.curves.copying import copied, pasted, read
-from halation.editor.curves.gestures import Bend, Move, Scale
+from halation.editor.curves.gestures import Bend, KeyMove, Scale
 from halation.editor.curves.rows import limits, rows, spots_of
 from halation.editor.curves.state import CurvesState
 from halation.errors import UsageError
@@ -67,7 +67,7 @@ def test_what_is_gone_is_no_longer_chosen() -> None:
 
 def test_keys_move_together_and_come_back_from_where_they_pushed() -> None:
     animation = graph().animation
-    drag = Move(animation, at(GAIN, 1, 10) | at(TINT, 1), 1.0, (1.3, 0.0), "m")
+    drag = KeyMove(animation, at(GAIN, 1, 10) | at(TINT, 1), 1.0, (1.3, 0.0), "m")
     far = drag.change((11.2, 0.0), True, editing.unlimited)
     assert far.made[GAIN].frames == (11.0, 20.0) and far.made[GAIN].at(20) == 2.0
     assert far.made[TINT].frames == (10.0, 11.0)
@@ -91,7 +91,7 @@ def test_a_lifted_key_stays_within_its_limits_and_type() -> None:
 
 def test_a_frame_at_an_odd_place_lands_on_whole_ones() -> None:
     animation = {GAIN: Keys((Key(2.5, 0.0), Key(7.0, 1.0)))}
-    drag = Move(animation, at(GAIN, 2.5), 2.5, (2.5, 0.0), "m")
+    drag = KeyMove(animation, at(GAIN, 2.5), 2.5, (2.5, 0.0), "m")
     assert drag.change((3.1, 0.0), True, editing.unlimited).made[GAIN].frames == (3.0, 7.0)
 
 

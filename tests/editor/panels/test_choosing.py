@@ -10,9 +10,9 @@ import pytest
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.render_queue.queue import RenderJob, RenderQueue
 from halation.authoring.session import Session
-from halation.editor.browser.browsing import Browsing, begun, size_text
+from halation.editor.browser.browsing import Browsing, begin_browsing, size_text
 from halation.editor.renders.folders import command, show_folder
-from halation.editor.renders.form import Form
+from halation.editor.renders.form import RenderForm
 from halation.editor.renders.wording import title
 from halation.editor.shared.dialogs import Browse
 from halation.editor.timeline.state import TimelineState
@@ -47,7 +47,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def browsing(desk: Desk, **options: Any) -> Browsing:
-    made = begun(desk, Browse("Choose", options.pop("purpose", "graph"), print, **options))
+    made = begin_browsing(desk, Browse("Choose", options.pop("purpose", "graph"), print, **options))
     made.listing.wait()
     return made
 
@@ -104,8 +104,8 @@ def test_sizes(size: int, said: str) -> None:
 def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -> None:
     desk.session.open(PRESET)
     desk.store.note_folder("export", tmp_path / "x.exr")
-    form = Form(desk)
-    assert form.wanted() == ("image",)
+    form = RenderForm(desk)
+    assert form.chosen_outputs() == ("image",)
     assert form.file("image") == tmp_path / "soft_bloom.exr"
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
@@ -119,14 +119,14 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:
     desk.session.open(PRESET)
-    form = Form(desk, chosen={"image": False})
+    form = RenderForm(desk, chosen={"image": False})
     with pytest.raises(UsageError, match="where to write"):
         form.start()
 
 
 def test_a_render_is_started_and_its_folder_remembered(desk: Desk, tmp_path: Path) -> None:
     desk.session.open(PRESET)
-    form = Form(desk, sizing="scale", scale=0.1, format=".png")
+    form = RenderForm(desk, sizing="scale", scale=0.1, format=".png")
     form.files["image"] = str(tmp_path / "small.png")
     made = form.start()
     assert title(made) == "small.png"

@@ -9,7 +9,7 @@ import pytest
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.render_queue.queue import RenderQueue
 from halation.authoring.session import Session
-from halation.editor.renders.form import Form
+from halation.editor.renders.form import RenderForm
 from halation.editor.renders.wording import aim_text, exist_text, time_text
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
@@ -40,7 +40,7 @@ def desk(tmp_path: Path) -> Desk:
 
 
 def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
-    form = Form(desk)
+    form = RenderForm(desk)
     assert list(form.extents()) == ["this frame", "all frames", "some frames"]
     assert (form.extent_of(), form.frames()) == ("all frames", tuple(range(1, 25)))
     assert form.file("image") == tmp_path / "out" / "soft_bloom.####.exr"
@@ -52,12 +52,12 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     assert form.frames() == (7,)
     assert aim_text(form.aim()) == "Writes soft_bloom.exr"
     desk.session.set_frames(None)
-    assert list(Form(desk).extents()) == ["this frame", "some frames"]
-    assert Form(desk).extent_of() == "this frame"
+    assert list(RenderForm(desk).extents()) == ["this frame", "some frames"]
+    assert RenderForm(desk).extent_of() == "this frame"
 
 
 def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
-    form = Form(desk)
+    form = RenderForm(desk)
     desk.timeline.set_part(desk.session, 5, 9)
     form.extend("what is played")
     assert form.frames() == (5, 6, 7, 8, 9)
@@ -66,7 +66,7 @@ def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
 
 
 def test_typed_frames_are_checked(desk: Desk) -> None:
-    form = Form(desk)
+    form = RenderForm(desk)
     form.extend("some frames")
     assert (form.listed, form.list_fault) == ("1-24", "")
     form.listed = "1-24x2,40"
@@ -81,7 +81,7 @@ def test_typed_frames_are_checked(desk: Desk) -> None:
 
 
 def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
-    form = Form(desk, files={"image": str(tmp_path / "out" / "mine.png")}, extent="this frame")
+    form = RenderForm(desk, files={"image": str(tmp_path / "out" / "mine.png")}, extent="this frame")
     form.extend("all frames")
     assert form.file("image").name == "mine.####.png"
     form.files["image"] = str(tmp_path / "out" / "mine.png")
@@ -94,7 +94,7 @@ def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
 
 
 def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
-    form = Form(desk)
+    form = RenderForm(desk)
     for frame in (1, 2, 3, 40):
         (tmp_path / "out" / f"soft_bloom.{frame:04d}.exr").touch()
     aim = form.aim()
@@ -106,7 +106,7 @@ def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
 
 
 def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
-    form = Form(desk, jobs=4, resume=True, extent="some frames", listed="3,5-6")
+    form = RenderForm(desk, jobs=4, resume=True, extent="some frames", listed="3,5-6")
     options = form.options()
     assert (options.frames, options.processes, options.resume) == ((3, 5, 6), 4, True)
     form.listed = "3"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.toolkit.keys import chord, shown, text
+from halation.editor.toolkit.keys import chord, display_shortcut, text
 from halation.errors import UsageError
 from imgui_bundle import imgui
 
@@ -30,6 +30,11 @@ def test_what_is_no_shortcut(wrong: str) -> None:
 
 def test_people_read_signs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.platform", "linux")
-    assert [shown(one) for one in ("Ctrl+Comma", "Shift+LeftBracket", "F1", "")] == ["Ctrl+,", "Shift+[", "F1", ""]
+    assert [display_shortcut(one) for one in ("Ctrl+Comma", "Shift+LeftBracket", "F1", "")] == [
+        "Ctrl+,",
+        "Shift+[",
+        "F1",
+        "",
+    ]
     monkeypatch.setattr("sys.platform", "darwin")
-    assert shown("Ctrl+S") == "Cmd+S"
+    assert display_shortcut("Ctrl+S") == "Cmd+S"

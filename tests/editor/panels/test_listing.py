@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
-from halation.editor.browser.listing import Item, Listing, arranged, make_folder, read_folder
-from halation.editor.browser.places import completed, drives, places
+from halation.editor.browser.listing import Item, Listing, arrange_items, make_folder, read_folder
+from halation.editor.browser.places import complete_path, drives, places
 from halation.errors import InputError
 
 
@@ -26,7 +26,7 @@ ITEMS = (
 
 
 def names(**options: object) -> list[str]:
-    return [one.name for one in arranged(ITEMS, options.pop("endings", frozenset()), **options)]
+    return [one.name for one in arrange_items(ITEMS, options.pop("endings", frozenset()), **options)]
 
 
 def test_folders_first_and_numbers_in_order() -> None:
@@ -89,12 +89,12 @@ def test_a_new_folder(tmp_path: Path) -> None:
 def test_ten_thousand_files_are_arranged_once(tmp_path: Path) -> None:
     listing = Listing()
     listing.items = tuple(item(f"shot{index}.exr", time=float(-index)) for index in range(10_000))
-    first = listing.shown(frozenset({".exr"}), "", "name", False, False)
+    first = listing.arrange(frozenset({".exr"}), "", "name", False, False)
     assert [one.name for one in first[:2]] == ["shot0.exr", "shot1.exr"]
-    assert listing.shown(frozenset({".exr"}), "", "name", False, False) is first
-    assert listing.shown(frozenset({".exr"}), "", "time", False, False)[0].name == "shot9999.exr"
+    assert listing.arrange(frozenset({".exr"}), "", "name", False, False) is first
+    assert listing.arrange(frozenset({".exr"}), "", "time", False, False)[0].name == "shot9999.exr"
     listing.items = ()
-    assert listing.shown(frozenset({".exr"}), "", "time", False, False) == ()
+    assert listing.arrange(frozenset({".exr"}), "", "time", False, False) == ()
 
 
 def test_places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -121,7 +121,7 @@ def test_drives(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_typed_paths(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
-    assert completed("~/a", Path("/b")) == tmp_path / "a"
-    assert completed("../c", tmp_path / "b") == tmp_path / "c"
-    assert completed(f'"{tmp_path}"', Path("/b")) == tmp_path
-    assert completed("", tmp_path) == tmp_path
+    assert complete_path("~/a", Path("/b")) == tmp_path / "a"
+    assert complete_path("../c", tmp_path / "b") == tmp_path / "c"
+    assert complete_path(f'"{tmp_path}"', Path("/b")) == tmp_path
+    assert complete_path("", tmp_path) == tmp_path

@@ -11,11 +11,11 @@ from halation.authoring.log import Log
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.session import Session
 from halation.editor.actions import table
-from halation.editor.command_palette.commands import commands, ranked
-from halation.editor.preferences.shortcut_changes import assigned, reset, taken_over
-from halation.editor.problems.findings import findings, show
+from halation.editor.command_palette.commands import list_commands, rank_commands
+from halation.editor.preferences.shortcut_changes import assign_shortcut, reset_shortcut, take_shortcut
+from halation.editor.problems.findings import list_problems, show_element
 from halation.editor.shared.action import Action, Actions
-from halation.editor.shared.shortcut_groups import columns, condensed, groups
+from halation.editor.shared.shortcut_groups import balance_columns, condense_rows, group_actions
 from halation.editor.shared.stage import Stage
 from halation.editor.toolkit.context import Interface
 from halation.editor.toolkit.keys import chord, text
@@ -47,7 +47,7 @@ def contexts(desk: Editor) -> Contexts:
 
 
 def first(contexts: Contexts, query: str) -> str:
-    return ranked(query, commands(contexts.command_palette), ())[0][0].label
+    return rank_commands(query, list_commands(contexts.command_palette), ())[0][0].label
 
 
 def test_every_shortcut_can_be_pressed_and_is_written_in_one_way() -> None:
@@ -67,39 +67,39 @@ def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, conte
 
 
 def test_what_cannot_be_done_says_why_and_comes_last(contexts: Contexts) -> None:
-    offered = {command.id: command for command in commands(contexts.command_palette)}
+    offered = {command.id: command for command in list_commands(contexts.command_palette)}
     assert offered["edit.undo"].reason == "nothing was done yet"
     assert offered["edit.copy"].reason == "select something first"
     assert not offered["file.open"].reason
-    found = [bool(command.reason) for command, _ in ranked("o", tuple(offered.values()), ())]
+    found = [bool(command.reason) for command, _ in rank_commands("o", tuple(offered.values()), ())]
     assert found == sorted(found)
     assert any(found)
 
 
 def test_what_was_used_last_comes_first(contexts: Contexts) -> None:
-    offered = commands(contexts.command_palette)
-    found = [one.id for one, _ in ranked("", offered, ("file.open", "file.save_as"))]
+    offered = list_commands(contexts.command_palette)
+    found = [one.id for one, _ in rank_commands("", offered, ("file.open", "file.save_as"))]
     assert found[:2] == ["file.save_as", "file.open"]
 
 
 def test_a_command_adds_a_node_where_the_pointer_is(desk: Editor, contexts: Contexts) -> None:
     desk.canvas.pointer = (300.0, 200.0)
-    next(one for one in commands(contexts.command_palette) if one.id == "add bloom").run()
+    next(one for one in list_commands(contexts.command_palette) if one.id == "add bloom").run()
     (key,) = desk.session.selection
     assert desk.session.position(key) == (300.0, 200.0)
 
 
 def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor, contexts: Contexts) -> None:
     assert [one.id for one in desk.actions.conflicts("file.new", "Ctrl+O")] == ["file.open"]
-    taken_over(contexts.preferences, "file.new", "Ctrl+O")
+    take_shortcut(contexts.preferences, "file.new", "Ctrl+O")
     assert desk.actions.shortcut("file.new") == "Ctrl+O"
     assert desk.actions.shortcut("file.open") == ""
-    reset(contexts.preferences, "file.open")
+    reset_shortcut(contexts.preferences, "file.open")
     assert desk.actions.shortcut("file.open") == "Ctrl+O"
     assert desk.actions.shortcut("file.new") == ""
-    reset(contexts.preferences, "file.new")
+    reset_shortcut(contexts.preferences, "file.new")
     assert desk.store.current.shortcuts == {}
-    assigned(contexts.preferences, "file.new", "F5")
+    assign_shortcut(contexts.preferences, "file.new", "F5")
     assert desk.store.current.shortcuts == {"file.new": "F5"}
 
 
@@ -115,30 +115,30 @@ def test_the_same_keys_may_serve_two_panels() -> None:
 
 
 def test_the_sheet_has_every_shortcut_once(desk: Editor) -> None:
-    listed = [action.id for _, actions in groups(desk.actions) for action in actions]
+    listed = [action.id for _, actions in group_actions(desk.actions) for action in actions]
     assert sorted(listed) == sorted(one.id for one in table() if one.shortcut)
-    assert len([1 for _, actions in groups(desk.actions, every=True) for _ in actions]) == len(table())
+    assert len([1 for _, actions in group_actions(desk.actions, every=True) for _ in actions]) == len(table())
 
 
 def test_rows_that_count_up_are_one_line() -> None:
     lines = [("F", "Fit"), *((str(at), f"View {at}") for at in range(1, 10)), ("Ctrl+1", "Keep 1"), ("0", "Full size")]
-    assert condensed(lines) == (("F", "Fit"), ("1 - 9", "View 1 - 9"), ("Ctrl+1", "Keep 1"), ("0", "Full size"))
+    assert condense_rows(lines) == (("F", "Fit"), ("1 - 9", "View 1 - 9"), ("Ctrl+1", "Keep 1"), ("0", "Full size"))
 
 
 def test_columns_are_as_equal_as_order_allows() -> None:
-    assert columns((5, 5, 5, 5), 2) == ((0, 1), (2, 3))
-    assert columns((9, 1, 1, 1), 2) == ((0,), (1, 2, 3))
-    assert columns((), 3) == ()
+    assert balance_columns((5, 5, 5, 5), 2) == ((0, 1), (2, 3))
+    assert balance_columns((9, 1, 1, 1), 2) == ((0,), (1, 2, 3))
+    assert balance_columns((), 3) == ()
 
 
 def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
-    assert findings(contexts.problems) == ()
+    assert list_problems(contexts.problems) == ()
     desk.session.disconnect(Port("outputs", "image"))
     desk.preview.faults = {"inputs.beauty": "there is no such file", "outputs.image": "the same in other words"}
     desk.watcher.fault = desk.recovery.fault = "the disk is full"
     desk.faults["Viewer"] = "Traceback"
-    found = [(one.level, one.where, one.sentence) for one in findings(contexts.problems)]
+    found = [(one.level, one.where, one.sentence) for one in list_problems(contexts.problems)]
     assert ("error", "inputs.beauty", "there is no such file") in found
     assert ("error", "", "the panel Viewer failed; the document is safe") in found
     assert found[-1] == ("warning", "", "the disk is full")
@@ -150,10 +150,10 @@ def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> Non
     desk.session.open(PRESET)
     desk.session.select(["bloom"])
     group = desk.session.make_group()
-    show(contexts.problems, f"{group}/bloom")
+    show_element(contexts.problems, f"{group}/bloom")
     assert desk.session.place == (group,)
     assert desk.session.selection == {"bloom"}
     assert desk.canvas.wanted == ("bloom",)
-    show(contexts.problems, "inputs.beauty")
+    show_element(contexts.problems, "inputs.beauty")
     assert desk.session.place == ()
     assert desk.session.selection == {"inputs.beauty"}

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.editor.toolkit.thumbnails import Pictures
+from halation.editor.toolkit.thumbnails import FileThumbnails
 from halation.errors import InputError
 from halation.media import write_picture
 from halation.media.pictures.thumbnail import list_readable_endings, load_thumbnail, make_thumbnail, save_thumbnail
@@ -21,7 +21,7 @@ def picture(path: Path, value: float, width: int = 400, height: int = 100) -> Pa
     return path
 
 
-def ready(pictures: Pictures, path: Path, at: float = 1.0):
+def ready(pictures: FileThumbnails, path: Path, at: float = 1.0):
     end = time.monotonic() + 20
     while (found := pictures.get(path, at)) is None:
         assert time.monotonic() < end
@@ -58,12 +58,12 @@ def test_saved_and_loaded(tmp_path: Path) -> None:
 
 def test_what_was_decoded_is_kept_for_the_next_time(tmp_path: Path) -> None:
     file, kept = picture(tmp_path / "a.exr", 0.5), tmp_path / "kept"
-    first = Pictures(kept)
+    first = FileThumbnails(kept)
     made = ready(first, file)
     first.close()
     assert len(list(kept.iterdir())) == 1
     file.unlink()
-    again = Pictures(kept)
+    again = FileThumbnails(kept)
     assert np.array_equal(ready(again, file), made)
     assert isinstance(ready(again, file, 2.0), str)
     again.close()
@@ -71,7 +71,7 @@ def test_what_was_decoded_is_kept_for_the_next_time(tmp_path: Path) -> None:
 
 def test_what_is_no_picture_has_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "a.png").write_bytes(b"this is text")
-    pictures = Pictures(tmp_path / "kept")
+    pictures = FileThumbnails(tmp_path / "kept")
     found = ready(pictures, tmp_path / "a.png")
     pictures.close()
     assert isinstance(found, str)
@@ -80,7 +80,7 @@ def test_what_is_no_picture_has_a_sentence(tmp_path: Path) -> None:
 
 
 def test_only_what_was_asked_for_last_waits(tmp_path: Path) -> None:
-    pictures = Pictures(tmp_path)
+    pictures = FileThumbnails(tmp_path)
     for index in range(500):
         pictures.get(tmp_path / f"missing{index}.png", 0.0)
     assert isinstance(ready(pictures, tmp_path / "missing499.png", 0.0), str)

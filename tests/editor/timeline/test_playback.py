@@ -106,12 +106,12 @@ def test_the_part_that_is_played_and_what_is_seen():
     session.set_frames(1, 100)
     state.set_part(session, 1, 100)
     assert state.part is None
-    assert state.seen(session) == (0.5, 100.5)
+    assert state.visible_range(session) == (0.5, 100.5)
     state.zoom(session, 50.0, 4.0)
-    low, high = state.seen(session)
+    low, high = state.visible_range(session)
     assert high - low == pytest.approx(25.0) and (50.0 - low) / (high - low) == pytest.approx(0.495)
     state.pan(session, 1e6)
-    assert state.seen(session)[0] == pytest.approx(99.0)
+    assert state.visible_range(session)[0] == pytest.approx(99.0)
     for _ in range(9):
         state.zoom(session, 50.0, 0.5)
     assert state.view is None

@@ -7,7 +7,7 @@ import pytest
 from halation.authoring.session import Session
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.handles import handles
-from halation.editor.viewer.holding import ARM, Hold, aim
+from halation.editor.viewer.holding import ARM, MouseHold, aim
 from halation.editor.viewer.lights import MOST, lamps
 from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
@@ -52,7 +52,7 @@ def editor() -> Any:
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
     """Press, move, let go; returns what was held."""
-    hold = Hold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
+    hold = MouseHold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
     hold.drag(SIGHT, end, (end[0] - start[0], end[1] - start[1]))
     hold.release(SIGHT, end)
     return hold.aim.what

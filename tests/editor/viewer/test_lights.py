@@ -11,7 +11,7 @@ import pytest
 from halation.authoring.session import Session
 from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
 from halation.editor.viewer.geometry import Sight
-from halation.editor.viewer.holding import Hold, aim
+from halation.editor.viewer.holding import MouseHold, aim
 from halation.editor.viewer.lamp_lines import cone, sides
 from halation.editor.viewer.lights import Lamp, add, can_add, can_remove, lamps, put, remove, suns
 from halation.editor.viewer.perspective import project
@@ -77,7 +77,7 @@ def of(editor: Any) -> tuple[Light, ...]:
 
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
-    hold = Hold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
+    hold = MouseHold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
     hold.drag(SIGHT, end, (1.0, 1.0))
     hold.release(SIGHT, end)
     return hold.aim.what

@@ -8,11 +8,11 @@ import pytest
 from halation.authoring.session import Session
 from halation.color.transforms import to_display
 from halation.editor.viewer.geometry import Sight
-from halation.editor.viewer.looking import asked_view, displayed, look_of, meaning_of, picture_only, range_of
+from halation.editor.viewer.looking import displayed, look_of, meaning_of, picture_only, range_of, requested_view
 from halation.editor.viewer.measuring import picked_color
 from halation.editor.viewer.picking import ports_of, title
 from halation.editor.viewer.state import ViewerState
-from halation.editor.viewer.wanted import wanted
+from halation.editor.viewer.wanted import list_wanted_ports
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind
 from halation.renderer.viewing.look import Look
@@ -52,9 +52,9 @@ def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
     noise = session.add_node("noise")
     graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
     graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
-    assert asked_view(graph, Port("outputs", "image")) == "none"
-    assert asked_view(graph, Port(noise, "out")) == "none"
-    assert asked_view(graph, Port(noise, "value")) == ""
+    assert requested_view(graph, Port("outputs", "image")) == "none"
+    assert requested_view(graph, Port(noise, "out")) == "none"
+    assert requested_view(graph, Port(noise, "value")) == ""
 
 
 def test_the_look_has_what_the_viewer_is_set_to() -> None:
@@ -103,25 +103,25 @@ def editor() -> Any:
 
 def test_only_what_is_seen_is_wanted(editor: Any) -> None:
     session = editor.session
-    assert wanted(editor) == ({}, 1.0)
+    assert list_wanted_ports(editor) == ({}, 1.0)
     noise, light = session.add_node("noise"), "beauty"
     session.add_input(light, "Image")
     session.view(Port(noise, "value"))
     session.view(Port("inputs", light), "B")
-    assert wanted(editor) == ({"A": Port(noise, "value")}, 1.0)
+    assert list_wanted_ports(editor) == ({"A": Port(noise, "value")}, 1.0)
     editor.viewer.compare, editor.viewer.proxy = "wipe", 0.5
-    assert wanted(editor) == ({"A": Port(noise, "value"), "B": Port("inputs", light)}, 0.5)
+    assert list_wanted_ports(editor) == ({"A": Port(noise, "value"), "B": Port("inputs", light)}, 0.5)
     editor.viewer.compare, editor.viewer.table = "off", True
-    assert wanted(editor)[0] == {"A": Port(noise, "value"), f"inputs.{light}": Port("inputs", light)}
+    assert list_wanted_ports(editor)[0] == {"A": Port(noise, "value"), f"inputs.{light}": Port("inputs", light)}
 
 
 def test_slow_pictures_are_wanted_coarser_while_dragging(editor: Any) -> None:
-    wanted(editor)
+    list_wanted_ports(editor)
     editor.viewer.pace.took(1.0, 0.2)
     editor.interface.dragging = True
-    assert wanted(editor)[1] == 0.5
+    assert list_wanted_ports(editor)[1] == 0.5
     editor.store.current.proxy_while_dragging = False
-    assert wanted(editor)[1] == 1.0
+    assert list_wanted_ports(editor)[1] == 1.0
 
 
 def test_everything_can_be_chosen_by_its_name(editor: Any) -> None:

@@ -12,7 +12,7 @@ import pytest
 from halation.authoring.session import Session
 from halation.editor.viewer.axes import axes
 from halation.editor.viewer.geometry import Sight
-from halation.editor.viewer.holding import Aim, Hold, aim
+from halation.editor.viewer.holding import HandleTarget, MouseHold, aim
 from halation.editor.viewer.orbit import Orbit, frame_scene, orbited, without_surroundings
 from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
@@ -46,7 +46,7 @@ def now(editor: Any) -> Orbit:
 
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], what: Any) -> None:
-    hold = Hold.begin(editor, SIGHT, start, Aim(what))
+    hold = MouseHold.begin(editor, SIGHT, start, HandleTarget(what))
     for part in (0.5, 1.0):
         at = start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
         hold.drag(SIGHT, at, (1.0, 1.0))

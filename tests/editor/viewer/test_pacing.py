@@ -1,7 +1,7 @@
 """Pictures get coarser while a value is dragged, if they are too slow."""
 
 import pytest
-from halation.editor.viewer.pacing import Pace, Stopwatch, coarse, starting
+from halation.editor.viewer.pacing import Pace, PictureTimer, coarse, starting
 
 
 @pytest.mark.parametrize(
@@ -48,18 +48,18 @@ def test_another_proxy_is_another_matter() -> None:
 
 
 def test_work_is_measured_from_its_begin_to_its_end() -> None:
-    watch = Stopwatch()
+    watch = PictureTimer()
     frames = ((False, "a", 1.0), (True, "a", 2.0), (True, "a", 2.25), (False, "b", 2.375), (False, "b", 4.0))
     assert [watch.lap(*frame) for frame in frames] == [None, None, None, 0.375, None]
 
 
 def test_pictures_of_one_drag_are_measured_one_by_one() -> None:
-    watch = Stopwatch()
+    watch = PictureTimer()
     frames = ((True, "a", 1.0), (True, "b", 1.125), (True, "b", 1.25), (True, "c", 1.375), (False, "c", 1.5))
     assert [watch.lap(*frame) for frame in frames] == [None, 0.125, None, 0.25, 0.125]
 
 
 def test_a_picture_that_does_not_come_is_slow() -> None:
-    watch = Stopwatch()
+    watch = PictureTimer()
     frames = ((True, "a", 1.0), (True, "a", 1.25), (True, "a", 1.5), (True, "a", 1.75))
     assert [watch.lap(*frame) for frame in frames] == [None, None, 0.5, None]
