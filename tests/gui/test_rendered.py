@@ -29,7 +29,7 @@ def rendered(folder: Path) -> Path:
 
 
 def answer(ui, picture: Path, word: str) -> None:
-    ui.ask(lambda: arrived(ui.editor, [picture]))
+    ui.ask(lambda: take_files(ui.editor, ui.window._contexts.documents, [picture]))
     ui.wait(3)
     assert ui.editor.dialogs.question.sentence == "night shot.png holds the graph that made it."
     ui.shot("rendered.png")

@@ -17,7 +17,7 @@ SAMPLE = Path(str(sample()))
 def drop(ui, path: Path = SAMPLE) -> str:
     """Drop a file on the canvas; the node that it becomes, once its file is known."""
     ui.editor.dialogs.open.clear()
-    ui.ask(lambda: arrived(ui.editor, [path]))
+    ui.ask(lambda: take_files(ui.editor, ui.window._contexts.documents, [path]))
     known(ui)
     return ui.session.active
 

@@ -329,7 +329,7 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
 
     def body(ui) -> None:
         start(ui, Graph(outputs={"image": Output()}))
-        ui.ask(lambda: arrived(ui.editor, [tmp_path / "bar.0003.exr"]))
+        ui.ask(lambda: take_files(ui.editor, ui.window._contexts.documents, [tmp_path / "bar.0003.exr"]))
         ui.wait(3)
         assert "one of 12 frames" in ui.editor.dialogs.question.sentence
         ui.shot("dropped.png")
@@ -343,7 +343,11 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
         ui.wait(5)
         ui.shot("sequence.png")
         ui.session.undo()
-        ui.ask(lambda: arrived(ui.editor, [tmp_path / "bar.0003.exr", tmp_path / "bar.0004.exr"]))
+        ui.ask(
+            lambda: take_files(
+                ui.editor, ui.window._contexts.documents, [tmp_path / "bar.0003.exr", tmp_path / "bar.0004.exr"]
+            )
+        )
         assert ui.editor.dialogs.question is None, "several of one sequence are that"
         assert ui.session.value(Port(ui.session.active, "path")) == path
 
