@@ -8,6 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
+from halation.editor.window.dropped_files import take_files
 from halation.graph import Port
 from halation.presets import sample
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.editor.window.dropped_files import take_files
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
 from halation.renderer import FrameRenderer, RenderRequest
