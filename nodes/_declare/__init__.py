@@ -31,7 +31,7 @@ from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, Spac
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import CameraSocket, Color, Edge, Field, Image, Number, Output, Size, Socket, Vector, glsl_type
-from .traits import Trait
+from .traits import ProxyNote, Trait
 from .values import (
     RGBA,
     ColorRamp,
@@ -118,6 +118,7 @@ __all__ = [
     "Points",
     "Pointwise",
     "Position",
+    "ProxyNote",
     "Reach",
     "Reader",
     "Render",

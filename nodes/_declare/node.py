@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 from .camera import Camera
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
-from .traits import Trait
+from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value, unit_factor
 
 
@@ -51,6 +51,8 @@ class Node:
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     traits: ClassVar[tuple[Trait, ...]] = ()
     """What rules and tests need to know beyond sockets and values."""
+    proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
+    """Where a proxy of half the size does not look like the whole picture made smaller."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)

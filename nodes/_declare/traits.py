@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
+from typing import Literal
 
 
 class Trait(StrEnum):
@@ -25,3 +27,13 @@ class Trait(StrEnum):
     """It filters the picture, so that two such nodes in a row cost sharpness and time."""
     KEEPS_NON_FINITE = "keeps non-finite"
     """Its outputs are its inputs unchanged, NaN and infinity included; all other nodes make every pixel finite."""
+
+
+@dataclass(frozen=True)
+class ProxyNote:
+    """Why outputs of a proxy, rendered at half the size, are not the whole picture made smaller."""
+
+    outputs: tuple[str, ...]
+    reason: str
+    differs: Literal["detail", "look"] = "detail"
+    """In fine detail only, or in how they look as a whole."""

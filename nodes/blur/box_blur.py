@@ -2,7 +2,7 @@ from itertools import accumulate
 from math import floor
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Pixels, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Pixels, ProxyNote, Slider, Vector
 
 _DIRECT = 64
 """Up to this many weights in a row are applied one by one; longer rows are put together from blocks."""
@@ -16,6 +16,8 @@ class BoxBlur(Filter):
     applied to a smaller picture, within 1e-3 of what a single pixel becomes. The cost hardly grows with the radius.
     Three boxes: Wells 1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
     """
+
+    proxy_notes = (ProxyNote(("out",), "a box is a whole number of pixels wide, and one more than twice the radius"),)
 
     image = Image()
     kind: Annotated[

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider, Vector
 
 _STEP = 3
 """Pixels that one draw follows an edge: half the window of `canny_follow`."""
@@ -14,6 +14,8 @@ class Canny(Filter):
     Canny 1986 as in OpenCV: blur, Sobel gradient, only its ridges, then hysteresis with two thresholds. It sees the
     tone (luminance as a display shows it, sRGB), where a step from black to white is 1. Alpha is kept.
     """
+
+    proxy_notes = (ProxyNote(("lines", "out"), "its lines are one or two pixels wide at any size", "look"),)
 
     image = Image()
     sigma: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider, Vector
 
 
 class DifferenceOfGaussians(Filter):
@@ -13,6 +13,10 @@ class DifferenceOfGaussians(Filter):
     negative. Guided by the flow (Kang et al. 2007), the blurs run only across the lines, then along them, which draws
     long calm strokes. All work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
     """
+
+    proxy_notes = (
+        ProxyNote(("out", "value"), "its lines have hard edges, around specks too that a proxy averages away"),
+    )
 
     image = Image()
     kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the bare difference.")] = "xdog"

@@ -1,6 +1,6 @@
 from math import ceil, log2
 
-from .._declare import Draw, Drawn, Field, Filter, Output, Vector
+from .._declare import Draw, Drawn, Field, Filter, Output, ProxyNote, Vector
 
 
 class DistanceField(Filter):
@@ -11,6 +11,8 @@ class DistanceField(Filter):
     between pixels: exact along rows and columns, within 0.7 pixels where it is slanted. A mask without an edge is as
     far away as the picture's diagonal.
     """
+
+    proxy_notes = (ProxyNote(("distance",), "its lines have hard edges, around specks too that a proxy averages away"),)
 
     mask = Field()
 

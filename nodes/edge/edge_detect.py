@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider
 
 
 class EdgeDetect(Filter):
@@ -10,6 +10,8 @@ class EdgeDetect(Filter):
     Every operator is scaled so that a step of height 1 along a row or column reads 1; switching operators keeps the
     brightness. Sobel and Feldman 1968, Prewitt 1970, Scharr 2000. Alpha is kept.
     """
+
+    proxy_notes = (ProxyNote(("magnitude", "out"), "its lines are one or two pixels wide at any size", "look"),)
 
     image = Image()
     operator: Annotated[

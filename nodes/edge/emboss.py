@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, Slider
 
 
 class Emboss(Filter):
@@ -9,6 +9,8 @@ class Emboss(Filter):
     The tone (luminance as a display shows it) is a height; its slope by Sobel gives a normal, which a distant light
     shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978), 1 where the picture is flat. Alpha is kept.
     """
+
+    proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
 
     image = Image()
     kind: Annotated[

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil, log2
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Pixels, Slider, Vector
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Pixels, ProxyNote, Slider, Vector
 
 
 class Outline(Filter):
@@ -11,6 +11,10 @@ class Outline(Filter):
     The line follows the exact distance to the contour, where the mask crosses one half (see Distance Field); the cost
     grows slowly with its width. Around the picture's own alpha, an outside line lies behind the picture.
     """
+
+    proxy_notes = (
+        ProxyNote(("line", "out"), "its lines have hard edges, around specks too that a proxy averages away"),
+    )
 
     image = Image()
     mask = Field(0.0, doc="What is outlined. Without a link, what the picture's alpha covers.")

@@ -3,7 +3,7 @@ from math import fsum
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, ProxyNote, Slider
 
 _IDENTITY: Kernel3x3 = (0, 0, 0, 0, 1, 0, 0, 0, 0)
 
@@ -31,6 +31,8 @@ class Convolve3x3(Filter):
 
     out = scale * sum(kernel * neighbors) + bias. The kernel is drawn as it is seen (correlation: it is not flipped).
     """
+
+    proxy_notes = (ProxyNote(("out",), "it weighs the next pixels, which are farther away in a proxy"),)
 
     image = Image()
     preset: Annotated[

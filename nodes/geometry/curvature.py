@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Slider, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Slider, Vector
 
 
 class Curvature(Filter):
@@ -11,6 +11,10 @@ class Curvature(Filter):
     pixel, never across a gap in depth. Exact on balls, 1 / radius. Places come from position, or from depth and camera;
     from normals alone, the view is taken for parallel and lengths count picture heights.
     """
+
+    proxy_notes = (
+        ProxyNote(("cavity", "mean", "ridge"), "it weighs the next pixels, which are farther away in a proxy"),
+    )
 
     normal = Vector(width=3, doc="Directions of surfaces.")
     position = Vector(0.0, width=3, doc="Places in the world.")

@@ -1,4 +1,4 @@
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Vector
 
 
 class Facing(Filter):
@@ -7,6 +7,8 @@ class Facing(Filter):
     The cosine of the angle between the normal and the way to the camera; surfaces seen from behind, and the
     background, are 0. Where antialiasing has mixed several normals, it is the mean of what the pixels around say.
     """
+
+    proxy_notes = (ProxyNote(("facing",), "it weighs the next pixels, which are farther away in a proxy"),)
 
     normal = Vector(width=3, doc="Directions of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil, log2
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Output, ProxyNote, Slider, Vector
 
 _SEAM = 2.0
 """Width of a bare edge in pixels: one on either side of the seam."""
@@ -15,6 +15,11 @@ class GeometryEdges(Filter):
     every plane, so that flat surfaces make no edge however steep they lie; between two surfaces it reads
     1 - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run along seams between pixels.
     """
+
+    proxy_notes = (
+        ProxyNote(("border", "crease", "gap"), "its lines are one or two pixels wide at any size", "look"),
+        ProxyNote(("edges",), "its lines are narrower than two pixels of the proxy, and fainter for that", "look"),
+    )
 
     depth = Field(0.0, doc="Distance from the camera.")
     normal = Vector(0.0, width=3, doc="Directions of surfaces.")

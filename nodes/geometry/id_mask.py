@@ -2,7 +2,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, ProxyNote
 
 _SPANS = 16
 """Spans of numbers that one draw looks at."""
@@ -16,6 +16,10 @@ class IdMask(Filter):
 
     For passes of one number per pixel, such as object and material index. Cryptomatte does the same with soft edges.
     """
+
+    proxy_notes = (
+        ProxyNote(("colors",), "strong colors meet at hard edges, which are those of single pixels in a proxy"),
+    )
 
     ids = Field(doc="Numbers of objects or materials.")
     pick: Annotated[str, Doc("Numbers and spans of numbers, such as 1, 4, 7-9.")] = "1"

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Slider, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Slider, Vector
 
 
 class NormalFromDepth(Filter):
@@ -12,6 +12,8 @@ class NormalFromDepth(Filter):
     sharp. `curvature` is the mean curvature in 1 / world units: above 0 where a surface bulges (1 / r on a ball), below
     0 in its hollows. Where there is nothing, both are 0.
     """
+
+    proxy_notes = (ProxyNote(("curvature", "normal"), "it weighs the next pixels, which are farther away in a proxy"),)
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")

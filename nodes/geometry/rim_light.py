@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 
 
 class RimLight(Filter):
@@ -11,6 +25,8 @@ class RimLight(Filter):
     The rim is (1 - n.v)^power: n is the normal, v the way to the camera. It can come from all around or from one side.
     It is added on what the mask and the picture's alpha cover.
     """
+
+    proxy_notes = (ProxyNote(("out", "rim"), "it weighs the next pixels, which are farther away in a proxy"),)
 
     image = Image()
     normal = Vector(width=3, doc="Directions of surfaces.")

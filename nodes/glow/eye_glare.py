@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, ProxyNote, Slider, Trait, Vector
 
 _SMOOTH = 0.2
 """Degrees over which nothing of the glare changes much, but near its middle."""
@@ -24,6 +24,9 @@ class EyeGlare(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    proxy_notes = (
+        ProxyNote(("glow",), "what scatters within a pixel counts as sharp, and pixels of a proxy are larger", "look"),
+    )
 
     image = Image()
     vision: Annotated[

@@ -1,7 +1,21 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Position, Reach, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    Position,
+    ProxyNote,
+    Reach,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 
@@ -23,6 +37,9 @@ class Ghosts(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    proxy_notes = (
+        ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),
+    )
 
     image = Image()
     dirt = Image(1.0, doc="A picture of the front lens: the flare is multiplied by it. Unlinked, there are smudges.")

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Size, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, ProxyNote, Size, Slider, Trait, Vector
 
 _NO_LIMIT = 65504.0
 
@@ -29,6 +29,7 @@ class KernelGlare(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 
     image = Image()
     kernel = Image(0.0, own_size=True, doc="What a point of light becomes. Without a link, a starburst.")

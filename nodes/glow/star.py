@@ -2,7 +2,22 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Output, Reach, Size, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Edge,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    ProxyNote,
+    Reach,
+    Size,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 
@@ -21,6 +36,7 @@ class Star(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 
     image = Image()
     length: Annotated[

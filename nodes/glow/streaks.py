@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, ProxyNote, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -27,6 +27,7 @@ class Streaks(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 
     image = Image()
     arms: Annotated[

@@ -2,7 +2,22 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Position, Reach, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    Position,
+    ProxyNote,
+    Reach,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 
@@ -22,6 +37,9 @@ class SunBeams(Filter):
     """
 
     traits = (Trait.NEEDS_SCENE_LIGHT,)
+    proxy_notes = (
+        ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),
+    )
 
     image = Image()
     mask = Field(1.0, doc="Where light may come from: the sky, a window.")

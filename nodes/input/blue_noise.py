@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Field, Image, Output, Pointwise, Slider, Vector
+from .._declare import Doc, Field, Image, Output, Pointwise, ProxyNote, Slider, Vector
 
 
 class BlueNoise(Pointwise):
@@ -9,6 +9,8 @@ class BlueNoise(Pointwise):
     Void and cluster (Ulichney, 1993): 64 x 64 cells that repeat, with 256 values of which each is as frequent as any
     other. Next to nothing of it is left in low frequencies.
     """
+
+    proxy_notes = (ProxyNote(("out", "value", "vector"), "every pixel is another number", "look"),)
 
     size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a cell, at least one pixel.")] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Fraction, Image, Output, Pointwise, Slider, Vector
+from .._declare import Doc, Field, Fraction, Image, Output, Pointwise, ProxyNote, Slider, Vector
 
 
 class Worley(Pointwise):
@@ -10,6 +10,8 @@ class Worley(Pointwise):
     picture shows a slice; the 27 cells around are searched. Distances are counted in cells. Hash: pcg3d (Jarzynski and
     Olano 2020), the same on every device.
     """
+
+    proxy_notes = (ProxyNote(("cell",), "its pattern is as fine as pixels of the proxy"),)
 
     feature: Annotated[
         Literal["f1", "f2", "f2-f1"],

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
+from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, ProxyNote, Slider, Vector
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
 
@@ -15,6 +15,13 @@ class AmbientOcclusion(Filter):
     behind what is seen (Mittring 2007; Chapman's hemisphere); alchemy, an obscurance that fades with distance (McGuire
     et al. 2011). `out` is the same as a picture, tinted by light that bounces between walls of the albedo.
     """
+
+    proxy_notes = (
+        ProxyNote(
+            ("bent_normal", "occlusion"),
+            "what hides what is read from depth, which has fewer steps in a proxy and is never mixed",
+        ),
+    )
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")

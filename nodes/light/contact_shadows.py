@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, ProxyNote, Slider, Vector
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}
@@ -17,6 +17,12 @@ class ContactShadows(Filter):
     what throws them is. Surfaces that face away from the light are left as they are: they are dark already. What is not
     in the picture throws no shadow.
     """
+
+    proxy_notes = (
+        ProxyNote(
+            ("shadow",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"
+        ),
+    )
 
     image = Image((1.0, 1.0, 1.0, 1.0), doc="The picture that is shaded. Without a link, white.")
     depth = Field(doc="Planar distance along the way the camera looks.")

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
+from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, ProxyNote, Slider, Vector
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
@@ -18,6 +18,12 @@ class DirectionalOcclusion(Filter):
     gives the albedo times its light times the occlusion. `light` is what is added, `out` the picture with it. Alpha is
     kept.
     """
+
+    proxy_notes = (
+        ProxyNote(
+            ("light",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"
+        ),
+    )
 
     image = Image(doc="The lit scene, whose light bounces on to neighbors.")
     depth = Field(doc="Planar distance along the way the camera looks.")

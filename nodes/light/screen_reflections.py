@@ -1,7 +1,21 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector
+from .._declare import (
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    ProxyNote,
+    Slider,
+    Trait,
+    Vector,
+)
 from ._march import surfaces
 
 _RAYS = {"preview": 4, "quality": 16, "reference": 64}
@@ -20,6 +34,12 @@ class ScreenReflections(Filter):
     """
 
     traits = (Trait.NEEDS_SCENE_LIGHT,)
+    proxy_notes = (
+        ProxyNote(
+            ("confidence", "reflection"),
+            "what hides what is read from depth, which has fewer steps in a proxy and is never mixed",
+        ),
+    )
 
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider
+from .._declare import RGBA, Doc, Fraction, Image, Pointwise, ProxyNote, Slider
 
 
 class Crosshatch(Pointwise):
@@ -9,6 +9,8 @@ class Crosshatch(Pointwise):
     Every layer takes an equal part of the tones (the luminance as a display shows it, sRGB) and keeps all strokes of
     the lighter ones, as in tonal art maps (Praun et al. 2001). Each pixel is the mean of nine samples. Alpha is kept.
     """
+
+    proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 
     image = Image()
     size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one stroke to the next.")] = 7.0

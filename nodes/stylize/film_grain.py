@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
+from .._declare import Doc, Fraction, Image, Pointwise, ProxyNote, Slider, Trait
 
 
 class FilmGrain(Pointwise):
@@ -13,6 +13,7 @@ class FilmGrain(Pointwise):
     """
 
     traits = (Trait.NEEDS_COLOR,)
+    proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 
     image = Image()
     amount: Annotated[

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, ProxyNote, Slider
 
 
 class Halftone(Pointwise):
@@ -10,6 +10,8 @@ class Halftone(Pointwise):
     colors are right up to white (Demichel's equation; full gray component replacement). Four inks lie at the
     printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
     """
+
+    proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 
     image = Image()
     inks: Annotated[Literal["cmyk", "black"], Doc("Cyan, magenta, yellow and black ink, or black alone.")] = "cmyk"

@@ -1,7 +1,7 @@
 from math import ceil
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, ProxyNote, Slider, Vector
 
 
 class Oil(Filter):
@@ -10,6 +10,8 @@ class Oil(Filter):
     Within a disc, pixels are sorted into steps of tone (the luminance as a display shows it, sRGB, up to 1); the mean
     color of the fullest step is shown, of equally full ones that of the darkest (Holzmann 1988, "Beyond Photography").
     """
+
+    proxy_notes = (ProxyNote(("out",), "the tone that is most frequent is one of fewer"),)
 
     image = Image()
     radius: Annotated[

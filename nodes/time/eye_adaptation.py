@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Image, Number, Output, Slider, Temporal, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Image, Number, Output, ProxyNote, Slider, Temporal, Trait, Vector
 
 
 class EyeAdaptation(Temporal):
@@ -14,6 +14,7 @@ class EyeAdaptation(Temporal):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
+    proxy_notes = (ProxyNote(("out",), "it measures the logarithm of light, which of averages is more"),)
 
     image = Image()
     luminance = Number(0.0, doc="What the eye follows instead: a spot, a histogram's middle. See Auto Exposure.")

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, ProxyNote, Slider, Trait, Vector
 
 _SCALES = 8
 _RATIO = 1.6
@@ -19,6 +19,7 @@ class LocalToneMap(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
+    proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
 
     image = Image()
     average = Number(0.0, doc="Log-average luminance of the scene; without a link it is measured.")

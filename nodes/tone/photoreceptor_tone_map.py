@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, ProxyNote, Slider, Trait, Vector
 
 
 class PhotoreceptorToneMap(Filter):
@@ -12,6 +12,7 @@ class PhotoreceptorToneMap(Filter):
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
+    proxy_notes = (ProxyNote(("out",), "it measures the darkest and the brightest pixel, which a proxy averages away"),)
 
     image = Image()
     brightness: Annotated[

@@ -101,7 +101,7 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
         ("vec4 f(vec4 pixel) { return pixel; }", 1, "'pixel' means something else here"),
         *(
             (f"vec4 f(vec4 {name}) {{ return {name}; }}", 1, f"'{name}' means something else here")
-            for name in ("values", "inputs", "lambda", "id", "passes", "version", "code", "changed")
+            for name in ("values", "inputs", "lambda", "id", "passes", "version", "code", "with_values")
         ),
         ("void f(vec4 a) {}", 1, "'f' makes nothing"),
         ("vec4 f(vec4 a, out float b) { return a; }", 1, "returns a vec4 and has out parameters"),

@@ -10,11 +10,9 @@ from geometry import CAMERA, ball
 from halation.nodes import Light, LightKind, look_at, numbers_of
 from halation.nodes.light import deferred_lighting as module
 from halation.nodes.light.deferred_lighting import DeferredLighting
+from lighting_formulas import FURNACE, POINT, SPHERE, SPOT, SUN, Array, lit, reflected
 from msgspec import structs
 
-Array = np.ndarray
-
-POINT, SPOT, SUN, SPHERE = LightKind.POINT, LightKind.SPOT, LightKind.SUN, LightKind.SPHERE
 SIZE = (23, 19)
 LIGHTS = {
     "point": Light(POINT, (1.5, -2.0, 3.0), color=(1.0, 0.6, 0.3), intensity=20.0),
@@ -38,92 +36,6 @@ def scene(width: int, height: int, seed: int = 1) -> dict[str, Array]:
     found["emission"] = random.gamma(0.5, 1.0, (height, width, 4))
     found["occlusion"] = random.uniform(0.0, 1.0, (height, width))
     return {name: array.astype(np.float32) for name, array in found.items()}
-
-
-def unit(v: Array) -> Array:
-    return v / np.linalg.norm(v, axis=-1, keepdims=True)
-
-
-def dot(a: Array, b: Array) -> Array:
-    return np.sum(a * b, axis=-1, keepdims=True)
-
-
-def sphere_cosine(cosine: Array, square: Array) -> Array:
-    """The illuminance of a ball as Lagarde and de Rousiers print it, over that of its middle without the cosine."""
-    sine = np.sqrt(np.maximum(1.0 - cosine**2, 1e-30))
-    x = np.sqrt(1.0 / square - 1.0)
-    y = np.clip(-x * cosine / sine, -1.0, 1.0)
-    root = sine * np.sqrt(1.0 - y**2)
-    cut = (cosine * np.arccos(y) - x * root) * square + np.arctan(root / x)
-    return np.where(cosine**2 > square, np.maximum(cosine, 0.0), np.maximum(cut, 0.0) / (np.pi * square))
-
-
-def ggx(n: Array, v: Array, to: Array, alpha: Array) -> Array:
-    """D V, without Fresnel."""
-    h = unit(v + to)
-    nh, nl, nv = dot(n, h), np.maximum(dot(n, to), 1e-12), np.maximum(dot(n, v), 1e-4)
-    a2 = alpha**2
-    facets = a2 / (np.pi * (nh**2 * (a2 - 1.0) + 1.0) ** 2)
-    return facets * 0.5 / (nl * np.sqrt(nv**2 * (1.0 - a2) + a2) + nv * np.sqrt(nl**2 * (1.0 - a2) + a2))
-
-
-def reflected(
-    light: Light, model: str, place: Array, n: Array, v: Array, f0: Array, alpha: Array
-) -> tuple[Array, Array]:
-    """What falls on the surface and what it mirrors, by one light."""
-    away = np.array(light.place, float) - place
-    distance = np.linalg.norm(away, axis=-1, keepdims=True)
-    aim = unit(np.array(light.direction, float))
-    if light.kind is SUN:
-        to, power, ball = -aim + 0.0 * place, np.full_like(distance, light.intensity), 0.0
-    else:
-        to, power, ball = away / distance, light.intensity / distance**2, 0.0
-        if light.reach > 0.0:
-            power = power * np.clip(1.0 - (distance / light.reach) ** 4, 0.0, 1.0) ** 2
-    if light.kind is SPOT:
-        inner, outer = np.cos(np.radians((min(light.inner, light.outer - 0.5), light.outer)))
-        power = power * np.clip((dot(-to, aim) - outer) / (inner - outer), 0.0, 1.0) ** 2
-    power = power * np.array(light.color)
-    nl = dot(n, to)
-    mirror = 2.0 * dot(n, v) * n - v
-    if light.kind is SPHERE:
-        ball = (light.size / distance) ** 2
-        fallen = power * sphere_cosine(nl, np.minimum(ball, 0.999999))
-        off = dot(to, mirror) * mirror - to
-        to = unit(to + off * np.minimum(1.0, np.sqrt(ball) / np.linalg.norm(off, axis=-1, keepdims=True)))
-        nl = dot(n, to)
-    else:
-        fallen = power * np.maximum(nl, 0.0)
-    above, lit = nl > 0.0, np.maximum(nl, 1e-12)
-    vh = dot(v, unit(v + to))
-    if model == "phong":
-        exponent = 0.5 / alpha**2 + 0.5
-        lobe = (exponent + 2.0) / (2.0 * np.pi) * np.maximum(dot(mirror, to), 0.0) ** exponent
-        mirrored = f0 * lobe * alpha**2 / (alpha**2 + ball * lit / 4.0)
-    else:
-        mirrored = (f0 + (1.0 - f0) * (1.0 - vh) ** 5) * ggx(n, v, to, alpha)
-        mirrored = mirrored * alpha**2 / (alpha**2 + ball / 4.0 / np.maximum(vh, 1e-4))
-    return fallen, np.where(above, power * mirrored * lit, 0.0)
-
-
-def lit(inputs: dict[str, Array], lights: tuple[Light, ...], model: str = "ggx") -> dict[str, Array]:
-    """Diffuse and specular light, premultiplied as the albedo is."""
-    given = {name: array.astype(np.float64) for name, array in inputs.items()}
-    there = given["depth"] < 1e9
-    alpha = given["albedo"][there][:, 3:]
-    color, place, n = given["albedo"][there][:, :3] / alpha, given["position"][there], unit(given["normal"][there])
-    metal, roughness = given["material"][there][:, :1], given["material"][there][:, 1:]
-    v = unit(np.array(CAMERA.eye) - place)
-    f0 = (1.0 - metal) * 0.04 + metal * color
-    fallen, mirrored = np.zeros_like(color), np.zeros_like(color)
-    for light in lights:
-        more = reflected(light, model, place, n, v, f0, roughness**2)
-        fallen, mirrored = fallen + more[0], mirrored + more[1]
-    found = {"diffuse": color * (1.0 - metal) / np.pi * fallen, "specular_light": mirrored}
-    pictures = {name: np.zeros((*there.shape, 3)) for name in found}
-    for name, values in found.items():
-        pictures[name][there] = values * alpha
-    return pictures
 
 
 @pytest.fixture
@@ -239,97 +151,6 @@ def test_lambert_is_i_cos_over_d_squared(render):
     square = (x - 0.5) ** 2 + (y + 0.2) ** 2 + 1.5**2
     wanted = 7.0 / np.pi * 1.5 / square**1.5
     assert np.abs(found[..., 0] / wanted - 1.0).max() < 1e-5
-
-
-FURNACE = [
-    (alpha, mu, share)
-    for mu, row in ((1.0, (0.9881, 0.9159, 0.6880, 0.3069)), (0.3, (0.9369, 0.8389, 0.7464, 0.5614)))
-    for alpha, share in zip((0.1, 0.25, 0.5, 1.0), row, strict=True)
-]
-
-
-@pytest.mark.parametrize(("alpha", "mu", "share"), FURNACE)
-def test_a_white_furnace_loses_what_single_scattering_loses(run, alpha, mu, share):
-    """Suns where visible facets (Heitz 2018) mirror the eye, as bright as they are rare: their sum is the albedo."""
-    count, eye = 1024, np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
-    at = np.arange(count) + 0.5
-    radius, turn = np.sqrt(at / count), 2.0 * np.pi * ((at * 0.6180339887498949) % 1.0)
-    stretched = unit(eye * (alpha, alpha, 1.0))
-    across = np.array([0.0, 1.0, 0.0])
-    x, y = radius * np.cos(turn), radius * np.sin(turn)
-    y = 0.5 * (1.0 - stretched[2]) * np.sqrt(1.0 - x * x) + 0.5 * (1.0 + stretched[2]) * y
-    z = np.sqrt(np.maximum(1.0 - x * x - y * y, 0.0))
-    h = x[:, None] * across + y[:, None] * np.cross(stretched, across) + z[:, None] * stretched
-    h = unit(h * (alpha, alpha, 1.0))
-    ways = 2.0 * (h @ eye)[:, None] * h - eye
-    facets = alpha**2 / (np.pi * (h[:, 2] ** 2 * (alpha**2 - 1.0) + 1.0) ** 2)
-    density = facets * 0.5 / (mu + np.sqrt(alpha**2 + (1.0 - alpha**2) * mu * mu))
-    suns = tuple(
-        Light(SUN, direction=tuple(-way), intensity=1.0 / (count * often))
-        for way, often in zip(ways, density, strict=True)
-        if way[2] > 0.0
-    )
-    up = np.array([[[0.0, 0.0, 1.0]]])
-    inputs = {
-        "albedo": np.ones((1, 1, 4)),
-        "normal": up,
-        "position": 1e-3 * up,
-        "material": np.array([[[1.0, np.sqrt(alpha)]]]),
-        "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
-    }
-    found = run(DeferredLighting(lights=numbers_of(suns), ambient_intensity=0.0), inputs)
-    assert abs(found[0, 0, 0] - share) < 0.002
-
-
-@pytest.mark.parametrize("tilt", [0.0, 0.9])
-@pytest.mark.parametrize(("roughness", "size"), [(0.15, 0.2), (0.15, 1.0), (0.4, 0.6), (0.7, 0.6)])
-def test_a_ball_of_light_is_the_integral_over_its_points(run, roughness, size, tilt):
-    """Its diffuse light to 1e-3; the middle of its highlight, which is an approximation, to 10 percent."""
-    distance, count = 2.0, 512
-    n, eye = np.array([0.0, 0.0, 1.0]), np.array([-np.sin(tilt), 0.0, np.cos(tilt)])
-    middle = distance * np.array([np.sin(tilt), 0.0, np.cos(tilt)])
-    cosine = 1.0 - (np.arange(count) + 0.5) / count * (1.0 - np.sqrt(1.0 - (size / distance) ** 2))
-    turn = 2.0 * np.pi * (np.arange(count) + 0.5) / count
-    cosine, turn = (grid.ravel() for grid in np.meshgrid(cosine, turn))
-    sine, side = np.sqrt(1.0 - cosine**2), np.array([0.0, 1.0, 0.0])
-    ways = np.outer(sine * np.cos(turn), np.cross(side, middle / distance)) + np.outer(sine * np.sin(turn), side)
-    ways += np.outer(cosine, middle / distance)
-    radiance = 5.0 / (np.pi * size**2)
-    span, nl = 2.0 * np.pi * (1.0 - np.sqrt(1.0 - (size / distance) ** 2)), np.maximum(ways[:, 2:], 0.0)
-    diffuse = (nl / np.pi).mean() * radiance * span
-    vh = dot(eye, unit(ways + eye))
-    fresnel = 0.04 + 0.96 * (1.0 - vh) ** 5
-    shine = (ggx(n, eye + 0 * ways, ways, np.array([roughness**2])) * fresnel * nl).mean() * radiance * span
-    node = DeferredLighting(
-        lights=numbers_of((Light(SPHERE, tuple(middle), intensity=5.0, size=size),)),
-        roughness=roughness,
-        ambient_intensity=0.0,
-    )
-    inputs = {
-        "albedo": np.ones((1, 1, 4)),
-        "normal": n[None, None],
-        "position": 1e-6 * n[None, None],
-        "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
-    }
-    assert abs(run(node, inputs, output="diffuse")[0, 0, 0] / diffuse - 1.0) < 1e-3
-    assert abs(run(node, inputs, output="specular_light")[0, 0, 0] / shine - 1.0) < 0.1
-
-
-def test_a_ball_that_sets_still_lights(run):
-    """The integral over the part of a ball of light that is above the horizon."""
-    size, count, random = 0.8, 400_000, np.random.default_rng(2)
-    for height in (0.5, 0.0, -0.5):
-        middle = np.array([np.sqrt(4.0 - height**2), 0.0, height])
-        cosine = 1.0 - random.random(count) * (1.0 - np.sqrt(1.0 - size**2 / 4.0))
-        sine, turn = np.sqrt(1.0 - cosine**2), 2.0 * np.pi * random.random(count)
-        up = cosine * middle[2] / 2.0 + sine * np.cos(turn) * np.sqrt(1.0 - height**2 / 4.0)
-        span = 2.0 * np.pi * (1.0 - np.sqrt(1.0 - size**2 / 4.0))
-        wanted = np.maximum(up, 0.0).mean() * span / (np.pi * size**2) / np.pi
-        node = DeferredLighting(
-            lights=numbers_of((Light(SPHERE, tuple(middle), intensity=1.0, size=size),)), ambient_intensity=0.0
-        )
-        inputs = {"albedo": np.ones((1, 1, 4)), "normal": [[[0, 0, 1]]], "position": [[[0, 0, 1e-6]]]}
-        assert abs(run(node, inputs, output="diffuse")[0, 0, 0] - wanted) < 2e-4
 
 
 def test_ambient_light_is_albedo_times_occlusion(render, run):

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-from types import MappingProxyType
 
 import cv2
 import numpy as np
@@ -34,86 +33,12 @@ LIMIT = 0.03
 AFAR = 0.02
 """Mean difference of light, 0..1, between averages over a sixteenth of the width."""
 
-ALIKE_FROM_AFAR = MappingProxyType(
-    {
-        "it weighs the next pixels, which are farther away in a proxy": (
-            "convolve3x3.out",
-            "curvature.cavity",
-            "curvature.mean",
-            "curvature.ridge",
-            "facing.facing",
-            "normal_from_depth.curvature",
-            "normal_from_depth.normal",
-            "rim_light.out",
-            "rim_light.rim",
-        ),
-        "what hides what is read from depth, which has fewer steps in a proxy and is never mixed": (
-            "ambient_occlusion.bent_normal",
-            "ambient_occlusion.occlusion",
-            "contact_shadows.shadow",
-            "directional_occlusion.light",
-            "screen_reflections.confidence",
-            "screen_reflections.reflection",
-        ),
-        "its pattern is as fine as pixels of the proxy": (
-            "crosshatch.out",
-            "film_grain.out",
-            "halftone.out",
-            "worley.cell",
-        ),
-        "it measures the logarithm of light, which of averages is more": ("eye_adaptation.out",),
-        "its lines have hard edges, around specks too that a proxy averages away": (
-            "difference_of_gaussians.out",
-            "difference_of_gaussians.value",
-            "distance_field.distance",
-            "outline.line",
-            "outline.out",
-        ),
-        "it is steep: what it makes of an average is not the average of what it makes": (
-            "emboss.out",
-            "local_tone_map.out",
-        ),
-        "it measures the darkest and the brightest pixel, which a proxy averages away": ("photoreceptor_tone_map.out",),
-        "it is what passes a threshold, and an average passes it less": (
-            "kernel_glare.glow",
-            "star.glow",
-            "streaks.glow",
-        ),
-        "it is read between pixels many times over, which softens it by pixels of the proxy": (
-            "ghosts.glow",
-            "sun_beams.glow",
-        ),
-        "a box is a whole number of pixels wide, and one more than twice the radius": ("box_blur.out",),
-        "the tone that is most frequent is one of fewer": ("oil.out",),
-        "strong colors meet at hard edges, which are those of single pixels in a proxy": ("id_mask.colors",),
-    }
-)
-"""Outputs that differ in fine detail at half size, by the reason why."""
-
-UNLIKE = MappingProxyType(
-    {
-        "its lines are one or two pixels wide at any size": (
-            "canny.lines",
-            "canny.out",
-            "edge_detect.magnitude",
-            "edge_detect.out",
-            "geometry_edges.border",
-            "geometry_edges.crease",
-            "geometry_edges.gap",
-        ),
-        "its lines are narrower than two pixels of the proxy, and fainter for that": ("geometry_edges.edges",),
-        "what scatters within a pixel counts as sharp, and pixels of a proxy are larger": ("eye_glare.glow",),
-        "every pixel is another number": ("blue_noise.out", "blue_noise.value", "blue_noise.vector"),
-    }
-)
-"""Outputs that look otherwise at half size, by the reason why."""
-
 NODES = tuple(node for node in built_in_nodes().values() if drawn(node))
 
 
-def listed(reasons: Mapping[str, tuple[str, ...]]) -> frozenset[str]:
-    """The outputs of all reasons."""
-    return frozenset(name for names in reasons.values() for name in names)
+def noted(node: type[Node], differs: str) -> frozenset[str]:
+    """The outputs of which the node says that a proxy differs so."""
+    return frozenset(name for note in node.proxy_notes if note.differs == differs for name in note.outputs)
 
 
 def knows_places(node: type[Node]) -> bool:
@@ -206,16 +131,17 @@ def test_half_size_looks_the_same(node: type[Node], renderer: Renderer, picture:
     for name, now in whole.items():
         output = node.outputs[name]
         kind, place = output.socket.kind, f"{node.id}.{name}"
-        if output.socket.single or place in listed(UNLIKE):
+        if output.socket.single or name in noted(node, "look"):
             continue
         assert half[name].shape[:2] == (now.shape[0] // 2, now.shape[1] // 2), place
         shrunk = [halved(now, "triangle"), halved(now, "box"), *([now[1::2, 1::2]] if kind is not Kind.IMAGE else [])]
         expected, found = [seen(one, now, kind) for one in shrunk], seen(half[name], now, kind)
         assert np.abs(from_afar(expected[1]) - from_afar(found)).mean() < AFAR, place
-        assert place in listed(ALIKE_FROM_AFAR) or any(flip(one, found) < LIMIT for one in expected), place
+        assert name in noted(node, "detail") or any(flip(one, found) < LIMIT for one in expected), place
 
 
-def test_what_is_excepted_exists() -> None:
-    outputs = {f"{node.id}.{name}" for node in NODES for name in node.outputs}
-    fine, otherwise = listed(ALIKE_FROM_AFAR), listed(UNLIKE)
-    assert outputs >= fine | otherwise and not fine & otherwise
+@pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
+def test_proxy_notes_name_outputs(node: type[Node]) -> None:
+    detail, look = noted(node, "detail"), noted(node, "look")
+    assert node.outputs.keys() >= detail | look and not detail & look
+    assert all(note.reason and note.outputs for note in node.proxy_notes)
