@@ -1,8 +1,12 @@
-"""Graph in, plan out. Pure: no OpenGL, no files.
+"""The compiler: a graph in, a plan out. Pure: no OpenGL, no files.
 
-Stages are folders, each a function of what the one before made: `lowering` turns nodes into operations, `fusion` groups
-operations into passes, `shading` writes a GLSL program for a pass, `scheduling` finds formats, keys and slots, `parts`
-plans for a part of a picture, or by tiles. `planner` runs them and remembers what holds for the next plan.
+Each stage is a folder, and a function of what the stage before made: `lowering` turns nodes into operations (`ir`),
+`fusion` groups operations into passes, `codegen` writes a GLSL program for each pass, `scheduling` finds formats, keys
+and textures, and `tiling` plans a part of a picture, or one that does not fit. The start of each folder says how it
+works, and why so. `planner` runs the stages and remembers what holds for the next plan.
+
+What is asked of the compiler is a `Request`, and a `Target` says what the device can do. The result is a `Plan`: frozen
+data, of which the renderer needs nothing else. `isf` writes a graph as one shader of another format instead.
 """
 
 from __future__ import annotations

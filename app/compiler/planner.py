@@ -6,14 +6,17 @@ import gc
 from collections.abc import Container, Generator, Mapping
 from contextlib import contextmanager
 
+from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ..graph import Graph, color_settings
+from ..graph import Graph, Port, color_settings
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
+from .areas import Region
 from .fusion.fuse import fuse
 from .fusion.rewrites import rewrite_passes
+from .ir import LoweredProgram
 from .library import Library, installed_library
 from .lowering.expand import find_custom_texts
 from .lowering.incremental import lower_again
@@ -24,6 +27,7 @@ from .request import Request
 from .scheduling.schedule import ScheduleRecord, choose_formats, reschedule, schedule
 from .target import NULL, Precision, Target
 from .tiling.regions import focus_program
+from .tiling.tiles import Tiling
 from .tiling.tiling import plan_tiling
 from .working import library_for
 
@@ -31,32 +35,44 @@ MAX_REMEMBERED_PLANS = 4
 """Plans that a planner remembers: someone who works on a graph looks at few things in turn."""
 
 
-class PlanRecord(Struct, frozen=True):
-    """A plan of whole pictures, how it came to be, and what was asked for besides a frame, a region and bindings."""
+class PlanOptions(Struct, frozen=True):
+    """What a plan depends on besides the graph, the frame, the region and the bindings."""
 
-    asked: tuple[object, ...]
+    targets: Mapping[str, Port]
+    size: Size | None
+    scale: float
+    halves: frozenset[str]
+    by_rows: frozenset[str]
+    target: Target
+    precision: Precision
+    fusion: bool
+
+
+class PlanRecord(Struct, frozen=True):
+    """A plan of whole pictures, how it came to be, and the plan of the last region."""
+
+    options: PlanOptions
     lowered: LoweringRecord
     scheduled: ScheduleRecord
-    tiled: bool
+    may_need_tiles: bool
     """False where it is known to fit."""
-    part: ScheduleRecord | None
-    """The plan of the last region."""
+    region: ScheduleRecord | None
 
 
 @contextmanager
 def _pause_collection() -> Generator[None]:
-    """Nobody looks for garbage meanwhile: most of what a plan is made of lives on, and all other plans with it."""
-    before = gc.isenabled()
+    """Stop looking for garbage: most of what a plan is made of lives on, and a search goes through all plans."""
+    was_enabled = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
-        if before:
+        if was_enabled:
             gc.enable()
 
 
 class Planner:
-    """Compiles graphs one after the other. What holds of the plans before is not found out again.
+    """Compiles graphs one after the other. What still holds of the plans before is not found again.
 
     The plan is always the one that `compile_graph` makes. Bound pixels are not held on to.
     """
@@ -77,12 +93,15 @@ class Planner:
         fusion: bool = True,
         there: Container[str] = (),
     ) -> Plan:
-        """Compile what `request` wants of `graph` for `target`: see `compile_graph`.
+        """Compile what `request` asks of `graph` for `target`: see `compile_graph`.
 
         `there` are the keys of pictures that need not be made: for a region they are read as they are.
+
+        Each stage first tries to follow the plan before, and is done from the start where that fails. Whether a plan
+        needs tiles depends on sizes and formats alone, so what fitted before still fits if only numbers changed.
         """
         library, precision = graph_library(graph, outside, library), precision or target.precision
-        asked = (
+        options = PlanOptions(
             dict(request.targets),
             request.size,
             request.scale,
@@ -92,45 +111,71 @@ class Planner:
             precision,
             fusion,
         )
-        lowered = scheduled = tiling = part = None
-        tiled = True
-        for known in self._known:
-            if known.asked != asked or known.lowered.library is not library:
-                continue
-            lowered = lower_again(known.lowered, graph, request, outside)
-            if lowered is not None:
-                scheduled, tiled = reschedule(known.scheduled, lowered.program, library), known.tiled
-                part = known.part
-                self._known.remove(known)
-                break
-        lowered = lowered or lower(graph, request, library, outside)
-        if scheduled is None:
-            passes = fuse(lowered.program, target, enabled=fusion)
-            passes = rewrite_passes(lowered.program, passes, target, library) if fusion else passes
-            scheduled, tiled = schedule(lowered.program, passes, library, target, precision, request.halves), True
-        wanted = scheduled
-        if request.region is not None:  # which part of a picture is read may depend on numbers: it is found anew
-            made = {ref for ref, key in scheduled.keys.items() if key in there}
-            program = focus_program(lowered.program, scheduled.passes, request.region, made)
-            same = part is not None and part.passes is scheduled.passes and part.program.windows == program.windows
-            wanted = reschedule(part, program, library) if part is not None and same else None
-            wanted = wanted or schedule(program, scheduled.passes, library, target, precision, request.halves)
-            part = wanted
-        if tiled or wanted is not scheduled:  # what fitted as it was still does if nothing but numbers changed
-            tiling = plan_tiling(
-                wanted.program,
-                wanted.passes,
-                wanted.texels,
-                library,
-                target,
-                precision,
-                request.halves,
-                wanted.keys,
-                request.by_rows,
-            )
-        tiled = tiling is not None if wanted is scheduled else tiled
-        self._known = [PlanRecord(asked, lowered, scheduled, tiled, part), *self._known][:MAX_REMEMBERED_PLANS]
-        return _with_pixels(replace(wanted.plan, tiling=tiling), request.bindings)
+        before, lowered = self._lower(options, graph, request, outside, library)
+        scheduled = reschedule(before.scheduled, lowered.program, library) if before else None
+        may_need_tiles = before.may_need_tiles if before and scheduled else True
+        scheduled = scheduled or _schedule(options, lowered.program, library)
+        region = before.region if before else None
+        chosen = scheduled
+        if request.region is not None:
+            region = chosen = _schedule_region(options, region, scheduled, request.region, there, library)
+        tiling = None
+        if may_need_tiles or chosen is not scheduled:
+            tiling = _plan_tiling(options, chosen, library)
+        if chosen is scheduled:
+            may_need_tiles = tiling is not None
+        record = PlanRecord(options, lowered, scheduled, may_need_tiles, region)
+        self._known = [record, *self._known][:MAX_REMEMBERED_PLANS]
+        return _with_pixels(replace(chosen.plan, tiling=tiling), request.bindings)
+
+    def _lower(
+        self, options: PlanOptions, graph: Graph, request: Request, outside: ResourceProvider, library: Library
+    ) -> tuple[PlanRecord | None, LoweringRecord]:
+        """The plan that this one follows, which is forgotten, and the lowered graph; no plan if it follows none."""
+        for record in self._known:
+            if record.options == options and record.lowered.library is library:
+                lowered = lower_again(record.lowered, graph, request, outside)
+                if lowered is not None:
+                    self._known.remove(record)
+                    return record, lowered
+        return None, lower(graph, request, library, outside)
+
+
+def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -> ScheduleRecord:
+    target = options.target
+    passes = fuse(program, target, enabled=options.fusion)
+    passes = rewrite_passes(program, passes, target, library) if options.fusion else passes
+    return schedule(program, passes, library, target, options.precision, options.halves)
+
+
+def _schedule_region(
+    options: PlanOptions,
+    before: ScheduleRecord | None,
+    whole: ScheduleRecord,
+    region: Region,
+    there: Container[str],
+    library: Library,
+) -> ScheduleRecord:
+    """The passes of a plan for a region. Which part of a picture is read may depend on numbers, so it is found anew."""
+    made = {ref for ref, key in whole.keys.items() if key in there}
+    program = focus_program(whole.program, whole.passes, region, made)
+    follows = before and before.passes is whole.passes and before.program.windows == program.windows
+    known = reschedule(before, program, library) if before and follows else None
+    return known or schedule(program, whole.passes, library, options.target, options.precision, options.halves)
+
+
+def _plan_tiling(options: PlanOptions, scheduled: ScheduleRecord, library: Library) -> Tiling | None:
+    return plan_tiling(
+        scheduled.program,
+        scheduled.passes,
+        scheduled.texels,
+        library,
+        options.target,
+        options.precision,
+        options.halves,
+        scheduled.keys,
+        options.by_rows,
+    )
 
 
 def compile_graph(
