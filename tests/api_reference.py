@@ -70,7 +70,7 @@ def describe_errors() -> Iterator[str]:
     """The tree of exceptions as their module draws it, then each class."""
     yield describe(errors)
     for name, error in vars(errors).items():
-        if inspect.isclass(error):
+        if inspect.isclass(error) and issubclass(error, hal.HalationError):
             yield f"**{name}** (exit code {error.exit_code}): {describe(error)}"
 
 

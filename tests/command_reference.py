@@ -29,7 +29,7 @@ def describe_command(name: str, command: Any) -> str:
     """What the page says of a command between its marks: how to call it, and its arguments and flags."""
     arguments = [item for item in command.params if item.param_type_name == "argument"]
     options = [item for item in command.params if item.param_type_name == "option" and not item.hidden]
-    usage = " ".join(["halation", name, *(_usage(item) for item in arguments), *_required(options)])
+    usage = " ".join(["halation", name, *(_usage(item) for item in arguments), *_required_options(options)])
     rows = [(f"`{_usage(item)}`", item.help or "") for item in arguments]
     own = [item for item in options if item.name != "help" and not set(_EVERYWHERE) & set(item.opts)]
     rows += [(_flags(item), item.help or "") for item in own]
@@ -44,7 +44,7 @@ def _usage(item: Any) -> str:
     return word if item.required else f"[{word}]"
 
 
-def _required(options: list[Any]) -> Iterator[str]:
+def _required_options(options: list[Any]) -> Iterator[str]:
     for item in options:
         if item.required:
             yield f"{min(item.opts, key=len)} {item.metavar or (item.name or '').upper()}"

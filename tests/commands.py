@@ -27,13 +27,13 @@ class Result:
 Cli = Callable[..., Result]
 
 
-def command(capfd: pytest.CaptureFixture[str], *before: str) -> Cli:
+def make_cli(capfd: pytest.CaptureFixture[str], *before: str) -> Cli:
     """What runs a command whose first words are `before`, and tells how it ended."""
 
-    def called(*words: object) -> Result:
+    def run_command(*words: object) -> Result:
         capfd.readouterr()
         code = run([*before, *map(str, words)])
         output = capfd.readouterr()
         return Result(code, output.out, output.err)
 
-    return called
+    return run_command

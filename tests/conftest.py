@@ -54,7 +54,7 @@ def run(renderer: Renderer) -> Run:
     Inputs that take cameras are given one.
     """
 
-    def rendered(
+    def render(
         subject: Node | Graph,
         inputs: Mapping[str, Array | Camera] | None = None,
         *,
@@ -75,4 +75,4 @@ def run(renderer: Renderer) -> Run:
         found = engine.render(graph, RenderRequest(arrays, targets, size, scale, precision=precision))
         return found[output].astype(np.float32)
 
-    return rendered
+    return render

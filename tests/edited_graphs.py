@@ -12,19 +12,19 @@ from halation.nodes import Kind
 from random_graphs import random_graph, random_node, sources
 
 
-def some_graph(seed: int) -> Graph:
+def make_graph(seed: int) -> Graph:
     """Wired at random, with a group, controls, keys, an expression, a node of unknown type and a layout."""
     rng = Random(seed)
     graph = random_graph(seed, rng.randint(2, 7))
     graph = graph.add("inner", Group(random_graph(seed + 1, 3)))
     graph = graph.add("odd", Unknown("from_elsewhere", {"version": 3, "knobs": {"a": 1, "b": [1, 2]}}))
     for _ in range(6):
-        graph = edited(rng, graph)
+        graph = edit_randomly(rng, graph)
     places = {id: {"x": rng.randint(0, 900), "y": rng.randint(0, 900)} for id in graph.nodes}
-    return read(dumps(dataclasses.replace(graph, ui={"nodes": places}, extra={"": {"later": {"deep": [1]}}})))
+    return parse_graph(dumps(dataclasses.replace(graph, ui={"nodes": places}, extra={"": {"later": {"deep": [1]}}})))
 
 
-def edited(rng: Random, graph: Graph) -> Graph:
+def edit_randomly(rng: Random, graph: Graph) -> Graph:
     """One edit that a person could make; the same graph where it is refused."""
     try:
         return _edit(rng, graph)
@@ -32,7 +32,7 @@ def edited(rng: Random, graph: Graph) -> Graph:
         return graph
 
 
-def read(text: str) -> Graph:
+def parse_graph(text: str) -> Graph:
     """A graph as versions are compared: from its text alone."""
     return loads(text, follow=False)
 
@@ -89,7 +89,7 @@ def _edit(rng: Random, graph: Graph) -> Graph:
         case "expression" if numbers:
             return graph.animate(Port(id, rng.choice(numbers)), Expression("0.1 * frame"))
         case "inside" if isinstance(item, Group):
-            body = dataclasses.replace(item, graph=edited(rng, item.graph))
+            body = dataclasses.replace(item, graph=edit_randomly(rng, item.graph))
             return dataclasses.replace(graph, nodes={**graph.nodes, id: body})
         case "control" if numbers:
             name = rng.choice("klm")

@@ -96,11 +96,11 @@ class Ui:
         """Click twice; two clicks count as one thing however long a busy machine needs for the frames between them."""
         self.move(place, fraction)
         io = imgui.get_io()
-        usual = io.mouse_single_click_delay, io.mouse_double_click_time
+        usual_times = io.mouse_single_click_delay, io.mouse_double_click_time
         io.mouse_single_click_delay, io.mouse_double_click_time = 61.0, 60.0
         self.ctx.mouse_double_click(0)
         self.wait(3)
-        io.mouse_single_click_delay, io.mouse_double_click_time = usual
+        io.mouse_single_click_delay, io.mouse_double_click_time = usual_times
 
     def drag(
         self,
@@ -126,7 +126,7 @@ class Ui:
 
     def held(self, keys: str):
         """Hold modifier keys inside a block."""
-        return _Held(self.ctx, keys)
+        return _HeldKeys(self.ctx, keys)
 
     def wheel(self, steps: float) -> None:
         """Turn the wheel where the mouse is."""
@@ -148,8 +148,8 @@ class Ui:
 
     def shot(self, name: str) -> Path:
         """A screenshot; kept in HALATION_SHOTS if that is set."""
-        kept = os.environ.get("HALATION_SHOTS")
-        path = Path(kept or self.folder) / name
+        shots_folder = os.environ.get("HALATION_SHOTS")
+        path = Path(shots_folder or self.folder) / name
         path.parent.mkdir(parents=True, exist_ok=True)
         testing.capture(self.ctx, str(path))
         return path
@@ -163,7 +163,7 @@ class Ui:
         return pixels[..., :3]
 
 
-class _Held:
+class _HeldKeys:
     def __init__(self, ctx: Any, keys: str) -> None:
         self._ctx, self._keys = ctx, chord(f"{keys}+A") - chord("A") if keys else 0
 
@@ -192,7 +192,7 @@ def drive(
     window = headless(folder, path, bindings, size)
     window.params.fps_idling.enable_idling = False
 
-    def whole(ctx: Any) -> None:
+    def run_test(ctx: Any) -> None:
         ui = Ui(window, ctx, folder)
 
         def each_frame() -> None:
@@ -216,7 +216,7 @@ def drive(
 
     end, before_panels = window.params.callbacks.before_exit, window.params.callbacks.post_new_frame
     window.params.callbacks.before_exit = leave
-    testing.run(test_function=whole, runner_params=window.params, add_ons_params=immapp.AddOnsParams())
+    testing.run(test_function=run_test, runner_params=window.params, add_ons_params=immapp.AddOnsParams())
     return window
 
 

@@ -24,7 +24,7 @@ SAMPLES = presets.paths()[0].parent / "samples"
 Screens = Iterator[str]
 
 
-def made(folder: Path) -> Path:
+def write_many_things(folder: Path) -> Path:
     """A graph file with nodes of many kinds, a group, a file with layers, and something of everything that is drawn."""
     shutil.copytree(SAMPLES, folder / "samples", dirs_exist_ok=True)
     node = catalogue()
@@ -241,7 +241,7 @@ def panels(ui: Ui) -> Screens:
     show(ui, "Graph")
 
 
-def render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
+def make_render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
     """A render to files as the panel sees it, without a process."""
     made = QueuedRender(
         QueuedJob(RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1))), Graph())
@@ -260,12 +260,12 @@ def renders(ui: Ui) -> Screens:
     yield "renders_form"
     folder = Path("/pictures/shots/0120")
     ui.editor.exports.all = (
-        render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
-        render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
-        render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
-        render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
-        render(folder / "comp_v016.####.exr", "waiting"),
-        render(folder / "comp_v017.####.exr", "waiting"),
+        make_render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
+        make_render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
+        make_render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
+        make_render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
+        make_render(folder / "comp_v016.####.exr", "waiting"),
+        make_render(folder / "comp_v017.####.exr", "waiting"),
     )
     ui.wait(3)
     yield "renders"

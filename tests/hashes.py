@@ -32,5 +32,5 @@ def normal3(cell: tuple[object, object, object], seed: tuple[int, int, int] = (0
     parts = np.stack(np.broadcast_arrays(*(np.asarray(part, np.int64) for part in cell)), -1)
     with np.errstate(over="ignore"):
         bits = pcg3d(parts.astype(np.uint32) + np.array(seed, np.int64).astype(np.uint32))
-    first, second = ((one >> np.uint32(8)) / 2.0**24 for one in (bits, pcg3d(bits)))
+    first, second = ((hashed >> np.uint32(8)) / 2.0**24 for hashed in (bits, pcg3d(bits)))
     return np.moveaxis(np.sqrt(-2 * np.log1p(-first)) * np.cos(2 * np.pi * second), -1, 0)

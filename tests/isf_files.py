@@ -30,7 +30,9 @@ def node(body: str, *inputs: dict[str, Any], values: dict[str, Any] | None = Non
     return shader(isf(body, *inputs, **head))(**{"light": "linear", **(values or {})})
 
 
-def alone(item: CustomNode, size: tuple[int, int], frames: tuple[int, int] = (1, 9), rate: float = 24.0) -> Graph:
+def graph_of_node(
+    item: CustomNode, size: tuple[int, int], frames: tuple[int, int] = (1, 9), rate: float = 24.0
+) -> Graph:
     """A graph of one node; its pictures are inputs by their own names."""
     graph = Graph(settings=Settings(size, frames, rate)).add("shader", item).add_output("out", Output(Kind.IMAGE, 4))
     for name, socket in item.inputs.items():
@@ -47,11 +49,11 @@ def opaque(height: int, width: int, seed: int = 1) -> Array:
     return pixels
 
 
-def decoded(code: Array) -> Array:
+def decode_srgb(code: Array) -> Array:
     """sRGB display values as light (IEC 61966-2-1)."""
     return np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
 
 
-def encoded(light: Array) -> Array:
+def encode_srgb(light: Array) -> Array:
     """The inverse."""
     return np.where(light <= 0.0031308, light * 12.92, 1.055 * np.maximum(light, 0) ** (1 / 2.4) - 0.055)

@@ -23,8 +23,8 @@ def opaque(light: Array) -> Array:
     return np.dstack([light.astype(np.float32), np.ones(light.shape[:2], np.float32)])
 
 
-def psnr(found: Array, expected: Array, where: Array | None = None) -> float:
+def psnr(picture: Array, expected: Array, where: Array | None = None) -> float:
     """Peak signal to noise of red, green, blue, in dB; the peak is the brightest of what is expected."""
     expected = expected.astype(float)
-    error = ((found[..., :3] - expected) ** 2).mean(-1)
+    error = ((picture[..., :3] - expected) ** 2).mean(-1)
     return float(10.0 * np.log10(expected.max() ** 2 / (error if where is None else error[where]).mean()))

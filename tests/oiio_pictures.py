@@ -11,19 +11,21 @@ import OpenImageIO as oiio
 from exr_files import create_output
 
 
-def buffer(pixels: np.ndarray) -> oiio.ImageBuf:
+def make_buffer(pixels: np.ndarray) -> oiio.ImageBuf:
     """[h, w, c] of float32 as an image whose fourth channel is alpha."""
-    made = oiio.ImageBuf(oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "float"))
-    made.set_pixels(oiio.ROI.All, pixels)
-    made.specmod().alpha_channel = 3
-    return made
+    image = oiio.ImageBuf(oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "float"))
+    image.set_pixels(oiio.ROI.All, pixels)
+    image.specmod().alpha_channel = 3
+    return image
 
 
-def stored(path: Path, array: np.ndarray, *, format: str = "half", tile: int = 0, **said: object) -> str:
+def write_with_attributes(
+    path: Path, array: np.ndarray, *, format: str = "half", tile: int = 0, **attributes: object
+) -> str:
     """A file of an array, by OpenImageIO."""
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], format)
     spec.tile_width = spec.tile_height = tile
-    for name, item in said.items():
+    for name, item in attributes.items():
         spec.attribute(name, item)
     output = create_output(path)
     assert output.open(str(path), spec) and output.write_image(array) and output.close()

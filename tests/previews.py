@@ -36,7 +36,7 @@ def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Gr
     return graph.connect(last, Port("outputs", "image"))
 
 
-def want(
+def request_preview(
     preview: Preview,
     graph: Graph,
     ports: Mapping[str, Port] = OUT,
@@ -65,9 +65,9 @@ def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
     return read_texture(engine.device, shown.texture)[..., : shown.channels]
 
 
-def rendered(engine: Renderer, graph: Graph, port: Port = IMAGE, **rest) -> np.ndarray:
+def render_port(engine: Renderer, graph: Graph, port: Port = IMAGE, **rest) -> np.ndarray:
     return engine.render(graph, RenderRequest({"image": PICTURE}, {"x": port}, **rest))["x"]
 
 
-def passes(engine: Renderer) -> int:
+def count_passes(engine: Renderer) -> int:
     return engine.runner.counters.passes

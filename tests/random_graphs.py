@@ -80,11 +80,11 @@ def remembers(graph: Graph, id: str) -> bool:
 
 def sources(graph: Graph, but: str) -> list[Port]:
     """Everything that a link may start from."""
-    found = [Port("inputs", name) for name in graph.inputs]
+    ports = [Port("inputs", name) for name in graph.inputs]
     for name in graph.nodes:
         if name != but:
-            found += [Port(name, output) for output in signature(graph.nodes[name]).outputs]
-    return found
+            ports += [Port(name, output) for output in signature(graph.nodes[name]).outputs]
+    return ports
 
 
 def pictures(seed: int) -> dict[str, np.ndarray]:

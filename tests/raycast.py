@@ -13,7 +13,7 @@ WALL, TOP = 6.0, 3.0
 
 
 @dataclass(frozen=True)
-class Seen:
+class RaycastImage:
     """What every pixel shows; `hit` is False where there is only sky, and everything else is 0 there."""
 
     position: Array
@@ -23,7 +23,7 @@ class Seen:
     hit: Array
 
 
-def seen(camera: Camera, width: int, height: int) -> Seen:
+def cast_rays(camera: Camera, width: int, height: int) -> RaycastImage:
     """Through the middle of every pixel."""
     rows = np.reshape(camera.rows, (3, 4))
     eye = -np.linalg.solve(rows[:, :3], rows[:, 3])
@@ -45,4 +45,4 @@ def seen(camera: Camera, width: int, height: int) -> Seen:
     position = np.where(hit[..., None], eye + depth[..., None] * rays, 0.0)
     faces = np.where((first == 0)[..., None], (0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
     normal = np.where((first == 2)[..., None], (position - CENTER) / RADIUS, faces) * hit[..., None]
-    return Seen(position, normal, depth, np.where(hit, np.linalg.norm(position - eye, axis=-1), 0.0), hit)
+    return RaycastImage(position, normal, depth, np.where(hit, np.linalg.norm(position - eye, axis=-1), 0.0), hit)

@@ -33,10 +33,10 @@ def noise_graph(node: Node, frames: tuple[int, int] = (1, 8), size: tuple[int, i
 
 def noise_at(renderer: Renderer, graph: Graph, frame: int) -> Array:
     """What the noise of such a graph is at a frame, in 64 bits."""
-    found = renderer.render(
+    outputs = renderer.render(
         graph, RenderRequest(frame=frame, precision="float", targets={"it": Port("outputs", "noise")})
     )
-    return found["it"].astype(np.float64)
+    return outputs["it"].astype(np.float64)
 
 
 def node_at(renderer: Renderer, graph: Graph, frame: int, **wanted: object) -> Array:
@@ -45,24 +45,29 @@ def node_at(renderer: Renderer, graph: Graph, frame: int, **wanted: object) -> A
     return renderer.render(graph, RenderRequest(frame=frame, **options))["it"].astype(np.float64)  # type: ignore[arg-type]
 
 
-def played(
-    renderer: Renderer, graph: Graph, shot: Shot, frames: Iterable[int], output: str = "out", **wanted: object
+def render_frames(
+    renderer: Renderer,
+    graph: Graph,
+    shot: Shot,
+    frames: Iterable[int],
+    output: str = "out",
+    **request: object,
 ) -> list[Array]:
     """An output at frames, in the order in which they are asked for."""
-    options: dict[str, object] = {"precision": "float", **wanted}
-    reel = FrameRenderer(renderer, graph, RenderRequest(dict(shot), **options))  # type: ignore[arg-type]
+    options: dict[str, object] = {"precision": "float", **request}
+    frame_renderer = FrameRenderer(renderer, graph, RenderRequest(dict(shot), **options))  # type: ignore[arg-type]
     try:
-        return [reel.render(frame)[output].copy() for frame in frames]
+        return [frame_renderer.render(frame)[output].copy() for frame in frames]
     finally:
-        reel.close()
+        frame_renderer.close()
 
 
-def flat(value: Callable[[int], float], size: tuple[int, int] = (3, 2)) -> Callable[[int], Array]:
+def make_flat_frames(value: Callable[[int], float], size: tuple[int, int] = (3, 2)) -> Callable[[int], Array]:
     """Frames of one gray each, opaque."""
 
-    def made(frame: int) -> Array:
+    def make_frame(frame: int) -> Array:
         picture = np.full((size[1], size[0], 4), value(frame), np.float32)
         picture[..., 3] = 1.0
         return picture
 
-    return made
+    return make_frame

@@ -230,16 +230,16 @@ def _random_set(rng: Random, graph: Graph, id: str) -> Graph:
 
 
 def _starts(graph: Graph) -> list[Port]:
-    found = [Port("inputs", name) for name in graph.inputs]
+    ports = [Port("inputs", name) for name in graph.inputs]
     for id, item in graph.nodes.items():
-        found += [Port(id, name) for name in ("out",) if isinstance(item, Unknown)]
-        found += [Port(id, name) for name in signature(item).outputs]
-    return found
+        ports += [Port(id, name) for name in ("out",) if isinstance(item, Unknown)]
+        ports += [Port(id, name) for name in signature(item).outputs]
+    return ports
 
 
 def _ends(graph: Graph) -> list[Port]:
-    found = [Port("outputs", name) for name in graph.outputs]
+    ports = [Port("outputs", name) for name in graph.outputs]
     for id, item in graph.nodes.items():
-        found += [Port(id, name) for name in ("in",) if isinstance(item, Unknown)]
-        found += [Port(id, name) for name in (*signature(item).inputs, *signature(item).values)]
-    return found
+        ports += [Port(id, name) for name in ("in",) if isinstance(item, Unknown)]
+        ports += [Port(id, name) for name in (*signature(item).inputs, *signature(item).values)]
+    return ports

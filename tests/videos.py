@@ -80,7 +80,7 @@ def write_numbers(path: Path, codec: str, pixels: str, count: int, **rest: Any) 
     return write_frames(path, [frame.reformat(format=pixels) for frame in shown], codec, **rest)
 
 
-def decoded(path: Path) -> list[np.ndarray]:
+def decode_frames(path: Path) -> list[np.ndarray]:
     """All frames as PyAV decodes them from the first on, [h, w, 3] of uint8."""
     import av
 

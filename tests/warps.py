@@ -11,13 +11,13 @@ Source = Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Positions x and y (pixel centers at .5) to the positions in the image that are shown there."""
 
 
-def looked_up(picture: np.ndarray, x: np.ndarray, y: np.ndarray, mode: str) -> np.ndarray:
+def sample_bilinear(picture: np.ndarray, x: np.ndarray, y: np.ndarray, mode: str) -> np.ndarray:
     """Bilinear, by scipy."""
     channels = np.moveaxis(picture.astype(np.float64), -1, 0)
     return np.stack([map_coordinates(c, [y - 0.5, x - 0.5], order=1, mode=mode) for c in channels], -1)
 
 
-def warped(picture: np.ndarray, source: Source, mode: str = "nearest") -> tuple[np.ndarray, np.ndarray]:
+def warp_picture(picture: np.ndarray, source: Source, mode: str = "nearest") -> tuple[np.ndarray, np.ndarray]:
     """The picture through a warp, and where it is certain how finely each pixel was sampled.
 
     A pixel whose sides lie more than 1 apart in the image averages a grid, as fine as they lie apart.
@@ -32,8 +32,8 @@ def warped(picture: np.ndarray, source: Source, mode: str = "nearest") -> tuple[
     out = np.zeros(picture.shape)
     for n in np.unique(count):
         offsets = (np.arange(n) + 0.5) / n - 0.5
-        found = [looked_up(picture, *source(x + dx, y + dy), mode) for dy in offsets for dx in offsets]
-        out = np.where((count == n)[..., None], np.mean(found, 0), out)
+        samples = [sample_bilinear(picture, *source(x + dx, y + dy), mode) for dy in offsets for dx in offsets]
+        out = np.where((count == n)[..., None], np.mean(samples, 0), out)
     return out, (np.abs(span - np.round(span)) > 1e-3) | (span == 1) | (span == 8)
 
 

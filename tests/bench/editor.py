@@ -62,17 +62,17 @@ _CAST = (
 )
 
 
-def chain(types: list[str], size: tuple[int, int]) -> Graph:
+def make_chain(types: list[str], size: tuple[int, int]) -> Graph:
     """A noise, then one node after the other, then the output."""
-    known = catalogue()
-    graph = Graph().add("noise", known["noise"]())
+    types_by_name = catalogue()
+    graph = Graph().add("noise", types_by_name["noise"]())
     source = Port("noise", "out")
     for number, name in enumerate(types):
         id = f"n{number}"
-        graph = graph.add(id, known[name]())
-        first = next(iter(known[name].inputs))
+        graph = graph.add(id, types_by_name[name]())
+        first = next(iter(types_by_name[name].inputs))
         graph = graph.connect(source, Port(id, first))
-        source = Port(id, next(iter(known[name].outputs)))
+        source = Port(id, next(iter(types_by_name[name].outputs)))
     graph = graph.add_output("image", Output(Kind.IMAGE)).connect(source, Port("outputs", "image"))
 
     from halation.graph import Settings
@@ -80,12 +80,12 @@ def chain(types: list[str], size: tuple[int, int]) -> Graph:
     return replace(graph, settings=Settings(size))
 
 
-def frame(folder: Path) -> dict[str, float]:
+def measure_frame(folder: Path) -> dict[str, float]:
     """Python per frame, by panel, with 100 nodes in view."""
-    graph = chain([_CAST[number % len(_CAST)] for number in range(99)], (320, 180))
+    graph = make_chain([_CAST[number % len(_CAST)] for number in range(99)], (320, 180))
     path = folder / "hundred.json"
     document.save(graph, path)
-    found: dict[str, list[float]] = {}
+    times_by_panel: dict[str, list[float]] = {}
 
     def body(ui: Ui) -> None:
         ui.session.arrange(ui.editor.canvas.sizes or {})
@@ -93,16 +93,16 @@ def frame(folder: Path) -> dict[str, float]:
         ui.settled()
         panels = ui.window._panels
         for title in (docked.title for docked in DOCKED):
-            _time(panels, title, found)
+            _time_panel(panels, title, times_by_panel)
         ui.wait(120)
 
     drive(body, folder, path, size=(1920, 1200))
-    medians = {title: statistics.median(times[20:]) for title, times in found.items() if len(times) > 40}
+    medians = {title: statistics.median(times[20:]) for title, times in times_by_panel.items() if len(times) > 40}
     return {**medians, "total": sum(medians.values())}
 
 
-def _time(panels: dict[str, Any], title: str, found: dict[str, list[float]]) -> None:
-    inner, times = panels[title].draw, found.setdefault(title, [])
+def _time_panel(panels: dict[str, Any], title: str, times_by_panel: dict[str, list[float]]) -> None:
+    inner, times = panels[title].draw, times_by_panel.setdefault(title, [])
 
     def draw() -> None:
         started = time.perf_counter()
@@ -112,11 +112,11 @@ def _time(panels: dict[str, Any], title: str, found: dict[str, list[float]]) -> 
     panels[title].draw = draw
 
 
-def drag(folder: Path) -> dict[str, float]:
+def measure_drag(folder: Path) -> dict[str, float]:
     """Pictures per second while the mouse drags the last exposure in the inspector, without a coarser one meanwhile."""
     path = folder / "ten.json"
-    document.save(chain(list(_TEN), (1920, 1080)), path)
-    found: dict[str, float] = {}
+    document.save(make_chain(list(_TEN), (1920, 1080)), path)
+    figures: dict[str, float] = {}
 
     def body(ui: Ui) -> None:
         ui.session.select(["n9"])
@@ -136,19 +136,19 @@ def drag(folder: Path) -> dict[str, float]:
         spent, used = time.perf_counter() - started, sum(os.times()[:2]) - before
         ui.ctx.mouse_up(0)
         assert len(values) > 10, "the mouse drags it"
-        found.update(pictures=len(seen) / spent, frames=steps / spent, processor=used / len(seen))
+        figures.update(pictures=len(seen) / spent, frames=steps / spent, processor=used / len(seen))
 
     drive(body, folder, path, size=(1920, 1200), likes={"proxy_while_dragging": False})
-    return found
+    return figures
 
 
-def zoomed(folder: Path) -> dict[str, Any]:
+def measure_zoomed(folder: Path) -> dict[str, Any]:
     """The first of six nodes, a blur and the last one, each changed while a ninth or a thirty-sixth is seen."""
-    found: dict[str, Any] = {}
+    table: dict[str, Any] = {}
     renderer = Renderer()
     for width, height in ((1920, 1080), (3840, 2160)):
         box = (0.3, 0.3, 0.3 + 640 / width, 0.3 + 360 / height)
-        glimpse, graph = VisibleRegion(box, (width, height), frozenset("A")), chain(list(_STACK), (width, height))
+        glimpse, graph = VisibleRegion(box, (width, height), frozenset("A")), make_chain(list(_STACK), (width, height))
         preview, value = Preview(renderer, Display(renderer.device)), 1.0
         preview.thumbnailing = False
         for word in ("n0.stops", "n1.sigma", "n5.saturation"):
@@ -161,20 +161,22 @@ def zoomed(folder: Path) -> dict[str, Any]:
                 for step in range(4):
                     value += 0.003
                     graph = graph.set(Port.parse(word), value)
-                    taken = _until_seen(preview, graph)
+                    taken = _time_until_seen(preview, graph)
                     seen = preview.seen("A")
                     assert seen is not None and seen.partial == part
                     if turn > 1 and step:  # before, programs are compiled and caches filled
                         steps[part].append(taken)
             parts, wholes = (np.median(steps[part], axis=0) for part in (True, False))
             figures = {"part": parts, "whole": wholes, "ratio": parts / wholes}
-            found[f"{width}x{height} {word}"] = {name: one.round(3).tolist() for name, one in figures.items()}
+            table[f"{width}x{height} {word}"] = {
+                name: median_times.round(3).tolist() for name, median_times in figures.items()
+            }
         preview.close()
     renderer.close()
-    return found
+    return table
 
 
-def _until_seen(preview: Preview, graph: Graph) -> tuple[float, float]:
+def _time_until_seen(preview: Preview, graph: Graph) -> tuple[float, float]:
     """Milliseconds until what can be seen of a graph is there, and those of all processors."""
     began, used = time.perf_counter(), time.process_time()
     preview.want(graph, {"A": Port("outputs", "image")})
@@ -183,7 +185,7 @@ def _until_seen(preview: Preview, graph: Graph) -> tuple[float, float]:
     return (time.perf_counter() - began) * 1e3, (time.process_time() - used) * 1e3
 
 
-def idle(folder: Path) -> float:
+def measure_idle(folder: Path) -> float:
     """Processor time per second of doing nothing, without the test engine, which never rests."""
     window = headless(folder, folder / "ten.json", size=(1600, 1000))
     before, marks = window.params.callbacks.before_imgui_render, list[tuple[float, float]]()
@@ -206,7 +208,7 @@ def idle(folder: Path) -> float:
     return (marks[-1][1] - marks[0][1]) / (marks[-1][0] - marks[0][0])
 
 
-def start(folder: Path) -> float:
+def measure_start(folder: Path) -> float:
     """Seconds until the window shows its first picture, best of three."""
     code = (
         "import sys,time,os;sys.path.append(sys.argv[1])\n"
@@ -232,7 +234,13 @@ def start(folder: Path) -> float:
 
 def main() -> None:
     """Measure what the words name, or everything."""
-    figures = {"frame": frame, "drag": drag, "zoomed": zoomed, "idle": idle, "start": start}
+    figures = {
+        "frame": measure_frame,
+        "drag": measure_drag,
+        "zoomed": measure_zoomed,
+        "idle": measure_idle,
+        "start": measure_start,
+    }
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         os.environ["HALATION_STATE"] = str(folder / "state")

@@ -19,7 +19,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.exr import read
-from bench.tasks import TASKS, picture
+from bench.tasks import TASKS, picture_path
 from halation import document
 from halation.renderer import Renderer, RenderRequest
 
@@ -34,7 +34,7 @@ def main() -> None:
     reader.add_argument("--set", action="append", default=[])
     options = reader.parse_args()
     task = TASKS[options.task]
-    given = {name: read(picture(options.folder, name), half=name in "ab") for name in task.inputs}
+    given = {name: read(picture_path(options.folder, name), half=name in "ab") for name in task.inputs}
     width = next(iter(given.values())).shape[1]
     graph = document.load(task.path)
     for name, value in task.values(width).items():

@@ -12,7 +12,7 @@ Array = np.ndarray
 THREADS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def threaded() -> None:
+def use_all_processors() -> None:
     """Let OpenImageIO use all processors for EXR too."""
     oiio.attribute("threads", THREADS)
     oiio.attribute("exr_threads", THREADS)
@@ -20,11 +20,11 @@ def threaded() -> None:
 
 def read(path: Path, half: bool = False) -> Array:
     """The pixels as [height, width, channels] of float32, or of float16."""
-    opened = oiio.ImageInput.open(str(path))
-    if opened is None:
+    file = oiio.ImageInput.open(str(path))
+    if file is None:
         raise OSError(oiio.geterror())
-    pixels = opened.read_image(0, 0, 0, opened.spec().nchannels, "half" if half else "float")
-    opened.close()
+    pixels = file.read_image(0, 0, 0, file.spec().nchannels, "half" if half else "float")
+    file.close()
     if pixels is None:
         raise OSError(f"{path}: {oiio.geterror()}")
     return pixels
@@ -40,7 +40,7 @@ def write(path: Path, pixels: Array, half: bool | None = None) -> None:
     spec.attribute("compression", "zip")
     if channels > 1:
         spec.channelnames = tuple("RGBA"[:channels])
-    made = oiio.ImageOutput.create(str(path))
-    if not made or not made.open(str(path), spec) or not made.write_image(np.ascontiguousarray(pixels)):
+    file = oiio.ImageOutput.create(str(path))
+    if not file or not file.open(str(path), spec) or not file.write_image(np.ascontiguousarray(pixels)):
         raise OSError(oiio.geterror())
-    made.close()
+    file.close()

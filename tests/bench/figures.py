@@ -8,7 +8,7 @@ from statistics import median
 from typing import Any
 
 from bench.programs import BLENDERS, OURS
-from bench.results import Results, paired
+from bench.results import Results, median_ratio
 
 SCRIPTS = ("opencv", "opencv_fast", "numba")
 AGAINST_BLENDER: Mapping[str, float] = {
@@ -56,13 +56,13 @@ class Figure:
     unit: str = ""
 
     @property
-    def reached(self) -> bool:
+    def is_reached(self) -> bool:
         """True if it is known and not too large."""
         return self.number is not None and self.number <= self.limit
 
     def __str__(self) -> str:
-        mark = "" if self.reached else " **(!)**"
-        return f"{self.label} {number_text(self.number)}{self.unit}{mark}".strip()
+        mark = "" if self.is_reached else " **(!)**"
+        return f"{self.label} {format_number(self.number)}{self.unit}{mark}".strip()
 
 
 @dataclass(frozen=True)
@@ -76,18 +76,18 @@ class Row:
     @property
     def verdict(self) -> str:
         """yes, no, or a line if nothing of it was measured."""
-        known = [one for one in self.figures if one.number is not None]
-        return "\N{EN DASH}" if not known else "yes" if all(one.reached for one in known) else "no"
+        measured = [one for one in self.figures if one.number is not None]
+        return "\N{EN DASH}" if not measured else "yes" if all(one.is_reached for one in measured) else "no"
 
 
-def number_text(number: float | None) -> str:
+def format_number(number: float | None) -> str:
     """Three digits; small ones with an exponent."""
     if number is None:
         return "?"
     return f"{number:.1e}" if 0.0 < abs(number) < 1e-3 else f"{number:.3g}"
 
 
-def rows(results: Results) -> Iterator[Row]:
+def compute_rows(results: Results) -> Iterator[Row]:
     """All that is wanted, of the smallest size that was measured and of uhd."""
     hd = results.runs[0].size if results.runs else "hd"
 
@@ -101,7 +101,7 @@ def rows(results: Results) -> Iterator[Row]:
 
     def apart(task: str, other: str) -> float | None:
         one, two = results.find(hd, task, OURS), results.find(hd, other, OURS)
-        return paired(one.op, two.op) if one and two else None
+        return median_ratio(one.op, two.op) if one and two else None
 
     wanted = "copy, T1, T3, T4, T6 0.6; T2 0.8; T5 0.5; T9 0.45; T10 0.42; T8 0.2"
     yield Row(f"whole process against the best Blender, {hd}", wanted, ratios(hd, "wall", AGAINST_BLENDER, BLENDERS))
@@ -142,7 +142,7 @@ def rows(results: Results) -> Iterator[Row]:
     memory = ratios(hd, "memory", dict.fromkeys(AGAINST_BLENDER, 0.8), BLENDERS)
     opencv = Figure("T5 / OpenCV", results.ratio(hd, "T5", "memory", OURS, ["opencv"]), 1.0)
     yield Row(f"peak memory, {hd}", "0.8 of Blender's; T5 below OpenCV's", (*memory, opencv))
-    yield from _extras(results.extras)
+    yield from _compute_extras(results.extras)
     yield Row(
         f"accuracy, {hd}: RMS of the difference as a part of the picture's",
         "3e-4",
@@ -166,24 +166,24 @@ def rows(results: Results) -> Iterator[Row]:
     )
 
 
-def _extras(found: Mapping[str, Any]) -> Iterator[Row]:
+def _compute_extras(extras: Mapping[str, Any]) -> Iterator[Row]:
     """What is not one of the tasks."""
     start = [
         figure
         for name in ("help", "check")
-        if name in found
+        if name in extras
         for figure in (
-            Figure(name, median(found[name]["wall"]), 0.15, " s"),
-            Figure(f"libraries that {name} loads", len(set(found[name]["loaded"]) & set(LIBRARIES)), 0),
+            Figure(name, median(extras[name]["wall"]), 0.15, " s"),
+            Figure(f"libraries that {name} loads", len(set(extras[name]["loaded"]) & set(LIBRARIES)), 0),
         )
     ]
     yield Row("`--help`, and `check` of a graph without files", "0.15 s, neither GL nor OpenImageIO", tuple(start))
     yield Row(
         "cold cache of shaders against warm, T5",
         "2",
-        (Figure("", paired(found["cold"], found["warm"]) if "cold" in found else None, 2.0),),
+        (Figure("", median_ratio(extras["cold"], extras["warm"]) if "cold" in extras else None, 2.0),),
     )
-    plans = {plan["nodes"]: plan for plan in found.get("plans", ())}
+    plans = {plan["nodes"]: plan for plan in extras.get("plans", ())}
     small, large = plans.get(1000), plans.get(2000)
     yield Row(
         "planning 1,000 nodes",
@@ -201,18 +201,18 @@ def _extras(found: Mapping[str, Any]) -> Iterator[Row]:
             Figure("plan", median(small["change"]) * 1e3 if small else None, 10.0, " ms"),
         ),
     )
-    sigma = found.get("sigma")
+    sigma = extras.get("sigma")
     yield Row(
         "sigma 200 against sigma 20, in memory",
         "1.5",
-        (Figure("", paired(sigma["200"], sigma["20"]) if sigma else None, 1.5),),
+        (Figure("", median_ratio(sigma["200"], sigma["20"]) if sigma else None, 1.5),),
     )
 
 
-def table(results: Results) -> str:
+def format_table(results: Results) -> str:
     """The table in Markdown."""
     lines = ["| what | wanted, at most | measured | reached |", "|---|---|---|---|"]
-    for row in rows(results):
+    for row in compute_rows(results):
         known = ", ".join(str(one) for one in row.figures if one.number is not None) or "not measured"
         lines.append(f"| {row.what} | {row.wanted} | {known} | {row.verdict} |")
     return "\n".join(lines)

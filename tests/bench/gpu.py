@@ -18,18 +18,18 @@ sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.gpu_measuring import measure_copies, measure_presets, measure_work
 from bench.gpu_pictures import PRESETS
-from bench.gpu_table import listing, table
+from bench.gpu_table import format_results, format_table
 from bench.gpu_work import WORK
 from bench.results import Results
-from bench.run import machine
-from bench.started import run
+from bench.run import describe_machine
+from bench.started import run_process
 from halation.renderer import open_device
 
 Say = Callable[[str], None]
 PARTS = ("copies", "work", "presets")
 
 
-def options(words: Sequence[str] | None = None) -> argparse.Namespace:
+def read_options(words: Sequence[str] | None = None) -> argparse.Namespace:
     """What was asked for."""
     reader = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     reader.add_argument("--parts", default=",".join(PARTS), help=f"some of {', '.join(PARTS)}")
@@ -47,63 +47,63 @@ def options(words: Sequence[str] | None = None) -> argparse.Namespace:
     reader.add_argument("--json", type=Path, metavar="FILE", help="keep the results")
     reader.add_argument("--from", dest="earlier", type=Path, metavar="FILE", help="print these, measure nothing")
     reader.add_argument("--table", action="store_true", help="print what is wanted, too, and whether it is reached")
-    given = reader.parse_args(words)
-    for name, known in (("parts", PARTS), ("work", WORK), ("presets", PRESETS)):
-        setattr(given, name, [word for word in getattr(given, name).split(",") if word])
-        for word in getattr(given, name):
-            if word not in known:
-                reader.error(f"--{name} {word}: it is none of {', '.join(known)}")
-    return given
+    arguments = reader.parse_args(words)
+    for name, choices in (("parts", PARTS), ("work", WORK), ("presets", PRESETS)):
+        setattr(arguments, name, [word for word in getattr(arguments, name).split(",") if word])
+        for word in getattr(arguments, name):
+            if word not in choices:
+                reader.error(f"--{name} {word}: it is none of {', '.join(choices)}")
+    return arguments
 
 
 def main() -> None:
     """Measure, keep, print."""
-    given = options()
+    arguments = read_options()
 
     def say(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
-    results = Results.load(given.earlier) if given.earlier else measured(given, say)
-    print(listing(results))
-    if given.table:
-        print(table(results))
+    results = Results.load(arguments.earlier) if arguments.earlier else measure(arguments, say)
+    print(format_results(results))
+    if arguments.table:
+        print(format_table(results))
 
 
-def measured(given: argparse.Namespace, say: Say) -> Results:
+def measure(arguments: argparse.Namespace, say: Say) -> Results:
     """All that was asked for; kept after every part."""
     device = open_device()
     software = device.target.software
-    given.dry = given.dry or software
-    if given.dry:
-        given.rounds, given.repeat = min(given.rounds, 2), min(given.repeat, 3)
+    arguments.dry = arguments.dry or software
+    if arguments.dry:
+        arguments.rounds, arguments.repeat = min(arguments.rounds, 2), min(arguments.repeat, 3)
     results = Results(
         {
-            **machine(),
+            **describe_machine(),
             "card": device.target.renderer,
             "driver": device.driver,
             "form": device.target.form,
             "why": device.target.why,
             "software": software,
-            "dry": given.dry,
-            "nvidia": nvidia(),
+            "dry": arguments.dry,
+            "nvidia": describe_nvidia_card(),
         }
     )
     parts = {"copies": measure_copies, "work": measure_work, "presets": measure_presets}
     for name in PARTS:
-        if name in given.parts:
-            parts[name](results, device, given, say)
-            if given.json:
-                results.save(given.json)
+        if name in arguments.parts:
+            parts[name](results, device, arguments, say)
+            if arguments.json:
+                results.save(arguments.json)
     return results
 
 
-def nvidia() -> str:
+def describe_nvidia_card() -> str:
     """What NVIDIA's own tool says of the card; "" without it."""
     if not shutil.which("nvidia-smi"):
         return ""
     facts = "name,driver_version,memory.total,clocks.max.sm,clocks.max.memory"
-    ended = run(["nvidia-smi", f"--query-gpu={facts}", "--format=csv,noheader"])
-    return "" if ended.code else ended.said.strip().replace("\n", "; ")
+    process = run_process(["nvidia-smi", f"--query-gpu={facts}", "--format=csv,noheader"])
+    return "" if process.code else process.output.strip().replace("\n", "; ")
 
 
 if __name__ == "__main__":

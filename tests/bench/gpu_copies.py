@@ -76,9 +76,9 @@ class Clock:
         return time.perf_counter() - started
 
 
-def copies(context: moderngl.Context, size: Size, repeats: int, by_query: bool) -> list[Copy]:
+def time_copies(context: moderngl.Context, size: Size, repeats: int, by_query: bool) -> list[Copy]:
     """Copies of a picture of that size in every way and format, and of as large a buffer; the first does not count."""
-    clock, found = Clock(context, by_query), list[Copy]()
+    clock, results = Clock(context, by_query), list[Copy]()
     pixels = size[0] * size[1]
     for texel, (kind, each) in FORMATS.items():
         shown = np.arange(pixels * 4, dtype=np.uint32).astype(np.uint8).astype("float16" if kind == "f2" else "float32")
@@ -87,16 +87,16 @@ def copies(context: moderngl.Context, size: Size, repeats: int, by_query: bool) 
             seconds = tuple(clock.of(act) for _ in range(repeats + 1))
             same = bool((np.frombuffer(made.read(), shown.dtype) == shown).all())
             made.write(np.zeros_like(shown))
-            found.append(Copy(f"{way} {texel}", pixels * each, seconds[1:], same))
+            results.append(Copy(f"{way} {texel}", pixels * each, seconds[1:], same))
         source.release()
         made.release()
     nbytes = pixels * 16
-    one, other = context.buffer(np.arange(nbytes // 4, dtype=np.uint32)), context.buffer(reserve=nbytes)
-    seconds = tuple(clock.of(lambda: context.copy_buffer(other, one)) for _ in range(repeats + 1))
-    found.append(Copy("buffer", nbytes, seconds[1:], one.read() == other.read()))
-    one.release()
-    other.release()
-    return found
+    original, copy = context.buffer(np.arange(nbytes // 4, dtype=np.uint32)), context.buffer(reserve=nbytes)
+    seconds = tuple(clock.of(lambda: context.copy_buffer(copy, original)) for _ in range(repeats + 1))
+    results.append(Copy("buffer", nbytes, seconds[1:], original.read() == copy.read()))
+    original.release()
+    copy.release()
+    return results
 
 
 def queries_against_clock(context: moderngl.Context, size: Size) -> float:

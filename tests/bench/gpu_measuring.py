@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from bench.gpu_copies import copies, queries_against_clock
-from bench.gpu_pictures import PRESETS, file_of, rendered
+from bench.gpu_copies import queries_against_clock, time_copies
+from bench.gpu_pictures import PRESETS, file_of, render
 from bench.gpu_table import FORMS, PRECISIONS
-from bench.gpu_work import DRY, UHD2, WORK, Work, counted, floor, picture
+from bench.gpu_work import DRY, UHD2, WORK, Work, least_bytes, make_picture, select_measured
 from bench.results import Results
-from bench.started import run
+from bench.started import run_process
 from halation import document
 from halation.compiler import Form
 from halation.errors import HalationError
@@ -40,7 +40,7 @@ def measure_copies(results: Results, device: Device, given: argparse.Namespace, 
     assert isinstance(device, OpenGLDevice)
     with device.save_draw_target() as context:
         results.extras["queries"] = queries_against_clock(context, size)
-        found = copies(context, size, given.repeat, by_query)
+        found = time_copies(context, size, given.repeat, by_query)
     results.extras["copies"] = {
         one.way: {**asdict(one), "seconds": list(one.seconds), "bandwidth": one.bandwidth} for one in found
     }
@@ -53,7 +53,7 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
     for name in given.work:
         work = replace(WORK[name], size=DRY) if given.dry else WORK[name]
         graph = document.load(work.path)
-        inputs = {name: picture(work.size) for name in work.inputs}
+        inputs = {name: make_picture(work.size) for name in work.inputs}
         for turn in range(given.rounds):
             for precision in PRECISIONS:
                 for form, renderer in engines.items():
@@ -78,7 +78,7 @@ def take(
     if one.error:
         return
     try:
-        passes = counted(bench(renderer, graph, wanted, (wanted.frame,), repeat, 2).passes)
+        passes = select_measured(bench(renderer, graph, wanted, (wanted.frame,), repeat, 2).passes)
         one.op += [sum(each) for each in zip(*(timed.seconds for timed in passes), strict=True)]
         one.wall += frames(renderer, graph, wanted, repeat)
     except HalationError as fault:
@@ -87,7 +87,7 @@ def take(
     known: dict[str, Any] = {
         "moved": sum(timed.read + timed.written for timed in passes),
         "passes": len(passes),
-        "floor": floor(renderer.compile(graph, wanted)),
+        "floor": least_bytes(renderer.compile(graph, wanted)),
         "each": [
             {"functions": list(timed.functions), "median": timed.median, "moved": timed.read + timed.written}
             for timed in passes
@@ -130,12 +130,12 @@ def measure_presets(results: Results, device: Device, given: argparse.Namespace,
         for precision in PRECISIONS:
             say(f"presets by the software rasterizer, {precision}")
             words = [str(folder), "--precision", precision, "--presets", ",".join(names), "--scale", str(scale)]
-            ended = run([sys.executable, str(SCRIPT), *words], patience=3600.0)
+            ended = run_process([sys.executable, str(SCRIPT), *words], patience=3600.0)
             if ended.code:
-                raise SystemExit(ended.said[-2000:])
+                raise SystemExit(ended.output[-2000:])
         for precision in PRECISIONS:
             say(f"presets by {device.target.renderer}, {precision}")
-            for name, array in rendered(renderer, names, precision, scale):
+            for name, array in render(renderer, names, precision, scale):
                 there = np.load(file_of(folder, precision, name, scale))["image"]
                 found.setdefault(name, {})[precision] = measure_flip(array, there)
         for name, one in found.items():

@@ -22,9 +22,7 @@ Array = np.ndarray
 PRESETS = tuple(path.stem for path in paths())
 
 
-def rendered(
-    renderer: Renderer, names: Sequence[str], precision: Precision, scale: float
-) -> Iterator[tuple[str, Array]]:
+def render(renderer: Renderer, names: Sequence[str], precision: Precision, scale: float) -> Iterator[tuple[str, Array]]:
     """The first output of presets, scene-linear: of those that move, the frame in the middle."""
     graphs = {path.stem: path for path in paths()}
     for name in names:
@@ -61,7 +59,7 @@ def main() -> None:
             "the folder along (--software)"
         )
     renderer = Renderer(device)
-    for name, array in rendered(renderer, missing, given.precision, given.scale):
+    for name, array in render(renderer, missing, given.precision, given.scale):
         np.savez_compressed(files[name], image=array)
         print(name, file=sys.stderr, flush=True)
     renderer.close()

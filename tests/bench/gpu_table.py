@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from statistics import median
 
-from bench.figures import Figure, Row, number_text
-from bench.results import Results, Run, paired
+from bench.figures import Figure, Row, format_number
+from bench.results import Results, Run, median_ratio
 from halation.compiler import Form, Precision
 
 COPY = 0.7
@@ -26,7 +26,7 @@ _NOTHING = (
 )
 
 
-def heading(results: Results) -> list[str]:
+def format_heading(results: Results) -> list[str]:
     """The card, its driver, and what the figures are worth."""
     machine = results.machine
     lines = [f"{machine['card']}, {machine['driver']}; {machine['form']} passes ({machine['why']})"]
@@ -46,9 +46,9 @@ def bandwidth(results: Results) -> float | None:
     return max((copy["bandwidth"] for copy in results.extras.get("copies", {}).values()), default=None)
 
 
-def listing(results: Results) -> str:
+def format_results(results: Results) -> str:
     """All of it."""
-    lines = [*heading(results), ""]
+    lines = [*format_heading(results), ""]
     if copies := results.extras.get("copies"):
         lines += ["| copy | MiB | ms | GB/s | arrived |", "|---|---|---|---|---|"]
         lines += [
@@ -84,7 +84,7 @@ def listing(results: Results) -> str:
 
 
 def _flips(one: Mapping[str, float]) -> list[str]:
-    return [number_text(one[name]) for name in ("half", "float", "rounding")]
+    return [format_number(one[name]) for name in ("half", "float", "rounding")]
 
 
 def _cells(results: Results, one: Run) -> list[str]:
@@ -110,12 +110,12 @@ def _cells(results: Results, one: Run) -> list[str]:
     ]
 
 
-def rows(results: Results) -> Iterator[Row]:
+def compute_rows(results: Results) -> Iterator[Row]:
     """What is wanted, of the form of passes that the device is given, with intermediates of half floats."""
     own = f"{results.machine['form']} half"
 
     def floors(task: str, limit: float) -> Figure:
-        one, speed = _run(results, task, own), bandwidth(results)
+        one, speed = _find_run(results, task, own), bandwidth(results)
         if one is None or not speed:
             return Figure(task, None, limit)
         return Figure(task, median(one.op) * speed / results.extras["bytes"][task][own]["floor"], limit)
@@ -130,15 +130,15 @@ def rows(results: Results) -> Iterator[Row]:
         f"{FLOORS:g}",
         tuple(floors(task, FLOORS) for task in ("T1s3", "T1s10", "T1s50", "bloom")),
     )
-    stack = _run(results, "stack", own)
+    stack = _find_run(results, "stack", own)
     yield Row(
         "the preset post_stack at 3840x2160, all passes",
         f"{STACK * 1e3:g} ms",
         (Figure("", median(stack.op) * 1e3 if stack else None, STACK * 1e3, " ms"),),
     )
     forms, precisions = [f"{form} half" for form in FORMS], [f"{results.machine['form']} {one}" for one in PRECISIONS]
-    yield Row("compute against fragment passes", "to be known", tuple(_ratios(results, *forms)))
-    yield Row("half against float intermediates", "to be known", tuple(_ratios(results, *precisions)))
+    yield Row("compute against fragment passes", "to be known", tuple(_compute_ratios(results, *forms)))
+    yield Row("half against float intermediates", "to be known", tuple(_compute_ratios(results, *precisions)))
     presets = results.extras.get("presets", {})
     yield Row(
         "presets against the software rasterizer: mean of FLIP, half",
@@ -147,25 +147,25 @@ def rows(results: Results) -> Iterator[Row]:
     )
 
 
-def _run(results: Results, task: str, program: str) -> Run | None:
-    found = next((one for one in results.runs if (one.task, one.program) == (task, program)), None)
-    return found if found and found.op else None
+def _find_run(results: Results, task: str, program: str) -> Run | None:
+    run = next((one for one in results.runs if (one.task, one.program) == (task, program)), None)
+    return run if run and run.op else None
 
 
-def _ratios(results: Results, program: str, another: str) -> Iterator[Figure]:
+def _compute_ratios(results: Results, program: str, another: str) -> Iterator[Figure]:
     for task in dict.fromkeys(one.task for one in results.runs):
-        one, other = _run(results, task, program), _run(results, task, another)
+        one, other = _find_run(results, task, program), _find_run(results, task, another)
         if one and other:
-            yield Figure(task, paired(one.op, other.op), float("inf"))
+            yield Figure(task, median_ratio(one.op, other.op), float("inf"))
 
 
-def table(results: Results) -> str:
+def format_table(results: Results) -> str:
     """What is wanted, and what came of it. Where the figures mean nothing no verdict is given."""
     worth = not (results.machine["software"] or results.machine["dry"])
     lines = ["| what | wanted, at most | measured | reached |", "|---|---|---|---|"]
-    for row in rows(results):
+    for row in compute_rows(results):
         known = ", ".join(
-            str(one) if worth else f"{one.label} {number_text(one.number)}{one.unit}".strip()
+            str(one) if worth else f"{one.label} {format_number(one.number)}{one.unit}".strip()
             for one in row.figures
             if one.number is not None
         )

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
-from bench.inputs import light
+from bench.inputs import make_light
 from bench.tasks import TASKS
 from halation.compiler import Plan
 from halation.presets import paths
@@ -59,14 +59,14 @@ WORK: Mapping[str, Work] = MappingProxyType(
 )
 
 
-def picture(size: Size) -> Array:
+def make_picture(size: Size) -> Array:
     """A picture of half floats, [height, width, 4]."""
-    tile = light(min(size[0], TILE[0]), min(size[1], TILE[1]), 1)
+    tile = make_light(min(size[0], TILE[0]), min(size[1], TILE[1]), 1)
     down, across = (-(-side // tile.shape[axis]) for axis, side in ((0, size[1]), (1, size[0])))
     return np.ascontiguousarray(np.tile(tile, (down, across, 1))[: size[1], : size[0]].astype(np.float16))
 
 
-def floor(plan: Plan) -> int:
+def least_bytes(plan: Plan) -> int:
     """Bytes of reading every picture that comes from outside once, and writing every output once.
 
     In the formats of the plan; pictures that are fitted first count with the size that they are fitted to.
@@ -76,6 +76,6 @@ def floor(plan: Plan) -> int:
     return sum(plan.surfaces[number].nbytes for number in (*read, *set(plan.outputs.values())))
 
 
-def counted(passes: tuple[Timed, ...]) -> tuple[Timed, ...]:
+def select_measured(passes: tuple[Timed, ...]) -> tuple[Timed, ...]:
     """The passes that count."""
     return tuple(one for one in passes if not FITTING.issuperset(one.functions))

@@ -15,18 +15,18 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.exr import write
-from bench.tasks import FRAMES, SEQUENCE, Lens, Occlusion, picture
+from bench.tasks import FRAMES, SEQUENCE, Lens, Occlusion, picture_path
 
 Array = np.ndarray
 
 
-def places(width: int, height: int) -> tuple[Array, Array]:
+def pixel_positions(width: int, height: int) -> tuple[Array, Array]:
     """Where the pixels are: across from 0 to the aspect ratio, down from 0 to 1."""
     down, across = np.mgrid[0:height, 0:width].astype(np.float32) + np.float32(0.5)
     return across / height, down / height
 
 
-def noise(width: int, height: int, period: float, octaves: int, seed: int) -> Array:
+def make_noise(width: int, height: int, period: float, octaves: int, seed: int) -> Array:
     """Smooth value noise of -1 to 1; `period` is in pixels of a picture 1920 wide."""
     rng, total, weight = np.random.default_rng(seed), np.zeros((height, width), np.float32), 0.0
     for octave in range(octaves):
@@ -41,19 +41,19 @@ def noise(width: int, height: int, period: float, octaves: int, seed: int) -> Ar
     return total / weight
 
 
-def light(width: int, height: int, seed: int, shift: float = 0.0) -> Array:
+def make_light(width: int, height: int, seed: int, shift: float = 0.0) -> Array:
     """A picture: a sky behind tiles and thin stripes, 160 lights, holes in its alpha. `shift` moves all but the sky."""
-    x, y = places(width, height)
+    x, y = pixel_positions(width, height)
     x, aspect = x + np.float32(shift), width / height
     rng = np.random.default_rng(seed)
     color = np.stack([0.15 + 0.5 * y, 0.25 + 0.35 * y, 0.55 - 0.25 * y], 2)
-    color *= 0.75 + 0.25 * noise(width, height, 96.0, 5, seed + 7)[..., None]
+    color *= 0.75 + 0.25 * make_noise(width, height, 96.0, 5, seed + 7)[..., None]
     color *= np.where((np.floor(x * 14.0) + np.floor(y * 14.0)) % 2.0 == 0.0, 1.0, 0.45).astype(np.float32)[..., None]
     color += 0.6 * (np.abs(np.sin(x * 100.0 + y * 9.0)) > 0.985)[..., None]
     for _ in range(160):
         across, down, radius = rng.uniform(0.0, aspect), rng.uniform(), rng.uniform(0.0008, 0.006) * aspect
         tint = rng.uniform(0.3, 1.0, 3) * 10.0 ** rng.uniform(0.5, 2.7)
-        _disc(color, (across + shift) % aspect, down, radius, tint.astype(np.float32))
+        _draw_disc(color, (across + shift) % aspect, down, radius, tint.astype(np.float32))
     alpha = np.ones((height, width), np.float32)
     for _ in range(12):
         across, down, radius = rng.uniform(0.0, aspect), rng.uniform(), rng.uniform(0.03, 0.12) * aspect
@@ -62,7 +62,7 @@ def light(width: int, height: int, seed: int, shift: float = 0.0) -> Array:
     return np.dstack([color * alpha[..., None], alpha]).astype(np.float16)
 
 
-def _disc(color: Array, across: float, down: float, radius: float, tint: Array) -> None:
+def _draw_disc(color: Array, across: float, down: float, radius: float, tint: Array) -> None:
     """A small round light with a soft rim."""
     height, width = color.shape[:2]
     reach = 1.5 * radius
@@ -73,9 +73,9 @@ def _disc(color: Array, across: float, down: float, radius: float, tint: Array) 
     color[top:bottom, left:right] += cover * (tint - color[top:bottom, left:right])
 
 
-def geometry(width: int, height: int) -> tuple[Array, Array, Array]:
+def make_geometry(width: int, height: int) -> tuple[Array, Array, Array]:
     """Depth [h, w], normals [h, w, 3] and motion [h, w, 4], in pixels to the frame before and to the next one."""
-    x, y = places(width, height)
+    x, y = pixel_positions(width, height)
     rays = np.stack([2.0 * x - width / height, 1.0 - 2.0 * y, np.full_like(x, -Occlusion.focal)], 2) / Occlusion.focal
     near = np.where(rays[..., 1] < 0.0, -1.0 / np.minimum(rays[..., 1], -1e-4), 60.0)
     depth, normal = np.minimum(near, 60.0), np.zeros_like(rays)
@@ -95,31 +95,31 @@ def geometry(width: int, height: int) -> tuple[Array, Array, Array]:
     return depth.astype(np.float32), normal.astype(np.float32), np.dstack([-motion, motion]).astype(np.float32)
 
 
-def pictures(width: int, height: int) -> dict[str, Array]:
+def make_pictures(width: int, height: int) -> dict[str, Array]:
     """All that tasks take but the frames of the sequence, by name, as [height, width] or [height, width, channels]."""
-    depth, normal, velocity = geometry(width, height)
+    depth, normal, velocity = make_geometry(width, height)
     mask = np.clip(np.abs(depth - Lens.focus) / Lens.focus, 0.0, 1.0)
     return {
-        "a": light(width, height, 1),
-        "b": light(width, height, 42),
+        "a": make_light(width, height, 1),
+        "b": make_light(width, height, 42),
         "depth": depth,
         "normal": normal,
         "velocity": velocity,
         "mask": np.repeat(mask[..., None], 4, 2).astype(np.float16),
-        "noise": np.dstack([noise(width, height, 128.0, 3, seed) for seed in (11, 12)]),
+        "noise": np.dstack([make_noise(width, height, 128.0, 3, seed) for seed in (11, 12)]),
     }
 
 
 def main() -> None:
     """Write the pictures and the frames into a folder that is there when all of them are."""
     folder, (width, height) = Path(sys.argv[1]), (int(side) for side in sys.argv[2].split("x"))
-    made = folder.with_name(f"{folder.name}.part")
-    (made / SEQUENCE).parent.mkdir(parents=True, exist_ok=True)
-    for name, pixels in pictures(width, height).items():
-        write(picture(made, name), pixels)
+    unfinished = folder.with_name(f"{folder.name}.part")
+    (unfinished / SEQUENCE).parent.mkdir(parents=True, exist_ok=True)
+    for name, pixels in make_pictures(width, height).items():
+        write(picture_path(unfinished, name), pixels)
     for frame in range(1, FRAMES + 1) if "--still" not in sys.argv else ():
-        write(made / SEQUENCE.format(frame), light(width, height, 1, 0.004 * frame))
-    made.rename(folder)
+        write(unfinished / SEQUENCE.format(frame), make_light(width, height, 1, 0.004 * frame))
+    unfinished.rename(folder)
 
 
 if __name__ == "__main__":

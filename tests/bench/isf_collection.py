@@ -21,7 +21,7 @@ from halation.nodes import Kind
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
 
 
-def picture(size: int) -> np.ndarray:
+def make_picture(size: int) -> np.ndarray:
     """A scene: soft colors, a bright disc, a dark bar, fine stripes."""
     y, x = np.mgrid[0:size, 0:size] / size
     light = np.stack([0.1 + 0.6 * x, 0.2 + 0.5 * y, 0.6 - 0.4 * x * y, np.ones_like(x)], axis=2)
@@ -52,16 +52,16 @@ def graph_of(path: Path, size: int, frames: int) -> Graph:
     return graph
 
 
-def verdict(engine: Renderer, graph: Graph, size: int, frames: int) -> tuple[str, np.ndarray | None]:
+def judge(engine: Renderer, graph: Graph, size: int, frames: int) -> tuple[str, np.ndarray | None]:
     """What the last frame is, in a word or a sentence, and its pixels."""
-    light = picture(size)
-    given = {name: light if number == 0 else light[::-1, ::-1].copy() for number, name in enumerate(graph.inputs)}
-    reel = FrameRenderer(engine, graph, RenderRequest(given, precision="float"))
-    made = [reel.render(frame)["out"] for frame in range(1, frames + 1)]
-    reel.close()
-    if not all(np.isfinite(one).all() for one in made):
-        return "not finite", made[-1]
-    return ("good" if any(np.abs(one[..., :3]).max() > 1.0 / 255.0 for one in made) else "black"), made[-1]
+    light = make_picture(size)
+    bindings = {name: light if number == 0 else light[::-1, ::-1].copy() for number, name in enumerate(graph.inputs)}
+    frame_renderer = FrameRenderer(engine, graph, RenderRequest(bindings, precision="float"))
+    pictures = [frame_renderer.render(frame)["out"] for frame in range(1, frames + 1)]
+    frame_renderer.close()
+    if not all(np.isfinite(one).all() for one in pictures):
+        return "not finite", pictures[-1]
+    return ("good" if any(np.abs(one[..., :3]).max() > 1.0 / 255.0 for one in pictures) else "black"), pictures[-1]
 
 
 def main() -> None:
@@ -74,38 +74,38 @@ def main() -> None:
     reader.add_argument("--sheet", type=Path, help="write all pictures, side by side")
     options = reader.parse_args()
     engine, started = Renderer(), time.perf_counter()
-    found: dict[str, list[str]] = {}
+    names_by_kind: dict[str, list[str]] = {}
     tiles: list[np.ndarray] = []
     paths = [path for path in sorted(options.folder.rglob("*.fs")) if options.only in path.name]
     for path in paths:
         pixels = None
         try:
-            kind, pixels = verdict(engine, graph_of(path, options.size, options.frames), options.size, options.frames)
+            kind, pixels = judge(engine, graph_of(path, options.size, options.frames), options.size, options.frames)
             why = ""
         except CodeFault as fault:
             kind, why = "refused", str(fault)
         except HalationError as fault:
             kind, why = "failed", " ".join(str(fault).split())
-        found.setdefault(kind, []).append(f"{path.stem}: {why}" if why else path.stem)
+        names_by_kind.setdefault(kind, []).append(f"{path.stem}: {why}" if why else path.stem)
         if pixels is not None and pixels.shape[:2] == (options.size, options.size):
             tiles.append(pixels)
         engine.runner.textures.release_idle()
-    compiled = sum(len(names) for kind, names in found.items() if kind not in ("refused", "failed"))
+    compiled = sum(len(names) for kind, names in names_by_kind.items() if kind not in ("refused", "failed"))
     print(
         f"{len(paths)} shaders, {options.size}x{options.size}, {options.frames} frames, "
         f"{time.perf_counter() - started:.0f} s on {engine.device.target.renderer}"
     )
     print(f"compiled  {compiled}")
-    for kind, names in sorted(found.items()):
+    for kind, names in sorted(names_by_kind.items()):
         print(f"{kind:<9} {len(names)}")
         for name in names if kind != "good" else ():
             print(f"          {name}")
     if options.sheet:
-        sheet(tiles, options.sheet)
+        write_sheet(tiles, options.sheet)
     engine.close()
 
 
-def sheet(tiles: list[np.ndarray], path: Path) -> None:
+def write_sheet(tiles: list[np.ndarray], path: Path) -> None:
     """All pictures over gray, half as large, twenty to a row."""
     import halation as hal
 

@@ -9,7 +9,7 @@ from statistics import median
 
 from bench.programs import HERE, Program
 from bench.results import Results, Run
-from bench.started import Ended, run
+from bench.started import FinishedProcess, run_process
 from bench.tasks import FRAMES, SIZES
 
 SLOW = 20.0
@@ -25,56 +25,60 @@ class Place:
     out: Path
 
 
-def whole(results: Results, place: Place, task: str, programs: list[Program], rounds: int) -> None:
+def measure_processes(results: Results, place: Place, task: str, programs: list[Program], rounds: int) -> None:
     """Whole processes in turn, after one of each that fills caches and whose picture is compared."""
     slow = set[str]()
     for turn in range(rounds + 1):
-        for one in programs:
-            if one.whole is None or task not in one.tasks:
+        for program in programs:
+            if program.whole is None or task not in program.tasks:
                 continue
-            found = results.run(place.size, task, one.name)
-            if found.error or (one.name in slow and turn > 1):
+            measured_run = results.run(place.size, task, program.name)
+            if measured_run.error or (program.name in slow and turn > 1):
                 continue
-            file = place.out / (f"{one.name}.{task}.{{}}.exr" if task == "T10" else f"{one.name}.{task}.exr")
-            ended = run(one.whole(task, place.folder, SIZES[place.size], file), one.environment)
-            if ended.code:
-                found.error = _last(ended)
+            file = place.out / (f"{program.name}.{task}.{{}}.exr" if task == "T10" else f"{program.name}.{task}.exr")
+            process = run_process(program.whole(task, place.folder, SIZES[place.size], file), program.environment)
+            if process.code:
+                measured_run.error = _last_line(process)
             elif turn == 0:
-                _compare(found, place.folder, Path(str(file).format(f"{FRAMES:04d}")))
-                if ended.wall > SLOW:
-                    slow.add(one.name)
+                _compare(measured_run, place.folder, Path(str(file).format(f"{FRAMES:04d}")))
+                if process.wall > SLOW:
+                    slow.add(program.name)
             else:
-                found.wall.append(ended.wall)
-                found.cpu.append(ended.cpu)
-                found.memory.append(ended.memory)
+                measured_run.wall.append(process.wall)
+                measured_run.cpu.append(process.cpu)
+                measured_run.memory.append(process.memory)
 
 
-def memory(results: Results, place: Place, task: str, programs: list[Program], rounds: int, repeat: int) -> None:
+def measure_in_memory(
+    results: Results, place: Place, task: str, programs: list[Program], rounds: int, repeat: int
+) -> None:
     """The work in memory, program by program, each in a new process in every round."""
     slow = set[str]()
     for turn in range(rounds):
-        for one in programs:
-            if one.memory is None or task not in one.tasks or task == "T10":
+        for program in programs:
+            if program.memory is None or task not in program.tasks or task == "T10":
                 continue
-            found = results.run(place.size, task, one.name)
-            if found.error or (one.name in slow and turn):
+            measured_run = results.run(place.size, task, program.name)
+            if measured_run.error or (program.name in slow and turn):
                 continue
-            times = 1 if found.wall and median(found.wall) > SLOW else repeat
-            ended = run(one.memory(task, place.folder, times), one.environment)
-            if ended.code or "seconds" not in ended.result:
-                found.error = _last(ended)
+            times = 1 if measured_run.wall and median(measured_run.wall) > SLOW else repeat
+            process = run_process(program.memory(task, place.folder, times), program.environment)
+            if process.code or "seconds" not in process.result:
+                measured_run.error = _last_line(process)
                 continue
-            found.op.append(median(ended.result["seconds"]))
-            if ended.wall > SLOW:
-                slow.add(one.name)
+            measured_run.op.append(median(process.result["seconds"]))
+            if process.wall > SLOW:
+                slow.add(program.name)
 
 
-def _compare(found: Run, folder: Path, file: Path) -> None:
+def _compare(measured_run: Run, folder: Path, file: Path) -> None:
     """How far a file is off its reference; in another process, since this one has to stay small."""
-    told = run([sys.executable, str(HERE / "references.py"), found.task, str(folder), str(file)]).result
-    found.rms, found.peak = told.get("rms"), told.get("peak")
+    errors = run_process(
+        [sys.executable, str(HERE / "references.py"), measured_run.task, str(folder), str(file)]
+    ).result
+    measured_run.rms, measured_run.peak = errors.get("rms"), errors.get("peak")
 
 
-def _last(ended: Ended) -> str:
+def _last_line(process: FinishedProcess) -> str:
     """The last line that a program said, or how it ended."""
-    return (ended.said.strip().splitlines() or [f"exit {ended.code}"])[-1][:200]
+    return (process.output.strip().splitlines() or [f"exit {process.code}"])[-1][:200]

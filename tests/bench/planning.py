@@ -35,23 +35,23 @@ TYPES = (
 """In turn. Those of two pictures take the node before and the one five before it."""
 
 
-def large(count: int, first: int = 0) -> Graph:
+def make_large_graph(count: int, first: int = 0) -> Graph:
     """A graph of so many nodes in a chain with side branches; no two are alike, nor two graphs with another `first`."""
-    known, made = catalogue(), [Port("inputs", "image")]
+    types, ports = catalogue(), [Port("inputs", "image")]
     graph = Graph().add_input("image", Input(Kind.IMAGE))
     for number in range(count):
-        kind, amount = known[TYPES[(number + first) % len(TYPES)]], 0.1 + 0.8 * (number + 1) / (count + first)
+        kind, amount = types[TYPES[(number + first) % len(TYPES)]], 0.1 + 0.8 * (number + 1) / (count + first)
         value = next(name for name, item in kind.values.items() if isinstance(item.default, float))
         graph = graph.add(f"n{number}", kind(**{value: amount}))
         sockets = [name for name in kind.inputs if name != "mask"]
-        for socket, source in zip(sockets, (made[-1], made[-5:][0]), strict=False):
+        for socket, source in zip(sockets, (ports[-1], ports[-5:][0]), strict=False):
             graph = graph.connect(source, Port(f"n{number}", socket))
-        made.append(Port(f"n{number}", "out"))
+        ports.append(Port(f"n{number}", "out"))
     graph = graph.add_output("out", Output(Kind.IMAGE))
-    return graph.connect(made[-1], Port("outputs", "out"))
+    return graph.connect(ports[-1], Port("outputs", "out"))
 
 
-def timed(work: Callable[[int], object]) -> list[float]:
+def time_runs(work: Callable[[int], object]) -> list[float]:
     """Seconds of some runs, each with its number, after one that does not count."""
     seconds: list[float] = []
     for turn in range(TIMES + 1):
@@ -62,32 +62,32 @@ def timed(work: Callable[[int], object]) -> list[float]:
     return seconds[1:]
 
 
-def measured(engine: Renderer, count: int) -> dict[str, object]:
+def measure_planning(engine: Renderer, count: int) -> dict[str, object]:
     """All figures of one graph."""
-    graph, wanted = large(count), RenderRequest({"image": np.zeros((64, 64, 4), np.float32)})
+    graph, request = make_large_graph(count), RenderRequest({"image": np.zeros((64, 64, 4), np.float32)})
     number = count // 2 // len(TYPES) * len(TYPES)
     changed = [graph.override(f"n{number}.stops", 0.001 * (turn + 1)) for turn in range(TIMES + 1)]
     text = dumps(graph)
-    first = {one.shader for one in engine.compile(graph, wanted).passes}
-    others = [large(count, turn + 1) for turn in range(TIMES + 1)]
-    plan = timed(lambda turn: engine.compile(others[turn], wanted))
-    engine.compile(graph, wanted)
-    change = timed(lambda turn: engine.compile(changed[turn], wanted))
-    after = {one.shader for one in engine.compile(changed[-1], wanted).passes}
+    first = {one.shader for one in engine.compile(graph, request).passes}
+    fresh_graphs = [make_large_graph(count, turn + 1) for turn in range(TIMES + 1)]
+    plan = time_runs(lambda turn: engine.compile(fresh_graphs[turn], request))
+    engine.compile(graph, request)
+    change = time_runs(lambda turn: engine.compile(changed[turn], request))
+    after = {one.shader for one in engine.compile(changed[-1], request).passes}
     return {
         "nodes": count,
-        "passes": len(engine.compile(graph, wanted).passes),
+        "passes": len(engine.compile(graph, request).passes),
         "plan": plan,
         "change": change,
         "programs": len(after - first),
-        "read": timed(lambda turn: loads(text)),
+        "read": time_runs(lambda turn: loads(text)),
     }
 
 
 def main() -> None:
     """Print what each graph took."""
     engine = Renderer()
-    print(json.dumps({"graphs": [measured(engine, int(count)) for count in sys.argv[1:]]}))
+    print(json.dumps({"graphs": [measure_planning(engine, int(count)) for count in sys.argv[1:]]}))
     engine.close()
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from bench.peers import gegl_peer
-from bench.started import run
-from bench.tasks import SEQUENCE, TASKS, picture
+from bench.started import run_process
+from bench.tasks import SEQUENCE, TASKS, picture_path
 
 HERE = Path(__file__).parent
 OURS = "halation"
@@ -32,62 +32,62 @@ class Program:
     environment: Mapping[str, str] = field(default_factory=dict)
 
 
-def installed(venvs: Path | None) -> Iterator[Program]:
+def find_programs(venvs: Path | None) -> Iterator[Program]:
     """All programs that are there, ours first. `venvs` holds folders blender, blender5, numba, opencv."""
-    yield Program(OURS, tuple(TASKS), rendering, in_memory)
-    yield Program("halation_unfused", ("T5",), None, lambda *given: [*in_memory(*given), "--unfused"])
-    yield from _python("raw", "raw", venvs, {})
-    yield from _python("raw_unfused", "raw", venvs, {"RAW_UNFUSED": "1"}, only=("T5",))
-    yield from _python("opencv", "opencv", venvs, {})
-    yield from _python("opencv_fast", "opencv", venvs, {"OPENCV_FAST": "1"})
-    yield from _python("numba", "numba", venvs, {})
+    yield Program(OURS, tuple(TASKS), render_command, memory_command)
+    yield Program("halation_unfused", ("T5",), None, lambda *given: [*memory_command(*given), "--unfused"])
+    yield from _find_script("raw", "raw", venvs, {})
+    yield from _find_script("raw_unfused", "raw", venvs, {"RAW_UNFUSED": "1"}, only=("T5",))
+    yield from _find_script("opencv", "opencv", venvs, {})
+    yield from _find_script("opencv_fast", "opencv", venvs, {"OPENCV_FAST": "1"})
+    yield from _find_script("numba", "numba", venvs, {})
     if gegl := shutil.which("gegl"):
         threads = {"GEGL_THREADS": str(len(os.sched_getaffinity(0)))}
         yield Program("gegl", gegl_peer.TASKS, lambda *given: gegl_peer.command(gegl, *given), None, threads)
     for name in BLENDERS:
         device = "GPU" if name.endswith("_gpu") else "CPU"
-        yield from _python(name, "blender", venvs, {"BLENDER_DEVICE": device})
+        yield from _find_script(name, "blender", venvs, {"BLENDER_DEVICE": device})
 
 
-def halation() -> list[str]:
+def halation_command() -> list[str]:
     """The command beside this Python, else its module."""
     beside = Path(sys.executable).with_name("halation")
     return [str(beside)] if beside.exists() else [sys.executable, "-m", "halation.cli"]
 
 
-def rendering(task: str, folder: Path, size: Size, out: Path, frames: str = SEQUENCE) -> list[str]:
+def render_command(task: str, folder: Path, size: Size, out: Path, frames: str = SEQUENCE) -> list[str]:
     """What a user types. Code in graphs is not watched: that would be a second process."""
-    what = TASKS[task]
-    words = [*halation(), "render", str(what.path)]
-    for name in what.inputs:
-        path = folder / _numbered(frames) if (task, name) == ("T10", "a") else picture(folder, name)
+    definition = TASKS[task]
+    words = [*halation_command(), "render", str(definition.path)]
+    for name in definition.inputs:
+        path = folder / _write_pattern(frames) if (task, name) == ("T10", "a") else picture_path(folder, name)
         words += ["-i", f"{name}={path}"]
-    for name, value in what.values(size[0]).items():
-        words += ["--set", f"{name}={_text(value)}"]
-    return [*words, "-o", _numbered(str(out)), *(["--timeout", "0"] if what.has_code else [])]
+    for name, value in definition.values(size[0]).items():
+        words += ["--set", f"{name}={_write_value(value)}"]
+    return [*words, "-o", _write_pattern(str(out)), *(["--timeout", "0"] if definition.has_code else [])]
 
 
-def in_memory(task: str, folder: Path, repeat: int) -> list[str]:
+def memory_command(task: str, folder: Path, repeat: int) -> list[str]:
     """The engine alone."""
     return [sys.executable, str(HERE / "engine.py"), task, str(folder), "--repeat", str(repeat)]
 
 
-def _numbered(text: str) -> str:
+def _write_pattern(text: str) -> str:
     return text.replace("{:04d}", "####").replace("{}", "####")
 
 
-def _text(value: Any) -> str:
+def _write_value(value: Any) -> str:
     return ",".join(f"{number!r}" for number in value) if isinstance(value, tuple) else repr(value)
 
 
-def _python(
+def _find_script(
     name: str, script: str, venvs: Path | None, environment: Mapping[str, str], only: tuple[str, ...] = ()
 ) -> Iterator[Program]:
     """A peer that is a script, if its libraries are there: in the folder of its name, or beside this Python."""
     own = venvs / name.removesuffix("_gpu").removesuffix("_fast") / "bin" / "python" if venvs else None
     python = str(own) if own and own.exists() else sys.executable
     path = str(HERE / "peers" / f"{script}_peer.py")
-    tasks = tuple(run([python, path, "--list"], environment).result.get("tasks", ()))
+    tasks = tuple(run_process([python, path, "--list"], environment).result.get("tasks", ()))
     if tasks:
         yield Program(
             name,

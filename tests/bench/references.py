@@ -27,14 +27,14 @@ from bench.tasks import (
     Occlusion,
     Reinhard,
     Ten,
-    picture,
-    scaled,
+    picture_path,
+    scale_length,
 )
 
 Array = np.ndarray
 
 
-def blurred(image: Array, sigma: float) -> Array:
+def blur(image: Array, sigma: float) -> Array:
     """A Gaussian blur; the border goes on outside."""
     across = ndimage.gaussian_filter1d(image, sigma, 1, mode="nearest", truncate=6.0)
     return ndimage.gaussian_filter1d(across, sigma, 0, mode="nearest", truncate=6.0)
@@ -54,10 +54,10 @@ def edges(color: Array) -> Array:
 def bloom(a: Array) -> Array:
     """T2."""
     bright = np.maximum(a - Bloom.threshold, 0.0)
-    return a + Bloom.strength / 3.0 * sum(blurred(bright, sigma) for sigma in Bloom.sigmas)
+    return a + Bloom.strength / 3.0 * sum(blur(bright, sigma) for sigma in Bloom.sigmas)
 
 
-def mapped(a: Array) -> Array:
+def tone_map(a: Array) -> Array:
     """T3."""
     light = np.maximum(a[..., :3] @ np.array(LUMINANCE), 0.0)
     factor = Reinhard.key / np.exp(np.mean(np.log(Reinhard.delta + light)))
@@ -74,15 +74,15 @@ def ten(a: Array, b: Array) -> Array:
     color = np.maximum(gray + Ten.saturation * (color - gray), 0.0)
     color = Ten.curve[0] * color / (color + Ten.curve[1])
     graded = np.dstack([color, a[..., 3]])
-    soft = graded + Ten.mix * (blurred(graded, Ten.sigma) - graded)
+    soft = graded + Ten.mix * (blur(graded, Ten.sigma) - graded)
     soft[..., :3] += Ten.edges * edges(color)
     return soft + (1.0 - soft[..., 3:]) * b
 
 
-def displaced(a: Array, noise: Array) -> Array:
+def displace(a: Array, noise: Array) -> Array:
     """T6."""
     height, width = a.shape[:2]
-    y, x = np.mgrid[0:height, 0:width] + scaled(PUSH, width) * np.moveaxis(noise[..., ::-1], 2, 0)
+    y, x = np.mgrid[0:height, 0:width] + scale_length(PUSH, width) * np.moveaxis(noise[..., ::-1], 2, 0)
     return np.dstack([ndimage.map_coordinates(a[..., i], [y, x], order=1, mode="nearest") for i in range(4)])
 
 
@@ -106,7 +106,7 @@ def occlusion(depth: Array, normal: Array) -> Array:
     center, hidden = place(x, y), np.zeros(depth.shape)
     for i in range(Occlusion.samples):
         part = (i + 0.5) / Occlusion.samples
-        away = scaled(Occlusion.radius, width) * part * np.exp(1j * (turn + i * GOLDEN_ANGLE))
+        away = scale_length(Occlusion.radius, width) * part * np.exp(1j * (turn + i * GOLDEN_ANGLE))
         at = np.clip(x + np.trunc(away.real).astype(int), 0, width - 1)
         apart = place(at, np.clip(y + np.trunc(away.imag).astype(int), 0, height - 1)) - center
         square = (apart * apart).sum(2)
@@ -115,11 +115,11 @@ def occlusion(depth: Array, normal: Array) -> Array:
     return np.maximum(1.0 - 2.0 * hidden * Occlusion.reach / Occlusion.samples, 0.0)[..., None]
 
 
-def gathered(a: Array, depth: Array) -> Array:
+def blur_by_depth(a: Array, depth: Array) -> Array:
     """T8."""
     height, width = a.shape[:2]
-    depth, largest = depth.reshape(height, width, 1), scaled(Lens.largest, width)
-    circles = np.minimum(np.abs(depth - Lens.focus) / depth * scaled(Lens.aperture, width), largest)
+    depth, largest = depth.reshape(height, width, 1), scale_length(Lens.largest, width)
+    circles = np.minimum(np.abs(depth - Lens.focus) / depth * scale_length(Lens.aperture, width), largest)
     y, x = np.mgrid[0:height, 0:width]
     total, weights = a.copy(), np.ones_like(depth)
     for i in range(1, Lens.samples):
@@ -132,7 +132,7 @@ def gathered(a: Array, depth: Array) -> Array:
     return total / weights
 
 
-def smeared(a: Array, velocity: Array) -> Array:
+def blur_by_motion(a: Array, velocity: Array) -> Array:
     """T9."""
     height, width = a.shape[:2]
     y, x = np.mgrid[0:height, 0:width]
@@ -143,43 +143,43 @@ def smeared(a: Array, velocity: Array) -> Array:
     return total / STEPS
 
 
-def reference(task: str, pictures: Mapping[str, Array]) -> Array:
+def render_reference(task: str, pictures: Mapping[str, Array]) -> Array:
     """What a task makes of its pictures [height, width, channels], in float64."""
-    given = [pictures[name].astype(np.float64) for name in TASKS[task].inputs]
+    arrays = [pictures[name].astype(np.float64) for name in TASKS[task].inputs]
     if task in SIGMAS:
-        return blurred(given[0], SIGMAS[task])
-    made = {
+        return blur(arrays[0], SIGMAS[task])
+    functions = {
         "copy": lambda a: a,
         "T2": bloom,
-        "T3": mapped,
+        "T3": tone_map,
         "T4": lambda a: np.dstack([edges(a[..., :3]), a[..., 3]]),
         "T5": ten,
         "T5_catalogue": ten,
         "T10": ten,
-        "T6": displaced,
+        "T6": displace,
         "T7": occlusion,
-        "T8": gathered,
-        "T9": smeared,
+        "T8": blur_by_depth,
+        "T9": blur_by_motion,
     }
-    return made[task](*given)
+    return functions[task](*arrays)
 
 
-def compared(made: Array, wanted: Array) -> dict[str, float]:
+def compare_pictures(pixels: Array, expected: Array) -> dict[str, float]:
     """How far off: RMS as a part of the reference's, and the largest difference as a part of its largest number."""
-    apart = made[..., : wanted.shape[2]].astype(np.float64) - wanted
+    apart = pixels[..., : expected.shape[2]].astype(np.float64) - expected
     return {
-        "rms": float(np.sqrt(np.mean(apart**2) / np.mean(wanted**2))),
-        "peak": float(np.abs(apart).max() / np.abs(wanted).max()),
+        "rms": float(np.sqrt(np.mean(apart**2) / np.mean(expected**2))),
+        "peak": float(np.abs(apart).max() / np.abs(expected).max()),
     }
 
 
 def main() -> None:
     """Print how far a file is off as JSON. Of T10 it is the last frame."""
     task, folder, file = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-    given = {name: read(picture(folder, name)) for name in TASKS[task].inputs}
+    arrays = {name: read(picture_path(folder, name)) for name in TASKS[task].inputs}
     if task == "T10":
-        given["a"] = read(folder / SEQUENCE.format(FRAMES))
-    print(json.dumps(compared(read(file), reference(task, given))))
+        arrays["a"] = read(folder / SEQUENCE.format(FRAMES))
+    print(json.dumps(compare_pictures(read(file), render_reference(task, arrays))))
 
 
 if __name__ == "__main__":

@@ -45,51 +45,51 @@ class Results:
 
     def run(self, size: str, task: str, program: str) -> Run:
         """The run; a new one if there is none."""
-        found = self.find(size, task, program)
-        if found is None:
-            found = Run(size, task, program)
-            self.runs.append(found)
-        return found
+        run = self.find(size, task, program)
+        if run is None:
+            run = Run(size, task, program)
+            self.runs.append(run)
+        return run
 
     def middle(self, size: str, task: str, program: str, what: str) -> float | None:
         """The median of wall, cpu, memory or op."""
-        found = self.find(size, task, program)
-        numbers = getattr(found, what) if found else None
+        run = self.find(size, task, program)
+        numbers = getattr(run, what) if run else None
         return median(numbers) if numbers else None
 
     def best(self, size: str, task: str, programs: Iterable[str], what: str) -> str | None:
         """The program with the smallest median."""
-        known = {name: self.middle(size, task, name, what) for name in programs}
-        there = {name: number for name, number in known.items() if number is not None}
-        return min(there, key=lambda name: there[name]) if there else None
+        medians = {name: self.middle(size, task, name, what) for name in programs}
+        measured = {name: number for name, number in medians.items() if number is not None}
+        return min(measured, key=lambda name: measured[name]) if measured else None
 
     def ratio(self, size: str, task: str, what: str, program: str, others: Sequence[str]) -> float | None:
         """A program against the best of some others: the median of the ratios of the rounds."""
         other = self.best(size, task, others, what)
-        return paired(self._numbers(size, task, program, what), self._numbers(size, task, other, what))
+        return median_ratio(self._numbers(size, task, program, what), self._numbers(size, task, other, what))
 
     def _numbers(self, size: str, task: str, program: str | None, what: str) -> list[float]:
-        found = self.find(size, task, program) if program else None
-        return getattr(found, what) if found else []
+        run = self.find(size, task, program) if program else None
+        return getattr(run, what) if run else []
 
     def save(self, path: Path) -> None:
         """Write them as JSON."""
-        made = {"format": FORMAT, **asdict(self)}
-        path.write_text(json.dumps(made, indent=1) + "\n", "utf-8")
+        document = {"format": FORMAT, **asdict(self)}
+        path.write_text(json.dumps(document, indent=1) + "\n", "utf-8")
 
     @classmethod
     def load(cls, path: Path) -> Results:
         """Read what `save` wrote. Raises SystemExit for anything else."""
         try:
-            found = json.loads(path.read_text("utf-8"))
-            if found["format"] != FORMAT:
-                raise ValueError(f"its format is {found['format']}")
-            return cls(found["machine"], [Run(**one) for one in found["runs"]], found["extras"])
+            document = json.loads(path.read_text("utf-8"))
+            if document["format"] != FORMAT:
+                raise ValueError(f"its format is {document['format']}")
+            return cls(document["machine"], [Run(**one) for one in document["runs"]], document["extras"])
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise SystemExit(f"{path}: no results of this benchmark: {error}") from None
 
 
-def paired(numbers: Sequence[float], others: Sequence[float]) -> float | None:
+def median_ratio(numbers: Sequence[float], others: Sequence[float]) -> float | None:
     """The median of the ratios of what was measured in the same round; of the medians, where rounds are missing."""
     if not numbers or not others:
         return None

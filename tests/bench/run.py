@@ -18,13 +18,13 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-from bench.extras import extras
-from bench.figures import table
-from bench.measuring import Place, memory, whole
-from bench.programs import HERE, OURS, installed
-from bench.report import listing
+from bench.extras import measure_extras
+from bench.figures import format_table
+from bench.measuring import Place, measure_in_memory, measure_processes
+from bench.programs import HERE, OURS, find_programs
+from bench.report import format_results
 from bench.results import Results
-from bench.started import run
+from bench.started import run_process
 from bench.tasks import PICTURES, SIZES, TASKS
 
 STILL = 1920
@@ -33,7 +33,7 @@ STILL = 1920
 Say = Callable[[str], None]
 
 
-def options() -> argparse.Namespace:
+def read_options() -> argparse.Namespace:
     """What was asked for."""
     cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "halation" / "bench"
     venvs = os.environ.get("HALATION_BENCH_VENVS")
@@ -56,16 +56,16 @@ def options() -> argparse.Namespace:
     reader.add_argument("--against", type=Path, metavar="FILE", help="compare with results that were kept")
     reader.add_argument("--from", dest="earlier", type=Path, metavar="FILE", help="print these, measure nothing")
     reader.add_argument("--table", action="store_true", help="print what is wanted, too, and whether it is reached")
-    given = reader.parse_args()
-    for name, known in (("sizes", SIZES), ("tasks", TASKS), ("parts", ("whole", "memory", "extras"))):
-        setattr(given, name, [word for word in getattr(given, name).split(",") if word])
-        for word in getattr(given, name):
-            if word not in known:
-                reader.error(f"--{name} {word}: it is none of {', '.join(known)}")
-    return given
+    arguments = reader.parse_args()
+    for name, choices in (("sizes", SIZES), ("tasks", TASKS), ("parts", ("whole", "memory", "extras"))):
+        setattr(arguments, name, [word for word in getattr(arguments, name).split(",") if word])
+        for word in getattr(arguments, name):
+            if word not in choices:
+                reader.error(f"--{name} {word}: it is none of {', '.join(choices)}")
+    return arguments
 
 
-def folder_of(data: Path, size: str, say: Say) -> Path:
+def prepare_pictures(data: Path, size: str, say: Say) -> Path:
     """The pictures of a size, made if they are not there."""
     width, height = SIZES[size]
     folder = data / f"{PICTURES}-{width}x{height}"
@@ -73,13 +73,13 @@ def folder_of(data: Path, size: str, say: Say) -> Path:
         say(f"making pictures in {folder}")
         data.mkdir(parents=True, exist_ok=True)
         still = ["--still"] if width > STILL else []
-        ended = run([sys.executable, str(HERE / "inputs.py"), str(folder), f"{width}x{height}", *still])
-        if ended.code:
-            raise SystemExit(ended.said)
+        process = run_process([sys.executable, str(HERE / "inputs.py"), str(folder), f"{width}x{height}", *still])
+        if process.code:
+            raise SystemExit(process.output)
     return folder
 
 
-def machine() -> dict[str, object]:
+def describe_machine() -> dict[str, object]:
     """What the numbers are of."""
     processor = platform.processor() or platform.machine()
     try:
@@ -97,49 +97,49 @@ def machine() -> dict[str, object]:
 
 def main() -> None:
     """Measure, keep, print."""
-    given = options()
+    arguments = read_options()
 
     def say(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
-    results = Results.load(given.earlier) if given.earlier else measured(given, say)
-    print(listing(results, Results.load(given.against) if given.against else None))
-    if given.table:
-        print("\n" + table(results))
+    results = Results.load(arguments.earlier) if arguments.earlier else measure(arguments, say)
+    print(format_results(results, Results.load(arguments.against) if arguments.against else None))
+    if arguments.table:
+        print("\n" + format_table(results))
 
 
-def measured(given: argparse.Namespace, say: Say) -> Results:
+def measure(arguments: argparse.Namespace, say: Say) -> Results:
     """All that was asked for; kept after every task, so that nothing is lost."""
-    programs = list(installed(given.venvs))
-    wanted = given.programs.split(",") if given.programs else [one.name for one in programs]
-    for name in wanted:
+    programs = list(find_programs(arguments.venvs))
+    names = arguments.programs.split(",") if arguments.programs else [one.name for one in programs]
+    for name in names:
         if name not in [one.name for one in programs]:
             raise SystemExit(f"--programs {name}: it is not installed; there are {', '.join(p.name for p in programs)}")
-    programs = [one for one in programs if one.name in wanted]
-    say(f"programs: {', '.join(wanted)}")
-    results = Results(machine())
-    with tempfile.TemporaryDirectory(prefix="halation-bench-") as made:
-        for size in given.sizes:
-            place = Place(size, folder_of(given.data, size, say), Path(made, size))
+    programs = [one for one in programs if one.name in names]
+    say(f"programs: {', '.join(names)}")
+    results = Results(describe_machine())
+    with tempfile.TemporaryDirectory(prefix="halation-bench-") as output:
+        for size in arguments.sizes:
+            place = Place(size, prepare_pictures(arguments.data, size, say), Path(output, size))
             place.out.mkdir()
-            for task in given.tasks:
+            for task in arguments.tasks:
                 if task == "T10" and SIZES[size][0] > STILL:
                     continue
                 say(f"{size} {task}")
-                if "whole" in given.parts:
-                    whole(results, place, task, programs, given.rounds)
-                if "memory" in given.parts:
-                    memory(results, place, task, programs, (given.rounds + 1) // 2, given.repeat)
+                if "whole" in arguments.parts:
+                    measure_processes(results, place, task, programs, arguments.rounds)
+                if "memory" in arguments.parts:
+                    measure_in_memory(results, place, task, programs, (arguments.rounds + 1) // 2, arguments.repeat)
                 for file in place.out.iterdir():
                     file.unlink()
-                if given.json:
-                    results.save(given.json)
-        if "extras" in given.parts and OURS in wanted:
-            size = given.sizes[0]
-            place = Place(size, folder_of(given.data, size, say), Path(made, size))
-            results.extras = {"size": size, **extras(place, given.rounds, given.repeat, say)}
-    if given.json:
-        results.save(given.json)
+                if arguments.json:
+                    results.save(arguments.json)
+        if "extras" in arguments.parts and OURS in names:
+            size = arguments.sizes[0]
+            place = Place(size, prepare_pictures(arguments.data, size, say), Path(output, size))
+            results.extras = {"size": size, **measure_extras(place, arguments.rounds, arguments.repeat, say)}
+    if arguments.json:
+        results.save(arguments.json)
     return results
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 
 @dataclass(frozen=True)
-class Ended:
+class FinishedProcess:
     """How a process and those that it waited for ended: seconds, seconds of all processors, peak memory of the largest.
 
     `memory` is in MiB.
@@ -25,12 +25,12 @@ class Ended:
     cpu: float
     memory: float
     code: int
-    said: str
+    output: str
 
     @property
     def result(self) -> dict[str, Any]:
         """The JSON object on its last line that holds one; empty without one."""
-        for line in reversed(self.said.splitlines()):
+        for line in reversed(self.output.splitlines()):
             if line.startswith("{"):
                 return json.loads(line)
         return {}
@@ -40,7 +40,9 @@ WARM = {"PYTHONDONTWRITEBYTECODE": ""}
 """Programs in Python keep the bytecode that their first run made, as installed ones have it."""
 
 
-def run(command: Sequence[str], environment: Mapping[str, str] | None = None, patience: float = 600.0) -> Ended:
+def run_process(
+    command: Sequence[str], environment: Mapping[str, str] | None = None, patience: float = 600.0
+) -> FinishedProcess:
     """Start a program, wait for its end and say what it took; after `patience` seconds it is ended."""
     with tempfile.TemporaryFile() as out:
         started = time.perf_counter()
@@ -60,5 +62,5 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None, pa
         timer.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
         out.seek(0)
-        said = out.read().decode(errors="replace")
-    return Ended(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0, process.returncode, said)
+        output = out.read().decode(errors="replace")
+    return FinishedProcess(wall, used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0, process.returncode, output)

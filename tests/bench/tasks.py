@@ -93,7 +93,7 @@ STEPS = 16
 """T9: how many pixels along the motion are averaged."""
 
 
-def scaled(length: float, width: int) -> float:
+def scale_length(length: float, width: int) -> float:
     """A length in pixels of a picture 1920 wide, in one of this width."""
     return length * width / 1920.0
 
@@ -120,15 +120,15 @@ class Task:
 
 
 def _push(width: int) -> Mapping[str, Any]:
-    return {"move.amount": (scaled(PUSH, width), scaled(PUSH, width))}
+    return {"move.amount": (scale_length(PUSH, width), scale_length(PUSH, width))}
 
 
 def _spiral(width: int) -> Mapping[str, Any]:
-    return {"occlusion.radius": scaled(Occlusion.radius, width)}
+    return {"occlusion.radius": scale_length(Occlusion.radius, width)}
 
 
 def _disc(width: int) -> Mapping[str, Any]:
-    return {"lens.aperture": scaled(Lens.aperture, width), "lens.largest": scaled(Lens.largest, width)}
+    return {"lens.aperture": scale_length(Lens.aperture, width), "lens.largest": scale_length(Lens.largest, width)}
 
 
 _ALL = (
@@ -153,6 +153,6 @@ SEQUENCE = "frames/a.{:04d}.exr"
 """The file of a frame of T10, beside the other pictures."""
 
 
-def picture(folder: Path, name: str) -> Path:
+def picture_path(folder: Path, name: str) -> Path:
     """The file of a picture that tasks take."""
     return folder / f"{name}.exr"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from bench.figures import rows, table
-from bench.report import listing
-from bench.results import Results, Run, paired
+from bench.figures import compute_rows, format_table
+from bench.report import format_results
+from bench.results import Results, Run, median_ratio
 
 
 def measured(**walls):
@@ -17,20 +17,20 @@ def measured(**walls):
 
 
 def row(results, beginning):
-    return next(one for one in rows(results) if one.what.startswith(beginning))
+    return next(one for one in compute_rows(results) if one.what.startswith(beginning))
 
 
 def test_ratios_are_of_the_same_round():
     """A slow moment falls on both programs of a round: the median of ratios is not the ratio of medians."""
-    assert paired([1.0, 10.0, 2.0], [2.0, 20.0, 4.0]) == 0.5
-    assert paired([3.0, 1.0, 2.0], [8.0]) == 0.25
-    assert paired([], [1.0]) is None
+    assert median_ratio([1.0, 10.0, 2.0], [2.0, 20.0, 4.0]) == 0.5
+    assert median_ratio([3.0, 1.0, 2.0], [8.0]) == 0.25
+    assert median_ratio([], [1.0]) is None
 
 
 def test_the_best_of_others_counts():
     found = measured(halation=[1.0, 1.0], blender=[4.0, 4.0], blender5=[2.5, 2.5])
     figure = next(one for one in row(found, "whole process against the best Blender").figures if one.label == "T5")
-    assert figure.number == 0.4 and figure.reached
+    assert figure.number == 0.4 and figure.is_reached
 
 
 @pytest.mark.parametrize(("ours", "verdict"), [(0.5, "yes"), (0.51, "no")])
@@ -42,7 +42,7 @@ def test_a_row_is_reached_up_to_its_limit(ours, verdict):
 def test_what_was_not_measured_is_said():
     found = measured(halation=[1.0])
     assert row(found, "cold cache").verdict == "\N{EN DASH}"
-    assert "| cold cache of shaders against warm, T5 | 2 | not measured |" in table(found)
+    assert "| cold cache of shaders against warm, T5 | 2 | not measured |" in format_table(found)
 
 
 def test_results_are_kept_as_they_are(tmp_path):
@@ -57,5 +57,5 @@ def test_results_are_kept_as_they_are(tmp_path):
 
 def test_the_listing_tells_what_changed():
     before, now = measured(halation=[2.0, 2.0]), measured(halation=[1.0, 1.0])
-    line = next(one for one in listing(now, before).splitlines() if "halation" in one)
+    line = next(one for one in format_results(now, before).splitlines() if "halation" in one)
     assert "| 1.00 | 1.00 |" in line and "0.50, \N{EN DASH}" in line

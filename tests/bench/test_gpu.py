@@ -8,10 +8,10 @@ import moderngl
 import numpy as np
 import pytest
 from bench import gpu
-from bench.gpu_copies import FORMATS, copies, queries_against_clock
+from bench.gpu_copies import FORMATS, queries_against_clock, time_copies
 from bench.gpu_measuring import engine, frames, take
-from bench.gpu_table import FLOORS, bandwidth, listing, rows, table
-from bench.gpu_work import DRY, FITTING, UHD, WORK, counted, floor, picture
+from bench.gpu_table import FLOORS, bandwidth, compute_rows, format_results, format_table
+from bench.gpu_work import DRY, FITTING, UHD, WORK, least_bytes, make_picture, select_measured
 from bench.results import Results
 from halation import document
 from halation.compiler import Request, Target, compile_graph
@@ -59,12 +59,12 @@ def measured(results, task, seconds, floor):
 
 
 def row(results, beginning):
-    return next(one for one in rows(results) if one.what.startswith(beginning))
+    return next(one for one in compute_rows(results) if one.what.startswith(beginning))
 
 
 def test_copies_copy(device):
     with device.save_draw_target() as context:
-        found = copies(context, DRY, 2, by_query=False)
+        found = time_copies(context, DRY, 2, by_query=False)
         assert queries_against_clock(context, DRY) >= 0.0
     ways = {f"{form} {texel}" for form in ("fragment", "compute") for texel in FORMATS}
     assert {one.way for one in found} == {*ways, "buffer"}
@@ -75,7 +75,7 @@ def test_copies_copy(device):
 def test_a_copy_that_does_not_arrive_is_seen(device, monkeypatch):
     monkeypatch.setattr(moderngl.VertexArray, "render", lambda *_, **__: None)
     with device.save_draw_target() as context:
-        found = {one.way: one.same for one in copies(context, DRY, 1, by_query=False)}
+        found = {one.way: one.same for one in time_copies(context, DRY, 1, by_query=False)}
     assert not found["fragment rgba16f"] and not found["fragment rgba32f"] and found["buffer"]
 
 
@@ -93,9 +93,9 @@ def planned(name, precision):
 def test_the_floor_is_input_and_output_once(name, precision):
     pixels, each = UHD[0] * UHD[1], HALF if precision == "half" else FLOAT
     if WORK[name].inputs:
-        assert floor(planned(name, precision)) == pixels * (each + each)
+        assert least_bytes(planned(name, precision)) == pixels * (each + each)
     else:  # color; depth, normals and velocity are data, which keeps 32 bits
-        assert floor(planned(name, precision)) == pixels * (each + each + 4 + FLOAT + FLOAT)
+        assert least_bytes(planned(name, precision)) == pixels * (each + each + 4 + FLOAT + FLOAT)
 
 
 @pytest.mark.parametrize(
@@ -117,13 +117,13 @@ def test_plans_leave_room_for_what_is_wanted(name, limit):
         if not FITTING.issuperset(one.functions)
         for number in (*one.textures, *one.targets)
     )
-    assert moved <= limit * floor(plan)
+    assert moved <= limit * least_bytes(plan)
 
 
 def test_the_chain_is_one_pass_that_moves_no_byte_too_many(device):
     results, renderer = Results(), engine(device, "compute")
     work = replace(WORK["chain"], size=DRY)
-    wanted = RenderRequest({"a": picture(DRY)}, precision="half")
+    wanted = RenderRequest({"a": make_picture(DRY)}, precision="half")
     take(results, work, "compute half", renderer, document.load(work.path), wanted, 2)
     known = results.extras["bytes"]["chain"]["compute half"]
     assert known["passes"] == 1 and known["moved"] == known["floor"] == 2 * HALF * DRY[0] * DRY[1]
@@ -138,15 +138,15 @@ def test_bringing_the_sample_to_size_does_not_count(device):
     plan = renderer.compile(graph, wanted)
     take(results, work, "fragment float", renderer, graph, wanted, 1)
     known = results.extras["bytes"]["stack"]["fragment float"]
-    fitting = [one for one in plan.passes if not counted((one,))]
+    fitting = [one for one in plan.passes if not select_measured((one,))]
     assert fitting and known["passes"] == len(plan.passes) - len(fitting)
     assert not any("fit" in name.split("_") for one in known["each"] for name in one["functions"])
     renderer.close()
 
 
 def test_pictures_have_the_size_asked_for():
-    assert picture(DRY).shape == (54, 96, 4) and picture((2000, 1100)).shape == (1100, 2000, 4)
-    assert picture(DRY).dtype == np.float16
+    assert make_picture(DRY).shape == (54, 96, 4) and make_picture((2000, 1100)).shape == (1100, 2000, 4)
+    assert make_picture(DRY).dtype == np.float16
 
 
 @pytest.mark.parametrize(("seconds", "verdict"), [(2.9e-4, "yes"), (3.1e-4, "no")])
@@ -155,7 +155,7 @@ def test_times_are_held_against_the_fastest_copy(seconds, verdict):
     assert bandwidth(found) == 1e12
     figure = row(found, "Gaussian").figures[0]
     assert figure.number == pytest.approx(seconds / 1e-4) and row(found, "Gaussian").verdict == verdict
-    assert "| 200% |" not in listing(found) and f"| {2e8 / seconds / 1e9:.0f} |" in listing(found)
+    assert "| 200% |" not in format_results(found) and f"| {2e8 / seconds / 1e9:.0f} |" in format_results(found)
 
 
 @pytest.mark.parametrize(("seconds", "verdict"), [(1.4e-3, "yes"), (1.5e-3, "no")])
@@ -187,14 +187,18 @@ def test_presets_may_be_as_far_off_as_rounding(half, rounding, verdict):
 )
 def test_figures_that_mean_nothing_are_not_judged(machine, said):
     found = measured(card(**machine), "T1s3", 1.0, 10**8)
-    assert said in listing(found)
-    assert "| yes |" not in table(found) and "| no |" not in table(found) and "(!)" not in table(found)
+    assert said in format_results(found)
+    assert (
+        "| yes |" not in format_table(found)
+        and "| no |" not in format_table(found)
+        and "(!)" not in format_table(found)
+    )
 
 
 def test_a_dry_run_goes_through(tmp_path):
     file = tmp_path / "card.json"
     what = ["--work", "chain,bloom", "--presets", "agx_look,neon_edges", "--rounds", "1", "--repeat", "1"]
-    results = gpu.measured(gpu.options(["--json", str(file), *what]), lambda text: None)
+    results = gpu.measure(gpu.read_options(["--json", str(file), *what]), lambda text: None)
     assert Results.load(file) == results and results.machine["software"]
     assert {one.program for one in results.runs} == {
         f"{form} {precision}" for form in ("compute", "fragment") for precision in ("half", "float")
@@ -202,4 +206,6 @@ def test_a_dry_run_goes_through(tmp_path):
     assert not any(one.error for one in results.runs)
     for one in results.extras["presets"].values():
         assert 0.0 <= one["float"] < 1e-3 and one["half"] < 2.0 * one["rounding"] + 1e-3
-    assert "not measured" not in table(results).replace("post_stack at 3840x2160, all passes | 4 ms | not measured", "")
+    assert "not measured" not in format_table(results).replace(
+        "post_stack at 3840x2160, all passes | 4 ms | not measured", ""
+    )

@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from bench import references, tasks
-from bench.inputs import pictures
+from bench.inputs import make_pictures
 from halation import document
 from halation.renderer import RenderRequest
 
@@ -18,7 +18,7 @@ ALIKE = 3e-4
 
 @cache
 def given():
-    return {name: pixels.reshape(HEIGHT, WIDTH, -1) for name, pixels in pictures(WIDTH, HEIGHT).items()}
+    return {name: pixels.reshape(HEIGHT, WIDTH, -1) for name, pixels in make_pictures(WIDTH, HEIGHT).items()}
 
 
 def rendered(renderer, task):
@@ -31,16 +31,16 @@ def rendered(renderer, task):
 
 @pytest.mark.parametrize("task", tasks.TASKS.values(), ids=list(tasks.TASKS))
 def test_a_graph_computes_its_task(renderer, task):
-    found = references.compared(rendered(renderer, task), references.reference(task.name, given()))
+    found = references.compare_pictures(rendered(renderer, task), references.render_reference(task.name, given()))
     assert found["rms"] <= ALIKE
 
 
 def test_references_see_what_is_different():
     """An edge of the picture, a lost channel, a wrong sigma: each is seen."""
-    right = references.reference("T1s3", given())
-    wide = references.blurred(given()["a"].astype(float), 3.02)
+    right = references.render_reference("T1s3", given())
+    wide = references.blur(given()["a"].astype(float), 3.02)
     for wrong in (np.roll(right, 1, 1), right * (1.0, 1.0, 1.0, 0.0), wide):
-        assert references.compared(wrong, right)["rms"] > ALIKE
+        assert references.compare_pictures(wrong, right)["rms"] > ALIKE
 
 
 def test_pictures_are_what_the_tasks_ask_for():

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from commands import Cli, command
+from commands import Cli, make_cli
 from exr_files import write_exr
 from halation import renderer
 from halation.compiler import Form
@@ -34,7 +34,7 @@ def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> C
     """`cli("render", path, "-o", file)` runs a command; a thousand devices would be slow, so there is one per form."""
     monkeypatch.setattr(renderer, "open_device", lambda form=None, memory=0: device(form, memory))
 
-    return command(capfd)
+    return make_cli(capfd)
 
 
 @pytest.fixture

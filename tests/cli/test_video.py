@@ -18,7 +18,7 @@ av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install h
 from exr_files import read  # noqa: E402
 from halation import media  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
-from videos import decoded, number_in, write_numbers  # noqa: E402
+from videos import decode_frames, number_in, write_numbers  # noqa: E402
 
 COUNT = 9
 
@@ -96,7 +96,7 @@ def test_all_frames_go_into_one_file_in_their_order(cli, movie, tmp_path, name):
     first = cli("render", graph, "-o", tmp_path / name, *words)
     assert first.code == 0, first.err
     assert first.json["written"] == [str(tmp_path / name)]
-    assert [number_in(frame) for frame in decoded(tmp_path / name)] == list(range(1, COUNT + 1))
+    assert [number_in(frame) for frame in decode_frames(tmp_path / name)] == list(range(1, COUNT + 1))
     found = media.find_sequence(str(tmp_path / name))
     assert found is not None and found.rate == 25  # that of the video that is read
     before = (tmp_path / name).read_bytes()
@@ -109,7 +109,7 @@ def test_some_frames_backwards_beside_pictures(cli, movie, tmp_path):
     files = ("-o", tmp_path / "a.mkv", "-o", tmp_path / "a.####.png")
     result = cli("render", movie(), "--frames", "7-3x2", *files, "--json")
     assert [Path(file).name for file in result.json["written"]] == ["a.0007.png", "a.0005.png", "a.0003.png", "a.mkv"]
-    assert [number_in(frame) for frame in decoded(tmp_path / "a.mkv")] == [7, 5, 3]
+    assert [number_in(frame) for frame in decode_frames(tmp_path / "a.mkv")] == [7, 5, 3]
     for place, frame in enumerate((7, 5, 3), 1):
         still = media.read_layer(tmp_path / f"a.{frame:04d}.png", "", Kind.IMAGE).array
         assert np.array_equal(media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=place).array, still)
@@ -167,7 +167,7 @@ def test_a_video_that_is_read_is_not_overwritten(fails, movie, clip):
 def test_one_process_writes_a_video(cli, movie, tmp_path):
     result = cli("render", movie(), "-o", tmp_path / "a.mkv", "-j", 4)
     assert result.code == 0 and "one process renders all frames" in result.err
-    assert [number_in(frame) for frame in decoded(tmp_path / "a.mkv")] == list(range(1, COUNT + 1))
+    assert [number_in(frame) for frame in decode_frames(tmp_path / "a.mkv")] == list(range(1, COUNT + 1))
 
 
 def test_a_frame_that_fails_leaves_the_older_video(fails, movie):

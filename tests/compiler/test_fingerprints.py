@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
-from edited_graphs import edited
+from edited_graphs import edit_randomly
 from halation.compiler import NULL, Library, Request, installed_library
 from halation.compiler.codegen.emit import emit
 from halation.compiler.fusion.fuse import fuse
@@ -75,7 +75,7 @@ def test_marks_are_equal_where_programs_and_numbers_are(seed, target):
     graph, rng = random_graph(seed), Random(seed)
     graphs = [graph]
     for _ in range(4):
-        graphs.append(edited(rng, graphs[-1]))
+        graphs.append(edit_randomly(rng, graphs[-1]))
     check(*(told(one, target) for one in graphs))
     check(told(graph, target), told(graph, target, frame=7), told(graph, target, scale=0.5))
 

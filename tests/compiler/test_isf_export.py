@@ -16,7 +16,7 @@ from halation.nodes import Kind, Node, catalogue
 from halation.renderer import Renderer, RenderRequest
 from hypothesis import given
 from hypothesis import strategies as some
-from isf_files import Array, alone, opaque, shader
+from isf_files import Array, graph_of_node, opaque, shader
 
 TARGET = Port("outputs", "out")
 
@@ -58,7 +58,7 @@ def both(
     }
     wanted = renderer.render(graph, RenderRequest(pictures, size=size, frame=frame, precision="float"))["out"]
     given = dict(zip(kind.inputs, pictures.values(), strict=True))
-    item = alone(kind(**values), size)
+    item = graph_of_node(kind(**values), size)
     return wanted, renderer.render(item, RenderRequest(given, size=size, frame=frame, precision="float"))["out"]
 
 

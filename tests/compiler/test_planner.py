@@ -9,7 +9,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from edited_graphs import edited, some_graph
+from edited_graphs import edit_randomly, make_graph
 from halation.compiler import NULL, Planner, Region, Request, compile_graph
 from halation.compiler import planner as planning
 from halation.compiler.fusion.fuse import fuse
@@ -85,7 +85,7 @@ def turned(rng: Random, graph: Graph) -> Graph:
 def test_it_is_the_plan_that_is_made_from_the_start(seed):
     """Of the whole picture, and of a region."""
     rng = Random(seed)
-    graph = some_graph(seed) if seed % 3 == 0 else random_graph(seed, rng.randint(3, 12))
+    graph = make_graph(seed) if seed % 3 == 0 else random_graph(seed, rng.randint(3, 12))
     planner, frame, memories, region = Planner(), 1, {}, None
     for _ in range(6):
         plain = outcome(compile_graph, graph, frame, memories, region)
@@ -95,7 +95,7 @@ def test_it_is_the_plan_that_is_made_from_the_start(seed):
         if rng.random() < 0.4:
             frame, memories = frame + 1, getattr(plain[0], "memories", {})
         for _ in range(rng.choice([0, 1, 1, 2])):
-            graph = turned(rng, graph) if rng.random() < 0.8 else edited(rng, graph)
+            graph = turned(rng, graph) if rng.random() < 0.8 else edit_randomly(rng, graph)
 
 
 @settings(max_examples=60, deadline=None)

@@ -14,7 +14,7 @@ from halation.errors import InputError, ShaderError
 from halation.graph import Output, Port
 from halation.nodes import Kind
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
-from isf_files import IMAGE, alone, decoded, encoded, isf, node, opaque, shader
+from isf_files import IMAGE, decode_srgb, encode_srgb, graph_of_node, isf, node, opaque, shader
 
 H, W = 13, 21
 PICTURE = opaque(H, W)
@@ -94,7 +94,7 @@ def test_every_type_of_value(run: Run) -> None:
     )
     made = run(kind(light="linear"), size=(4, 1))[0]
     assert close(made[0], [0.25, 7.5, 4.0, 1.0]) and close(made[2, :3], [0.75, 0.25, 0.125])
-    assert close(made[3, :3], [7.0, 40.0, 0.0]) and close(made[1, :3], decoded(np.array([0.5, 0.0, 1.0])), 1e-6)
+    assert close(made[3, :3], [7.0, 40.0, 0.0]) and close(made[1, :3], decode_srgb(np.array([0.5, 0.0, 1.0])), 1e-6)
     made = run(
         kind(light="linear", level=1.5, mode="Same (2)", flag=False, hit=True, count=2, spot=(0.5, 1.0)), size=(4, 1)
     )[0]
@@ -110,7 +110,9 @@ def test_values_change_no_program(renderer: Renderer) -> None:
     level = {"NAME": "level", "TYPE": "float", "DEFAULT": 0.5}
     texts = set()
     for value, frame in ((0.1, 1), (0.9, 7)):
-        plan = renderer.compile(alone(node(body, level, values={"level": value}), (4, 4)), RenderRequest(frame=frame))
+        plan = renderer.compile(
+            graph_of_node(node(body, level, values={"level": value}), (4, 4)), RenderRequest(frame=frame)
+        )
         texts.add(tuple(one.shader for one in plan.passes))
     assert len(texts) == 1
 
@@ -119,14 +121,14 @@ def test_what_a_shader_is_told_of_time(renderer: Renderer) -> None:
     body = """gl_FragColor = vec4(TIME, TIMEDELTA, float(FRAMEINDEX), 1.0);
     if (gl_FragCoord.x > 1.0) gl_FragColor = vec4(DATE.xyz / 1000.0, 1.0);
     if (gl_FragCoord.x > 2.0) gl_FragColor = vec4(DATE.w, float(PASSINDEX), 0.0, 1.0);"""
-    reel = FrameRenderer(renderer, alone(node(body), (3, 1), (5, 90), 20.0), RenderRequest(precision="float"))
+    reel = FrameRenderer(renderer, graph_of_node(node(body), (3, 1), (5, 90), 20.0), RenderRequest(precision="float"))
     first, later = reel.render(5)["out"][0], reel.render(15)["out"][0]
     assert close(first[0, :3], 0.0) and close(later[0, :3], [0.5, 0.05, 10.0])
     assert close(later[1, :3], [2.0, 0.001, 0.001]) and close(later[2, :3], [0.5, 0.0, 0.0])
 
 
 def test_what_does_not_ask_the_time_is_the_same_at_every_frame(renderer: Renderer) -> None:
-    graph = alone(node("gl_FragColor = vec4(RENDERSIZE, 0.0, 1.0);"), (4, 4))
+    graph = graph_of_node(node("gl_FragColor = vec4(RENDERSIZE, 0.0, 1.0);"), (4, 4))
     plans = [renderer.compile(graph, RenderRequest(frame=frame)) for frame in (1, 5)]
     assert len({plan.surfaces[plan.outputs["out"]].key for plan in plans}) == 1
 
@@ -145,7 +147,7 @@ def test_display_values_and_straight_alpha(run: Run) -> None:
     assert close(run(kind(), {"inputImage": bright}), bright, 2e-5)
     assert close(run(kind(light="linear"), {"inputImage": bright}), bright, 2e-5)
     color = soft[..., :3] / soft[..., 3:]
-    wanted = decoded(0.5 * encoded(color)) * soft[..., 3:]
+    wanted = decode_srgb(0.5 * encode_srgb(color)) * soft[..., 3:]
     assert close(run(kind(k=0.5), {"inputImage": soft})[..., :3], wanted, 2e-5)
 
 
@@ -281,7 +283,7 @@ def test_a_fault_is_told_at_its_own_line(run: Run, fragment: str, vertex: str, f
 def test_it_lives_among_other_nodes(run: Run) -> None:
     from halation.nodes.color.exposure import Exposure
 
-    graph = alone(node("gl_FragColor = IMG_THIS_PIXEL(inputImage) * 0.5;", IMAGE), (W, H))
+    graph = graph_of_node(node("gl_FragColor = IMG_THIS_PIXEL(inputImage) * 0.5;", IMAGE), (W, H))
     graph = graph.add("up", Exposure(stops=1.0)).connect(Port("shader", "out"), Port("up", "image"))
     graph = graph.add_output("more", Output(Kind.IMAGE, 4)).connect(Port("up", "out"), Port("outputs", "more"))
     made = run(graph, {"inputImage": PICTURE}, output="more")

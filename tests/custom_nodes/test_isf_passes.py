@@ -8,7 +8,7 @@ from conftest import Run
 from halation.errors import GraphError, HalationError
 from halation.nodes import Filter, Temporal
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
-from isf_files import IMAGE, alone, isf, node, opaque, shader
+from isf_files import IMAGE, graph_of_node, isf, node, opaque, shader
 
 H, W = 12, 20
 PICTURE = opaque(H, W)
@@ -18,7 +18,7 @@ STEP = {"NAME": "step", "TYPE": "float", "DEFAULT": 0.3}
 
 
 def reel(renderer: Renderer, item: Filter, size: tuple[int, int] = (4, 3)) -> FrameRenderer:
-    return FrameRenderer(renderer, alone(item, size), RenderRequest(precision="float"))
+    return FrameRenderer(renderer, graph_of_node(item, size), RenderRequest(precision="float"))
 
 
 @pytest.mark.parametrize("floating", [True, False])

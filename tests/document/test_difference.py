@@ -7,7 +7,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from edited_graphs import edited, read, some_graph
+from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
 from halation.document.diff_merge import ABSENT, applied, difference, facts, told
 from halation.document.diff_merge.parts import text_of
@@ -23,16 +23,16 @@ NODES = catalogue()
 @given(st.integers(0, 2**32))
 def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
     """To the letter, if the layout is looked at; else all but the layout."""
-    rng, before = Random(seed), some_graph(seed)
+    rng, before = Random(seed), make_graph(seed)
     after = before
     for _ in range(rng.randint(0, 6)):
-        after = edited(rng, after)
-    after = read(dumps(after))
+        after = edit_randomly(rng, after)
+    after = parse_graph(dumps(after))
     found = difference(before, after, layout=True)
-    assert dumps(read(text_of(applied(before, found)))) == dumps(after)
+    assert dumps(parse_graph(text_of(applied(before, found)))) == dumps(after)
     assert bool(found) == (dumps(before) != dumps(after))
     logic = difference(before, after)
-    assert not difference(read(text_of(applied(before, logic))), after)
+    assert not difference(parse_graph(text_of(applied(before, logic))), after)
     assert len(told(logic, before, after)) > 0 or not logic
     assert (facts(before) == facts(after)) == (not logic)
 
@@ -40,15 +40,15 @@ def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32))
 def test_a_graph_does_not_differ_from_itself(seed: int) -> None:
-    graph = some_graph(seed)
-    assert not difference(graph, read(dumps(graph)), layout=True)
+    graph = make_graph(seed)
+    assert not difference(graph, parse_graph(dumps(graph)), layout=True)
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**32))
 def test_renaming_is_told_from_removing_and_adding(seed: int) -> None:
     """Whatever else is in the graph, unless a twin stands beside the node."""
-    rng, before = Random(seed), some_graph(seed)
+    rng, before = Random(seed), make_graph(seed)
     old = rng.choice([*before.nodes])
     found = difference(before, before.rename(old, "fresh"))
     assert [(one.old, one.new) for one in found.renamed] == [(old, "fresh")] and not found.changes
@@ -56,7 +56,7 @@ def test_renaming_is_told_from_removing_and_adding(seed: int) -> None:
 
 def chain(*names: str) -> Graph:
     """Nodes in a row from an input to an output: `id:type`."""
-    graph = read('{"halation": 1, "inputs": {"beauty": {"type": "Image"}}}').add_output("image", Output())
+    graph = parse_graph('{"halation": 1, "inputs": {"beauty": {"type": "Image"}}}').add_output("image", Output())
     last = Port("inputs", "beauty")
     for name in names:
         id, _, kind = name.partition(":")

@@ -8,7 +8,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from edited_graphs import edited, read, some_graph
+from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
 from halation.document.diff_merge import At, Merged, Side, conflicts_of, difference, merged, resolved
 from halation.document.diff_merge.aligning import align_three
@@ -26,12 +26,12 @@ SEEDS = st.integers(0, 2**32)
 
 def versions(seed: int, edits: int = 3) -> tuple[Graph, Graph, Graph]:
     """A graph, and what two people made of it."""
-    rng, base = Random(seed), some_graph(seed)
+    rng, base = Random(seed), make_graph(seed)
     sides = [base, base]
     for place in (0, 1):
         for _ in range(rng.randint(1, edits)):
-            sides[place] = edited(rng, sides[place])
-    return base, *(read(dumps(side)) for side in sides)
+            sides[place] = edit_randomly(rng, sides[place])
+    return base, *(parse_graph(dumps(side)) for side in sides)
 
 
 @settings(max_examples=60, deadline=None)
@@ -42,7 +42,7 @@ def test_the_laws_of_merging(seed: int) -> None:
     one, other = merged(base, ours, theirs), merged(base, theirs, ours)
     assert {c.at for c in one.conflicts} == set() or other.conflicts
     for made in (one, other):
-        graph = read(made.text)
+        graph = parse_graph(made.text)
         assert dumps(graph) == made.text
         assert ("conflicts" in json.loads(made.text)) == bool(made.conflicts)
     if not one.conflicts:
@@ -56,7 +56,7 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
     """Every change is in the result, or in a conflict; and ours is always in place."""
     base, ours, theirs = align_three(*versions(seed, 5))
     made = merged(base, ours, theirs)
-    parts, open = parts_of(read(made.text)), [conflict.at for conflict in made.conflicts]
+    parts, open = parts_of(parse_graph(made.text)), [conflict.at for conflict in made.conflicts]
 
     def is_open(at: At) -> bool:
         return any(one[: len(at)] == at or at[: len(one)] == one for one in open)
@@ -78,7 +78,7 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
 @given(SEEDS)
 def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> None:
     """One turns values of some nodes, mutes and moves them; the other does so with the others, and adds one."""
-    rng, base = Random(seed), some_graph(seed)
+    rng, base = Random(seed), make_graph(seed)
     ids = [*base.nodes]
     rng.shuffle(ids)
     half = len(ids) // 2
@@ -109,7 +109,7 @@ def test_a_side_can_be_chosen(seed: int, side: Side) -> None:
         with pytest.raises(UsageError):
             resolved(document, {"": side})
         return
-    done = read(json.dumps(resolved(document, {"": side})))
+    done = parse_graph(json.dumps(resolved(document, {"": side})))
     assert not conflicts_of(json.loads(dumps(done)))
     for conflict in made.conflicts:
         wanted = {"ours": conflict.ours, "theirs": conflict.theirs, "base": conflict.base}[side]
@@ -128,7 +128,7 @@ def made(document: dict[str, Any], **changes: Any) -> Graph:
             del place[last]
         else:
             place[last] = part
-    return read(json.dumps(tree))
+    return parse_graph(json.dumps(tree))
 
 
 BASE = {
@@ -202,7 +202,7 @@ def test_a_renamed_node_takes_what_the_other_changed() -> None:
     theirs = made(BASE, **{"nodes/blur/values": {"sigma": 7.0}})
     for sides in ((renamed, theirs), (theirs, renamed)):
         found = merged(made(BASE), *sides)
-        assert not found.conflicts and read(found.text) == theirs.rename("blur", "soft")
+        assert not found.conflicts and parse_graph(found.text) == theirs.rename("blur", "soft")
 
 
 REMOVED = {"nodes/blur": None, "links/blur.image": None, "links/light.image": "inputs.beauty"}
@@ -245,12 +245,12 @@ def test_true_conflicts(ours: dict[str, Any], theirs: dict[str, Any], paths: set
     sides = made(BASE), made(BASE, **ours), made(BASE, **theirs)
     found = merged(*sides)
     assert {conflict.path for conflict in found.conflicts} == paths
-    graph, document = read(found.text), json.loads(found.text)
+    graph, document = parse_graph(found.text), json.loads(found.text)
     named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
     assert {problem.sentence.partition(" was")[0] for problem in named} == paths
     assert {problem.severity for problem in named} == {"error"}
-    assert read(json.dumps(resolved(document, {"": "ours"}))).nodes.items() >= sides[1].nodes.items()
-    done = read(json.dumps(resolved(document, {"": "theirs"})))
+    assert parse_graph(json.dumps(resolved(document, {"": "ours"}))).nodes.items() >= sides[1].nodes.items()
+    done = parse_graph(json.dumps(resolved(document, {"": "theirs"})))
     assert done.nodes.items() >= sides[2].nodes.items() and done.links.items() >= sides[2].links.items()
 
 
@@ -259,13 +259,13 @@ def test_links_that_only_together_make_a_loop() -> None:
     ours, theirs = made(base, **{"links/a.a": "b.out"}), made(base, **{"links/b.a": "a.out"})
     found = merged(made(base), ours, theirs)
     assert [conflict.path for conflict in found.conflicts] == ["links.b.a"]
-    read(found.text).order()
-    assert read(json.dumps(resolved(json.loads(found.text), {"links.b.a": "ours"}))) == ours
+    parse_graph(found.text).order()
+    assert parse_graph(json.dumps(resolved(json.loads(found.text), {"links.b.a": "ours"}))) == ours
 
 
 def test_code_goes_together_line_by_line() -> None:
     def coded(*code: str) -> Graph:
-        return read(json.dumps({"halation": 1, "nodes": {"wave": {"type": "later", "code": code}}}))
+        return parse_graph(json.dumps({"halation": 1, "nodes": {"wave": {"type": "later", "code": code}}}))
 
     base = coded("a", "b", "c", "d", "e")
     found = merged(base, coded("A", "b", "c", "d", "e"), coded("a", "b", "c", "d", "E", "f"))

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import OpenImageIO as oiio
 import pytest
-from gui_screens import SCREENS, made
+from gui_screens import SCREENS, write_many_things
 from halation import presets
 from halation.editor.theme.palette import PALETTES, RGB, Palette
 from halation.graph import Port
@@ -54,7 +54,7 @@ def test_screens(gui, tmp_path: Path, look, screens) -> None:
                     ui.shot(f"{theme}_{scale:g}_{size[0]}/{name}.png")
                 check(ui)
 
-    gui(body, made(tmp_path), size=size, likes={"theme": theme, "ui_scale": scale}, faulty=True)
+    gui(body, write_many_things(tmp_path), size=size, likes={"theme": theme, "ui_scale": scale}, faulty=True)
 
 
 @pytest.mark.skipif(not RENEW, reason="makes pictures")

@@ -18,7 +18,7 @@ from halation.media.video.index import survey_video  # noqa: E402
 from halation.media.video.reader import VideoReader, read_frame  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from halation.resources.input_files import fingerprint  # noqa: E402
-from videos import bars, decoded, number_in, write_frames, write_numbers  # noqa: E402
+from videos import bars, decode_frames, number_in, write_frames, write_numbers  # noqa: E402
 
 COUNT = 45
 LATE = [sum(1 + 7 * n * n % 97 for n in range(at)) for at in range(COUNT)]
@@ -55,7 +55,7 @@ def shown(frame: Any) -> np.ndarray:
 
 
 def test_frames_are_those_of_decoding_from_the_start_in_any_order(video: Path) -> None:
-    expected, mark = decoded(video), fingerprint(video)
+    expected, mark = decode_frames(video), fingerprint(video)
     assert survey_video(str(video), mark)[0].count == len(expected) == COUNT
     order = [*range(1, COUNT + 1)] * 2
     random.Random(7).shuffle(order)
@@ -113,7 +113,7 @@ def test_what_an_edit_list_cuts_off_is_no_frame(tmp_path: Path) -> None:
             if packet.dts is not None:
                 packet.pts, packet.dts, packet.stream = packet.pts - 7 * step, packet.dts - 7 * step, stream
                 target.mux(packet)
-    expected = decoded(cut)
+    expected = decode_frames(cut)
     assert len(expected) < COUNT
     facts, index = survey_video(str(cut), fingerprint(cut))
     assert facts.count == len(expected) and index.times

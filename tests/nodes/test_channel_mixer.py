@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.color.channel_mixer import ChannelMixer
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 ROWS = {"red": (0.5, 0.7, -0.3), "green": (-0.2, 1.1, 0.4), "blue": (0.1, 0.1, 0.6)}
 CONSTANT = (0.1, -0.05, 0.2)
@@ -18,7 +18,9 @@ def mixed(picture: np.ndarray, rows: np.ndarray, constant: tuple[float, ...]) ->
     matrix = np.eye(4)
     matrix[:3, :3] = np.array(rows).T
     matrix[3, :3] = constant
-    return oiio.ImageBufAlgo.colormatrixtransform(buffer(picture), tuple(matrix.ravel()), False).get_pixels("float")
+    return oiio.ImageBufAlgo.colormatrixtransform(make_buffer(picture), tuple(matrix.ravel()), False).get_pixels(
+        "float"
+    )
 
 
 def assert_close(found: np.ndarray, expected: np.ndarray) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.distort.chromatic_aberration import ChromaticAberration
-from warps import looked_up
+from warps import sample_bilinear
 
 
 @pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
@@ -22,7 +22,7 @@ def test_it_is_a_sum_over_the_spectrum(run, hdr, edge, size, shape, samples):
     response = np.stack([np.maximum(-places, 0), 1 - np.abs(places), np.maximum(places, 0), np.ones(samples)], -1)
     response /= response.sum(0)
     expected = sum(
-        weight * looked_up(picture, x + place * dx, y + place * dy, edge.scipy_map)
+        weight * sample_bilinear(picture, x + place * dx, y + place * dy, edge.scipy_map)
         for weight, place in zip(response, places, strict=True)
     )
     node = ChromaticAberration(shape=shape, amount=0.1, angle=30.0, samples=samples, center=(0.4, 0.6), edge=edge.name)

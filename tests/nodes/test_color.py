@@ -12,7 +12,7 @@ from halation.nodes.color.grade import Grade
 from halation.nodes.color.luminance import Luminance
 from halation.nodes.color.saturation import Saturation
 from halation.nodes.color.vignette import Vignette
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 ALGO = oiio.ImageBufAlgo
 
@@ -92,7 +92,7 @@ def test_grade_by_a_mask(run):
 @pytest.mark.parametrize("amount", [0.0, 0.4, 1.0, 2.0])
 def test_saturation_is_that_of_openimageio(run, amount):
     image = picture()
-    expected = ALGO.saturate(buffer(image), amount).get_pixels("float")
+    expected = ALGO.saturate(make_buffer(image), amount).get_pixels("float")
     assert relative(run(Saturation(saturation=amount), {"image": image}), expected) < 2e-6
 
 
@@ -104,7 +104,7 @@ def test_saturation_is_that_of_a_color_decision_list(run):
 
 def test_luminance_is_a_weighted_sum(run):
     image = picture(4)
-    expected = ALGO.channel_sum(buffer(image), (0.2126, 0.7152, 0.0722, 0.0)).get_pixels("float")
+    expected = ALGO.channel_sum(make_buffer(image), (0.2126, 0.7152, 0.0722, 0.0)).get_pixels("float")
     out = run(Luminance(), {"image": image})
     assert relative(out[..., 0], expected.reshape(out.shape[:2])) < 1e-6
 
@@ -118,7 +118,7 @@ def test_luminance_measures(run, measure, reduce):
 
 def test_clip_is_that_of_openimageio(run):
     image = picture(6, opaque=True)
-    expected = ALGO.clamp(buffer(image), (0.1,) * 4, (0.9, 0.9, 0.9, 1.0), False).get_pixels("float")
+    expected = ALGO.clamp(make_buffer(image), (0.1,) * 4, (0.9, 0.9, 0.9, 1.0), False).get_pixels("float")
     assert np.array_equal(run(Clip(low=0.1, high=0.9), {"image": image}), expected)
 
 

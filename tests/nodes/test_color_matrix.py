@@ -7,7 +7,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
 from halation.nodes.color.color_matrix import ColorMatrix
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 MATRIX = (0.9, 0.2, -0.1, 0.05, 0.8, 0.3, -0.2, 0.1, 1.4)
 PRESETS = ColorMatrix.values["preset"].choices
@@ -29,7 +29,9 @@ def test_it_is_openimageios(run, hdr, direction):
     matrix = np.eye(4)
     matrix[:3, :3] = (rows if direction == "forward" else np.linalg.inv(rows)).T
     matrix[3, :3] = offset
-    expected = oiio.ImageBufAlgo.colormatrixtransform(buffer(picture), tuple(matrix.ravel()), False).get_pixels("float")
+    expected = oiio.ImageBufAlgo.colormatrixtransform(make_buffer(picture), tuple(matrix.ravel()), False).get_pixels(
+        "float"
+    )
     node = ColorMatrix(preset="custom", matrix=MATRIX, direction=direction, offset=offset)
     assert_close(run(node, {"image": picture}), expected)
 

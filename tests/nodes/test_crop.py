@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.distort.crop import Crop
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 CORNERS = {"top_left": (0.25, 0.1), "bottom_right": (0.8, 0.9)}
 
@@ -17,7 +17,7 @@ def test_it_is_openimageios(run, hdr, size):
     left, top, right, bottom = Crop(**CORNERS).box(size)
     roi = oiio.ROI(left, right, top, bottom)
     out = run(Crop(**CORNERS), {"image": picture})
-    np.testing.assert_array_equal(out, oiio.ImageBufAlgo.cut(buffer(picture), roi).get_pixels("float"))
+    np.testing.assert_array_equal(out, oiio.ImageBufAlgo.cut(make_buffer(picture), roi).get_pixels("float"))
     kept = run(Crop(**CORNERS, resize=False), {"image": picture})
     expected = np.zeros_like(picture)
     expected[top:bottom, left:right] = picture[top:bottom, left:right]

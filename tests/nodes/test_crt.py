@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from halation.nodes.distort.crt import Crt
 from hashes import hash3
-from warps import looked_up
+from warps import sample_bilinear
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 FLAT = {"barrel": 0.0, "jitter": 0.0, "chroma_delay": 0.0, "scanlines": 0.0, "mask": "none"}
@@ -30,7 +30,7 @@ def test_it_is_the_formula(run, hdr, size, mask, lines):
     at_x, at_y = width / 2 + height / 2 * dx * bulge, height / 2 + height / 2 * dy * bulge
     line = at_y / height * lines
     at_x = at_x + 0.02 * height * (2 * hash3((np.floor(line), 1, 0))[0] - 1)
-    light, late = (looked_up(picture, at_x - shift, at_y, "grid-constant") for shift in (0.0, 0.03 * height))
+    light, late = (sample_bilinear(picture, at_x - shift, at_y, "grid-constant") for shift in (0.0, 0.03 * height))
     rgb = late[..., :3] + (light[..., :3] @ WEIGHTS - late[..., :3] @ WEIGHTS)[..., None]
     rgb *= ((1 - 0.3 * (1 + averaged_cosine(line, lines / height))) / 0.7)[..., None]
     stripe = x / 4 + (0.5 * (np.floor(y / 4) % 2) if mask == "shadow mask" else 0.0)

@@ -10,18 +10,18 @@ import pytest
 from halation.graph import Input, Port
 from halation.nodes import Kind
 from halation.nodes.time.eye_adaptation import EyeAdaptation
-from sequences import flat, played, shot_graph
+from sequences import make_flat_frames, render_frames, shot_graph
 
 DARK, BRIGHT = 0.02, 5.0
 
 
 def door(opens: int = 2):
     """A dark room until the door opens."""
-    return {"image": flat(lambda frame: BRIGHT if frame >= opens else DARK)}
+    return {"image": make_flat_frames(lambda frame: BRIGHT if frame >= opens else DARK)}
 
 
 def adapted(renderer, node, shot, frames, output="adapted", **settings):
-    found = played(renderer, shot_graph(node, shot, (1, max(frames)), **settings), shot, frames, output)
+    found = render_frames(renderer, shot_graph(node, shot, (1, max(frames)), **settings), shot, frames, output)
     return np.array([float(made[0, 0, 0]) for made in found])
 
 
@@ -32,7 +32,7 @@ def log_average(value: float) -> float:
 @pytest.mark.parametrize(("start", "end", "time"), [(DARK, BRIGHT, 0.4), (BRIGHT, DARK, 1.2)])
 @pytest.mark.parametrize("scale", ["stops", "light"])
 def test_a_step_is_followed_by_an_exponential(renderer, start, end, time, scale):
-    shot = {"image": flat(lambda frame: start if frame < 2 else end)}
+    shot = {"image": make_flat_frames(lambda frame: start if frame < 2 else end)}
     found = adapted(renderer, EyeAdaptation(scale=scale), shot, range(1, 25))
     kept = np.exp(-np.arange(24) / 24 / time)
     if scale == "stops":
@@ -46,13 +46,13 @@ def test_the_natural_eye_is_krawczyk_s(renderer):
     """Time constants by what is seen, and the key of the adapted luminance: 0.030 at 1e-3 cd/m2, 0.531 at 100."""
     node = EyeAdaptation(model="natural", scale="light", nits=1.0)
     for end in (0.01, 0.5, 50.0):
-        shot = {"image": flat(lambda frame, end=end: 1.0 if frame < 2 else end)}
+        shot = {"image": make_flat_frames(lambda frame, end=end: 1.0 if frame < 2 else end)}
         found = adapted(renderer, node, shot, range(1, 9))
         rods = 0.04 / (0.04 + log_average(end))
         kept = np.exp(-np.arange(8) / 24 / (rods * 0.4 + (1 - rods) * 0.1))
         np.testing.assert_allclose(found, kept * log_average(1.0) + (1 - kept) * log_average(end), rtol=5e-6)
     for nits, key in ((1e-3, 0.030), (1.0, 0.161), (100.0, 0.531)):
-        shot = {"image": flat(lambda _, nits=nits: nits)}
+        shot = {"image": make_flat_frames(lambda _, nits=nits: nits)}
         stops = adapted(renderer, replace(node, maximum=20.0), shot, [1], "exposure")[0]
         assert abs(2**stops * log_average(nits) - key) < 1e-3
 
@@ -72,7 +72,7 @@ def test_what_does_not_change_is_exposed_as_the_key_says(renderer, hdr):
     luminance = picture[..., :3].astype(float) @ (0.2126, 0.7152, 0.0722)
     average = np.exp(np.log(luminance + 1e-5).mean())
     graph = shot_graph(EyeAdaptation(), shot)
-    for made in played(renderer, graph, shot, (1, 8)):
+    for made in render_frames(renderer, graph, shot, (1, 8)):
         np.testing.assert_allclose(made[..., :3], picture[..., :3] * 0.18 / average, rtol=2e-5)
         assert np.array_equal(made[..., 3], picture[..., 3])
 
@@ -93,7 +93,7 @@ def test_another_meter_may_lead_it(renderer):
     graph = shot_graph(EyeAdaptation(), shot, (1, 4))
     graph = graph.add_input("met", Input(Kind.NUMBER, default=2.0))
     graph = graph.connect(Port("inputs", "met"), Port("node", "luminance"))
-    found = played(renderer, graph, shot, (1, 4), "adapted")
+    found = render_frames(renderer, graph, shot, (1, 4), "adapted")
     assert [float(made[0, 0, 0]) for made in found] == [2.0, 2.0]
 
 

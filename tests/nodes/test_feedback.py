@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from halation.nodes.time.feedback import Feedback
-from sequences import flat, played, shot_graph
+from sequences import make_flat_frames, render_frames, shot_graph
 
 STILL = {"rotation": 0.0, "scale": 1.0, "hue": 0.0}
 
@@ -20,7 +20,7 @@ def first_only(picture: np.ndarray):
 def second(renderer, node, picture, frame=2, **options):
     """What has become of it: its past was itself, so the screen shows that at the first frame too."""
     shot = first_only(picture)
-    return played(renderer, shot_graph(node, shot, (1, frame)), shot, [frame], **options)[0].astype(float)
+    return render_frames(renderer, shot_graph(node, shot, (1, frame)), shot, [frame], **options)[0].astype(float)
 
 
 def cubic(x: np.ndarray) -> np.ndarray:
@@ -65,7 +65,7 @@ def test_the_past_is_moved_as_the_values_say(renderer, values):
             x, y = np.linalg.inv(turn) @ (np.array([j + 0.5, i + 0.5]) - pivot - node.position) + pivot
             once[i, j] = sampled(picture, x, y)
     shot = first_only(picture)
-    found = played(renderer, shot_graph(node, shot, (1, 1)), shot, [1])[0].astype(float)
+    found = render_frames(renderer, shot_graph(node, shot, (1, 1)), shot, [1])[0].astype(float)
     expected = picture + once
     assert np.abs(found[..., :3] - expected[..., :3]).max() < 2e-5
     assert np.abs(found[..., 3] - np.minimum(expected[..., 3], 1)).max() < 2e-5
@@ -80,9 +80,9 @@ def test_the_past_is_moved_as_the_values_say(renderer, values):
     ],
 )
 def test_still_light_adds_up_to_the_closed_form(renderer, mode, level):
-    shot = {"image": flat(lambda _: 1.0)}
+    shot = {"image": make_flat_frames(lambda _: 1.0)}
     node = Feedback(**STILL, decay=0.8, mode=mode)
-    found = played(renderer, shot_graph(node, shot, (1, 9)), shot, range(1, 10))
+    found = render_frames(renderer, shot_graph(node, shot, (1, 9)), shot, range(1, 10))
     for frame, made in enumerate(found, 1):
         np.testing.assert_allclose(made[..., :3], level(0.8, frame), rtol=2e-6)
 
@@ -91,9 +91,11 @@ def test_over_and_screen(renderer):
     half = np.full((3, 3, 4), 0.25, np.float32)
     half[..., 3] = 0.5
     shot = {"image": lambda _: half}
-    over = played(renderer, shot_graph(Feedback(**STILL, decay=0.8, mode="over"), shot, (1, 1)), shot, [1])[0]
+    over = render_frames(renderer, shot_graph(Feedback(**STILL, decay=0.8, mode="over"), shot, (1, 1)), shot, [1])[0]
     np.testing.assert_allclose(over[0, 0], [0.35, 0.35, 0.35, 0.7], rtol=1e-6)
-    screen = played(renderer, shot_graph(Feedback(**STILL, decay=0.8, mode="screen"), shot, (1, 1)), shot, [1])[0]
+    screen = render_frames(renderer, shot_graph(Feedback(**STILL, decay=0.8, mode="screen"), shot, (1, 1)), shot, [1])[
+        0
+    ]
     np.testing.assert_allclose(screen[0, 0], [0.4, 0.4, 0.4, 0.7], rtol=1e-6)
 
 
@@ -115,7 +117,7 @@ def test_it_stays_sharp(renderer):
         return picture if frame == 1 else np.zeros_like(picture)
 
     # Without the past of the first frame, which is itself: what ten steps make of one.
-    found = played(renderer, shot_graph(node, {"image": shot}, (1, 11)), {"image": shot}, (1, 11))
+    found = render_frames(renderer, shot_graph(node, {"image": shot}, (1, 11)), {"image": shot}, (1, 11))
     span = [np.ptp(made[2, :, 0]) for made in found]
     bilinear = np.cos(np.pi / 6) ** 10
     print(span[1] / span[0], bilinear)
@@ -128,7 +130,7 @@ def test_it_never_explodes(renderer, hdr, mode, values):
     shot = {"image": lambda frame: np.roll(hdr(16, 12), frame, 1)}
     node = Feedback(mode=mode, decay=1.0, hue=25.0, ceiling=20.0, **values)
     brightest = max(float(hdr(16, 12).max()), 1.0)
-    last = played(renderer, shot_graph(node, shot, (1, 60)), shot, [60])[0]
+    last = render_frames(renderer, shot_graph(node, shot, (1, 60)), shot, [60])[0]
     assert np.isfinite(last).all() and last.max() <= brightest + 20.0
 
 
@@ -140,6 +142,6 @@ def test_a_bad_pixel_does_not_come_back(renderer):
         return picture
 
     shot = {"image": spoiled}
-    found = played(renderer, shot_graph(Feedback(mode="mix", hue=0.0), shot, (1, 90)), shot, (2, 3, 90))
+    found = render_frames(renderer, shot_graph(Feedback(mode="mix", hue=0.0), shot, (1, 90)), shot, (2, 3, 90))
     assert all(np.isfinite(made).all() for made in found)
     assert np.abs(found[2] - 0.5).max() < 0.5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.distort.glass import Glass
-from warps import looked_up, waves
+from warps import sample_bilinear, waves
 
 
 def snell(dx: np.ndarray, dy: np.ndarray, thickness: float, index: float) -> tuple[np.ndarray, np.ndarray]:
@@ -30,7 +30,7 @@ def test_it_bends_by_snells_law(run, hdr, edge, size, index, dispersion):
     expected = 0
     for weight, place in zip(response, places, strict=True):
         right, down = snell(dx, dy, 0.2 * height, index + place * dispersion / 2)
-        expected = expected + weight * looked_up(picture, x + right, y + down, edge.scipy_map)
+        expected = expected + weight * sample_bilinear(picture, x + right, y + down, edge.scipy_map)
     node = Glass(relief=0.1, thickness=0.2, index=index, dispersion=dispersion, samples=7, edge=edge.name)
     out = run(node, {"image": picture, "surface": surface})
     assert np.abs(out - expected).max() < 1e-5 * picture.max()
@@ -43,7 +43,7 @@ def test_a_wedge_moves_everything_alike(run):
     node = Glass(relief=1.0, thickness=0.5, index=np.sqrt(2), dispersion=0.0)
     out = run(node, {"image": picture, "surface": surface})
     y, x = np.mgrid[:32, :64] + 0.5
-    expected = looked_up(picture, x + 16 * np.tan(np.radians(15)), y, "nearest")
+    expected = sample_bilinear(picture, x + 16 * np.tan(np.radians(15)), y, "nearest")
     assert np.abs(out - expected)[:, 1:-8].max() < 1e-5
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from halation.nodes.distort.glitch import Glitch
 from hashes import hash3
-from warps import looked_up
+from warps import sample_bilinear
 
 
 def test_the_hash_is_the_papers():
@@ -26,7 +26,7 @@ def test_bands_jump_as_the_hash_says(run, hdr, edge, size, hold):
         jumps = dice[0] < 0.6
         moved += jumps * 0.2 * height * (2 * dice[1] - 1)
         apart += jumps * 0.05 * height * (2 * dice[2] - 1)
-    red, middle, blue = (looked_up(picture, x + moved + way * apart, y, edge.scipy_map) for way in (1, 0, -1))
+    red, middle, blue = (sample_bilinear(picture, x + moved + way * apart, y, edge.scipy_map) for way in (1, 0, -1))
     expected = np.stack([red[..., 0], middle[..., 1], blue[..., 2], middle[..., 3]], -1)
     node = Glitch(amount=0.6, shift=0.2, colors=0.05, band=0.3, hold=hold, seed=5, edge=edge.name)
     assert np.abs(run(node, {"image": picture}) - expected).max() < 1e-5 * picture.max()

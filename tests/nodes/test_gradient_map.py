@@ -7,7 +7,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.nodes import ramp_at
 from halation.nodes.color.gradient_map import GradientMap
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 
 def gray(light: np.ndarray) -> np.ndarray:
@@ -20,7 +20,7 @@ def test_palettes_are_those_of_openimageio(run, palette):
     light = np.linspace(-0.25, 1.25, 301)
     out = run(GradientMap(palette=palette, scale="linear", low=0.0, high=1.0), {"image": gray(light)})
     expected = oiio.ImageBufAlgo.color_map(
-        buffer(light.clip(0, 1).astype(np.float32)[None, :, None]), 0, palette
+        make_buffer(light.clip(0, 1).astype(np.float32)[None, :, None]), 0, palette
     ).get_pixels("float")
     assert np.abs(out[0, :, :3] - expected[0]).max() < 1e-5
     assert (out[..., 3] == 1).all()

@@ -9,7 +9,7 @@ from halation.graph import Port
 from halation.nodes.distort.heat_haze import HeatHaze
 from halation.renderer import RenderRequest
 from noises import gradient_noise, places
-from warps import looked_up, waves
+from warps import sample_bilinear, waves
 
 
 def ramp(width: int, height: int) -> np.ndarray:
@@ -46,7 +46,7 @@ def test_it_is_scipys_at_these_positions(renderer, hdr, edge, size, frame, value
     heat = np.random.default_rng(1).uniform(-1, 1, size[::-1]).astype(np.float32)
     y, x = np.mgrid[: size[1], : size[0]] + 0.5
     away = heat[..., None].astype(np.float64) * haze(node, *size, frame)
-    expected = looked_up(picture, x + away[..., 0], y + away[..., 1], edge.scipy_map)
+    expected = sample_bilinear(picture, x + away[..., 0], y + away[..., 1], edge.scipy_map)
     found = at_frame(renderer, node, picture, frame, heat)
     assert np.abs(found - expected).max() < 2e-5 * picture.max()
 

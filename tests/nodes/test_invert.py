@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.color.invert import Invert
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 SPACES = Invert.values["space"].choices
 
@@ -18,7 +18,7 @@ def srgb_encode(linear: np.ndarray) -> np.ndarray:
 
 def test_linear_is_that_of_openimageio(run, hdr):
     picture = hdr(21, 14, opaque=True)
-    expected = oiio.ImageBufAlgo.invert(buffer(picture), oiio.ROI(0, 21, 0, 14, 0, 1, 0, 3)).get_pixels("float")
+    expected = oiio.ImageBufAlgo.invert(make_buffer(picture), oiio.ROI(0, 21, 0, 14, 0, 1, 0, 3)).get_pixels("float")
     np.testing.assert_array_equal(run(Invert(space="linear"), {"image": picture})[..., :3], expected[..., :3])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.distort.kaleidoscope import Kaleidoscope
-from warps import warped, waves
+from warps import warp_picture, waves
 
 
 @pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
@@ -23,7 +23,7 @@ def test_it_is_scipys_at_these_positions(run, hdr, edge, size, segments, zoom):
     node = Kaleidoscope(
         segments=segments, rotation=20.0, slice=-70.0, zoom=zoom, center=(center[0] / size[0], 0.6), edge=edge.name
     )
-    expected, sure = warped(picture, source, edge.scipy_map)
+    expected, sure = warp_picture(picture, source, edge.scipy_map)
     error = np.abs(run(node, {"image": picture}) - expected).max(-1)
     assert sure.mean() > 0.9 and error[sure].max() < 1e-4 * picture.max()
 

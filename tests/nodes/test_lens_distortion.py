@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from halation.nodes.distort.lens_distortion import LensDistortion
-from warps import warped, waves
+from warps import warp_picture, waves
 
 SIZE = (60, 40)
 LENSES = [
@@ -41,7 +41,7 @@ def assert_same_positions(run, direction: str, lens: dict[str, float], by_opencv
         found = by_opencv(points, matrix, opencv(lens)).reshape(*x.shape, 2) + 0.5
         return found[..., 0], found[..., 1]
 
-    expected, sure = warped(ramp(), source)
+    expected, sure = warp_picture(ramp(), source)
     seen = sure & np.all((expected[..., :2] > 2) & (expected[..., :2] < np.array(SIZE) - 2), -1)
     node = LensDistortion(direction=direction, focal=1.2, center=(28 / 60, 22 / 40), edge="clamp", **lens)
     out = run(node, {"image": ramp()})
@@ -77,7 +77,7 @@ def test_pictures_are_looked_up_there(run, hdr, edge, lens):
         return 30 + dx * bend, 20 + dy * bend
 
     node = LensDistortion(direction="undistort", focal=1.2, zoom=1.3, edge=edge.name, **lens)
-    expected, _ = warped(picture, source, edge.scipy_map)
+    expected, _ = warp_picture(picture, source, edge.scipy_map)
     assert np.abs(run(node, {"image": picture}) - expected).max() < 1e-5 * picture.max()
 
 

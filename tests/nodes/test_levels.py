@@ -7,7 +7,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
 from halation.nodes.color.levels import Levels
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 VALUES = {"black": 0.05, "white": 0.8, "low": 0.1, "high": 1.5}
 
@@ -18,7 +18,7 @@ def assert_close(found: np.ndarray, expected: np.ndarray, wanted: float = 2e-6) 
 
 def test_straight_levels_are_openimageios_contrast_remap(run, hdr):
     picture = hdr(23, 17, opaque=True)
-    expected = oiio.ImageBufAlgo.contrast_remap(buffer(picture), 0.05, 0.8, 0.1, 1.5).get_pixels("float")
+    expected = oiio.ImageBufAlgo.contrast_remap(make_buffer(picture), 0.05, 0.8, 0.1, 1.5).get_pixels("float")
     assert_close(run(Levels(**VALUES), {"image": picture})[..., :3], expected[..., :3])
 
 

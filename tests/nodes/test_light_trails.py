@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 from halation.nodes.time.light_trails import LightTrails
-from sequences import played, shot_graph
+from sequences import render_frames, shot_graph
 
 WHOLE = range(1, 11)
 
@@ -23,7 +23,7 @@ def lamp(frame: int) -> np.ndarray:
 def test_lamps_draw_lines_for_ever(renderer):
     shot = {"image": lamp}
     graph = shot_graph(LightTrails(fade="never"), shot, (1, 10))
-    last = played(renderer, graph, shot, [10])[0].astype(float)
+    last = render_frames(renderer, graph, shot, [10])[0].astype(float)
     light = last[1, 1:11, :3]
     assert np.abs(light - light[0]).max() < 1e-6, "all as bright as the lamp now"
     assert np.abs(np.delete(last, 1, 0)[..., :3] - 0.1).max() < 1e-6 and (last[..., 3] == 1.0).all()
@@ -32,7 +32,9 @@ def test_lamps_draw_lines_for_ever(renderer):
 @pytest.mark.parametrize("time", [0.05, 0.5])
 def test_trails_fade_by_the_closed_form(renderer, time):
     shot = {"image": lamp}
-    found = played(renderer, shot_graph(LightTrails(time=time, threshold=0.0), shot, (1, 10)), shot, WHOLE, "trail")
+    found = render_frames(
+        renderer, shot_graph(LightTrails(time=time, threshold=0.0), shot, (1, 10)), shot, WHOLE, "trail"
+    )
     for frame, made in zip(WHOLE, found, strict=True):
         kept = [
             lamp(past)[..., :3].astype(float) * math.exp(-(frame - past) / 24 / time) for past in range(1, frame + 1)
@@ -42,8 +44,8 @@ def test_trails_fade_by_the_closed_form(renderer, time):
 
 def test_the_same_trail_at_any_frame_rate(renderer):
     slow, fast = {"image": lamp}, {"image": lambda frame: lamp((frame - 1) // 2 + 1)}
-    one = played(renderer, shot_graph(LightTrails(), slow, (1, 10)), slow, [10], "trail")[0]
-    two = played(renderer, shot_graph(LightTrails(), fast, (1, 20), rate=48.0), fast, [19], "trail")[0]
+    one = render_frames(renderer, shot_graph(LightTrails(), slow, (1, 10)), slow, [10], "trail")[0]
+    two = render_frames(renderer, shot_graph(LightTrails(), fast, (1, 20), rate=48.0), fast, [19], "trail")[0]
     # Half of each frame's time more has passed since the lamp left.
     now = one[1, 10, 0]
     age = np.arange(1, 10)
@@ -53,7 +55,7 @@ def test_the_same_trail_at_any_frame_rate(renderer):
 
 def test_what_is_dim_leaves_none(renderer):
     shot = {"image": lambda frame: lamp(frame) * (0.05, 0.05, 0.05, 1.0)}
-    found = played(renderer, shot_graph(LightTrails(), shot, (1, 10)), shot, [10], "trail")[0]
+    found = render_frames(renderer, shot_graph(LightTrails(), shot, (1, 10)), shot, [10], "trail")[0]
     assert not found.any()
 
 
@@ -65,5 +67,5 @@ def test_a_bad_pixel_is_forgotten(renderer):
         return picture
 
     shot = {"image": spoiled}
-    last = played(renderer, shot_graph(LightTrails(time=0.05), shot, (1, 40)), shot, [10], "trail")[0]
+    last = render_frames(renderer, shot_graph(LightTrails(time=0.05), shot, (1, 40)), shot, [10], "trail")[0]
     assert np.isfinite(last).all() and not last[0, 0].any()

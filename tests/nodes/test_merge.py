@@ -9,7 +9,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.nodes.merge.merge import Merge, Mode
 from halation.nodes.merge.mix_images import MixImages
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 ALGO = oiio.ImageBufAlgo
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
@@ -144,7 +144,7 @@ def test_every_mode_is_tested():
 
 def test_over_is_that_of_openimageio(run):
     a, b = picture(4, 8.0), picture(5, 8.0)
-    expected = ALGO.over(buffer(a), buffer(b)).get_pixels("float")
+    expected = ALGO.over(make_buffer(a), make_buffer(b)).get_pixels("float")
     assert np.abs(run(Merge(), {"a": a, "b": b}) - expected).max() < 2e-6
 
 
@@ -163,7 +163,7 @@ def test_over_is_that_of_openimageio(run):
 def test_opaque_arithmetic_is_that_of_openimageio(run, mode, reference):
     """On opaque pictures a blend is plain arithmetic of light of any strength."""
     a, b = picture(6, 8.0, opaque=True), picture(7, 8.0, opaque=True)
-    expected = reference(buffer(b), buffer(a)).get_pixels("float")[..., :3]
+    expected = reference(make_buffer(b), make_buffer(a)).get_pixels("float")[..., :3]
     out = run(Merge(mode=mode), {"a": a, "b": b})
     assert (np.abs(out[..., :3] - expected) / np.maximum(1.0, np.abs(expected))).max() < 1e-6
     assert np.all(out[..., 3] == 1.0)

@@ -9,7 +9,7 @@ from halation.graph import Port
 from halation.nodes.distort.noise_warp import NoiseWarp
 from halation.renderer import RenderRequest
 from noises import places, simplex_noise, stream
-from warps import looked_up, waves
+from warps import sample_bilinear, waves
 
 STEEPEST = 3.44793
 
@@ -47,7 +47,7 @@ def warped(node: NoiseWarp, picture: np.ndarray, mask: np.ndarray | float, mode:
     for n in np.unique(count):
         offsets = (np.arange(n) + 0.5) / n - 0.5
         spots = [np.stack([x, y], -1) + far[..., None] * way + i * across + j * down for j in offsets for i in offsets]
-        found = np.mean([looked_up(picture, spot[..., 0], spot[..., 1], mode) for spot in spots], 0)
+        found = np.mean([sample_bilinear(picture, spot[..., 0], spot[..., 1], mode) for spot in spots], 0)
         out = np.where((count == n)[..., None], found, out)
     return out, (np.abs(span - np.round(span)) > 1e-3) | (span == 1) | (span == 8)
 

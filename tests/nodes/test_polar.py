@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from halation.nodes.distort.polar import Polar
-from warps import looked_up, waves
+from warps import sample_bilinear, waves
 
 
 def test_unwrapping_is_opencvs(run):
@@ -23,7 +23,7 @@ def test_unwrapping_looks_around_the_center(run, hdr, edge):
     picture = hdr(30, 22)
     y, x = np.mgrid[:22, :30] + 0.5
     angle, far = 2 * np.pi * x / 30 + np.radians(40), y / 22 * 0.8 * 22
-    expected = looked_up(picture, 12 + far * np.cos(angle), 11 + far * np.sin(angle), edge.scipy_map)
+    expected = sample_bilinear(picture, 12 + far * np.cos(angle), 11 + far * np.sin(angle), edge.scipy_map)
     node = Polar(direction="unwrap", rotation=40.0, radius=0.8, center=(0.4, 0.5), edge=edge.name)
     out = run(node, {"image": picture})
     near = 2 * np.pi / 30 * far < 1  # beyond, a pixel averages several
@@ -37,7 +37,7 @@ def test_wrapping_looks_up_angle_and_distance(run, hdr):
     y, x = np.mgrid[:54, :72] + 0.5
     dx, dy = x - 0.2 * 72, y - 0.1 * 54
     around, outward = np.arctan2(dy, dx) / (2 * np.pi) % 1.0 * 72, np.hypot(dx, dy)
-    expected = looked_up(picture, around, outward.clip(0.5, 53.5), "grid-wrap")
+    expected = sample_bilinear(picture, around, outward.clip(0.5, 53.5), "grid-wrap")
     far = np.hypot(dx, dy) > 72 / (2 * np.pi) + 1
     assert far.sum() > 2000 and np.abs(out - expected)[far].max() < 1e-5 * picture.max()
 

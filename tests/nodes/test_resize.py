@@ -7,7 +7,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.distort.resize import Resize
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 
 NAMES = {
     "box": "box",
@@ -86,7 +86,7 @@ def test_it_is_openimageios(run, hdr, kernel, scale):
     picture = hdr(40, 30)
     width, height = Resize(scale=scale).output_size({"image": (40, 30)}, (40, 30))
     expected = oiio.ImageBufAlgo.resize(
-        buffer(picture), NAMES[kernel], roi=oiio.ROI(0, width, 0, height, 0, 1, 0, 4)
+        make_buffer(picture), NAMES[kernel], roi=oiio.ROI(0, width, 0, height, 0, 1, 0, 4)
     ).get_pixels("float")
     out = run(Resize(scale=scale, kernel=kernel), {"image": picture})
     assert np.abs(out - expected).max() < 1e-5 * picture.max()

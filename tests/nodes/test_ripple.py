@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.distort.ripple import Ripple
-from warps import warped, waves
+from warps import warp_picture, waves
 
 
 @pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
@@ -39,7 +39,7 @@ def test_it_is_scipys_at_these_positions(run, hdr, size, shape, motion, degrees)
         center=(0.4, 0.6),
         edge="mirror",
     )
-    expected, sure = warped(picture, source, "mirror")
+    expected, sure = warp_picture(picture, source, "mirror")
     error = np.abs(run(node, {"image": picture}) - expected).max(-1)
     assert sure.mean() > 0.9 and error[sure].max() < 1e-5 * picture.max()
 

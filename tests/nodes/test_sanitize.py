@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.color.sanitize import Sanitize
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 from scipy.ndimage import generic_filter
 
 MODES = {"neighbors": oiio.NONFINITE_BOX3, "black": oiio.NONFINITE_BLACK}
@@ -26,7 +26,7 @@ def broken(picture: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("repair", MODES)
 def test_it_is_openimageios(run, hdr, repair):
     picture = broken(hdr(23, 17))
-    source = buffer(picture)
+    source = make_buffer(picture)
     expected = oiio.ImageBufAlgo.fixNonFinite(source, MODES[repair]).get_pixels("float")
     out = run(Sanitize(repair=repair, negative="keep"), {"image": picture})
     assert np.isfinite(expected).all()

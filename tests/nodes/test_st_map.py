@@ -6,8 +6,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.nodes.distort.st_map import StMap
-from oiio_pictures import buffer
-from warps import looked_up
+from oiio_pictures import make_buffer
+from warps import sample_bilinear
 
 
 def positions(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
@@ -29,7 +29,7 @@ def test_it_looks_up_what_the_map_says(run, hdr, edge, size, origin):
     x = x * 0.9
     map_ = st(x, y, origin)
     out = run(StMap(origin=origin, edge=edge.name), {"image": picture, "st": map_})
-    assert np.abs(out - looked_up(picture, x, y, edge.scipy_map)).max() < 1e-5 * picture.max()
+    assert np.abs(out - sample_bilinear(picture, x, y, edge.scipy_map)).max() < 1e-5 * picture.max()
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.5, 3.0])
@@ -37,7 +37,7 @@ def test_it_is_openimageios(run, hdr, shift):
     picture = hdr(32, 16)
     x, y = positions(32, 16)
     map_ = st(x + shift, y, "top left")
-    expected = oiio.ImageBufAlgo.st_warp(buffer(picture), oiio.ImageBuf(map_), "triangle").get_pixels("float")
+    expected = oiio.ImageBufAlgo.st_warp(make_buffer(picture), oiio.ImageBuf(map_), "triangle").get_pixels("float")
     out = run(StMap(origin="top left", edge="clamp"), {"image": picture, "st": map_})
     inside = np.s_[1:-1, 4:-6]
     assert np.abs(out - expected)[inside].max() < 1e-5 * picture.max()

@@ -9,7 +9,7 @@ import pytest
 from halation.graph import Graph
 from halation.nodes import Kind, Node, Temporal, catalogue
 from halation.renderer import RenderRequest
-from sequences import Array, Shot, played, shot_graph
+from sequences import Array, Shot, render_frames, shot_graph
 
 NODES = [node for node in catalogue().values() if issubclass(node, Temporal)]
 by_id = pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
@@ -47,11 +47,13 @@ def replace_frames(graph: Graph, frames: tuple[int, int], **settings: object) ->
 def test_frames_in_any_order_are_the_same(renderer, node):
     shot = shot_of(node)
     graph = shot_graph(node(), shot, FRAMES)
-    whole = played(renderer, graph, shot, WHOLE, output(node))
+    whole = render_frames(renderer, graph, shot, WHOLE, output(node))
     order = (8, 2, 3, 7, 1, 5, 4)
-    for frame, made in zip(order, played(renderer, graph, shot, order, output(node)), strict=True):
+    for frame, made in zip(order, render_frames(renderer, graph, shot, order, output(node)), strict=True):
         assert np.array_equal(made, whole[frame - 1]), frame
-    assert not np.array_equal(whole[7], played(renderer, replace_frames(graph, (8, 8)), shot, [8], output(node))[0])
+    assert not np.array_equal(
+        whole[7], render_frames(renderer, replace_frames(graph, (8, 8)), shot, [8], output(node))[0]
+    )
 
 
 @by_id
@@ -59,21 +61,21 @@ def test_parts_of_a_shot_are_one_run(renderer, node):
     """Without a pre-roll to the bit; with one, as if the shot began there."""
     shot = shot_of(node)
     graph = shot_graph(node(), shot, FRAMES)
-    whole = played(renderer, graph, shot, WHOLE, output(node))
-    second = played(renderer, graph, shot, range(5, 9), output(node))
+    whole = render_frames(renderer, graph, shot, WHOLE, output(node))
+    second = render_frames(renderer, graph, shot, range(5, 9), output(node))
     assert all(np.array_equal(made, whole[frame - 1]) for frame, made in zip(range(5, 9), second, strict=True))
     rolled = replace_frames(graph, FRAMES, preroll=3)
-    whole = played(renderer, rolled, shot, WHOLE, output(node))
-    second = played(renderer, rolled, shot, range(5, 9), output(node))
+    whole = render_frames(renderer, rolled, shot, WHOLE, output(node))
+    second = render_frames(renderer, rolled, shot, range(5, 9), output(node))
     assert all(np.array_equal(made, whole[frame - 1]) for frame, made in zip(range(5, 9), second, strict=True))
-    began = played(renderer, replace_frames(graph, (4, 8)), shot, [7], output(node))[0]
+    began = render_frames(renderer, replace_frames(graph, (4, 8)), shot, [7], output(node))[0]
     assert np.array_equal(whole[6], began)
 
 
 @by_id
 def test_what_is_no_number_is_never_remembered(renderer, node):
     shot = shot_of(node, frozenset((3,)))
-    for made in played(renderer, shot_graph(node(), shot, FRAMES), shot, (3, 4, 8), output(node)):
+    for made in render_frames(renderer, shot_graph(node(), shot, FRAMES), shot, (3, 4, 8), output(node)):
         assert np.isfinite(made).all()
 
 

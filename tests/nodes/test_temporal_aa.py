@@ -14,7 +14,7 @@ from halation.nodes.input.constant import Constant
 from halation.nodes.input.scene import Scene
 from halation.renderer import FrameRenderer, RenderRequest
 from scipy.ndimage import maximum_filter, minimum_filter
-from sequences import flat, played, shot_graph
+from sequences import make_flat_frames, render_frames, shot_graph
 
 SIZE, LAST, FINE = (160, 90), 32, 8
 WEIGHTS = np.array((0.2126, 0.7152, 0.0722))
@@ -118,10 +118,10 @@ def velocity(speed: float, sign: float = 1.0):
 def test_it_follows_the_velocity(renderer):
     """What moves by whole pixels with its velocity stays exactly as it is; the other way it does not."""
     shot = {"image": moving, "velocity": velocity(2.0)}
-    found = played(renderer, shot_graph(TemporalAa(gamma=100.0), shot, (1, 8)), shot, [8])[0]
+    found = render_frames(renderer, shot_graph(TemporalAa(gamma=100.0), shot, (1, 8)), shot, [8])[0]
     np.testing.assert_allclose(found, moving(8), atol=2e-5)
     wrong = shot | {"velocity": velocity(2.0, -1.0)}
-    away = played(renderer, shot_graph(TemporalAa(gamma=100.0), wrong, (1, 8)), wrong, [8])[0]
+    away = render_frames(renderer, shot_graph(TemporalAa(gamma=100.0), wrong, (1, 8)), wrong, [8])[0]
     assert np.abs(away - moving(8)).max() > 0.1
 
 
@@ -137,7 +137,7 @@ def test_it_reads_sharply_between_pixels(renderer, kernel):
     pixels[..., 0] = 0.5
     shot = {"image": wave, "velocity": lambda _: pixels}
     node = TemporalAa(gamma=100.0, kernel=kernel, weigh_light=False)
-    found = played(renderer, shot_graph(node, shot, (1, 12)), shot, [12])[0]
+    found = render_frames(renderer, shot_graph(node, shot, (1, 12)), shot, [12])[0]
     left = np.ptp(found[1, 24:36, 0]) / np.ptp(wave(12)[1, 24:36, 0])
     keep = 0.75 * np.cos(np.pi / 6)
     bilinear = 0.25 * sum(keep**back for back in range(11)) + keep**11 / 0.75
@@ -150,7 +150,7 @@ def test_still_light_is_an_exponential_average(renderer):
     node = TemporalAa(share=0.3, gamma=100.0)
     noise = np.random.default_rng(1).uniform(0.0, 2.0, (8, 5, 6, 4)).astype(np.float32)
     shot = {"image": lambda frame: noise[frame - 1], "velocity": lambda _: np.zeros((5, 6, 4), np.float32)}
-    found = played(renderer, shot_graph(node, shot, (1, 8)), shot, range(1, 9))
+    found = render_frames(renderer, shot_graph(node, shot, (1, 8)), shot, range(1, 9))
     past = toned(noise[0])
     for frame, made in enumerate(found):
         past = past if frame == 0 else 0.7 * past + 0.3 * toned(noise[frame])
@@ -159,14 +159,17 @@ def test_still_light_is_an_exponential_average(renderer):
 
 def test_the_past_is_held_within_what_is_around(renderer):
     """A flat picture that changes changes at once."""
-    shot = {"image": flat(lambda frame: float(frame)), "velocity": lambda _: np.zeros((2, 3, 4), np.float32)}
-    found = played(renderer, shot_graph(TemporalAa(), shot, (1, 4)), shot, [4])[0]
+    shot = {
+        "image": make_flat_frames(lambda frame: float(frame)),
+        "velocity": lambda _: np.zeros((2, 3, 4), np.float32),
+    }
+    found = render_frames(renderer, shot_graph(TemporalAa(), shot, (1, 4)), shot, [4])[0]
     assert np.abs(toned(found) - 0.8).max() < 1e-3
 
 
 def test_what_comes_into_the_picture_is_new(renderer):
     shot = {"image": moving, "velocity": velocity(30.0)}
-    found = played(renderer, shot_graph(TemporalAa(gamma=100.0), shot, (1, 4)), shot, [4])[0]
+    found = render_frames(renderer, shot_graph(TemporalAa(gamma=100.0), shot, (1, 4)), shot, [4])[0]
     np.testing.assert_allclose(found, moving(4), atol=1e-6)
 
 
@@ -183,7 +186,7 @@ def test_what_was_hidden_is_new(renderer):
     found = {}
     for before in (9.0, 8.5, 5.0):
         keys = Keys((Key(2, (before, 0.0, 0.0, 1.0), "constant"), Key(3, (9.0, 0.0, 0.0, 1.0), "constant")))
-        found[before] = played(renderer, graph.animate(Port("depth", "color"), keys), shot, [3])[0]
+        found[before] = render_frames(renderer, graph.animate(Port("depth", "color"), keys), shot, [3])[0]
     np.testing.assert_array_equal(found[9.0], found[8.5])
     np.testing.assert_allclose(toned(found[5.0]), toned(noise[2]), atol=2e-6)
     assert np.abs(found[9.0] - found[5.0]).max() > 0.3
@@ -192,7 +195,7 @@ def test_what_was_hidden_is_new(renderer):
 def test_one_frame_is_the_picture(renderer, hdr):
     picture = hdr(9, 7)
     shot = {"image": lambda _: picture, "velocity": lambda _: np.full((7, 9, 4), 3.0, np.float32)}
-    found = played(renderer, shot_graph(TemporalAa(), shot), shot, [1])[0]
+    found = render_frames(renderer, shot_graph(TemporalAa(), shot), shot, [1])[0]
     np.testing.assert_allclose(found, picture, rtol=2e-3, atol=1e-5)
 
 
@@ -206,8 +209,8 @@ def test_velocity_counts_pixels_of_the_full_size(renderer):
     pixels[..., 0] = 2.0
     shot = {"image": doubled, "velocity": lambda _: pixels}
     node = TemporalAa(gamma=100.0)
-    found = played(renderer, shot_graph(node, shot, (1, 8)), shot, [8], scale=0.5)[0]
-    alone = played(renderer, shot_graph(node, shot, (8, 8)), shot, [8], scale=0.5)[0]
+    found = render_frames(renderer, shot_graph(node, shot, (1, 8)), shot, [8], scale=0.5)[0]
+    alone = render_frames(renderer, shot_graph(node, shot, (8, 8)), shot, [8], scale=0.5)[0]
     np.testing.assert_allclose(found[:, 9:-1], alone[:, 9:-1], atol=2e-5)  # all that was inside all along
 
 
@@ -226,7 +229,7 @@ def test_nothing_flashes_beside_lamps(renderer, gamma):
     pixels = np.zeros((9, 32, 4), np.float32)
     pixels[..., 0] = 0.3
     shot = {"image": lamp, "velocity": lambda _: pixels}
-    found = played(renderer, shot_graph(TemporalAa(gamma=gamma), shot, (1, 24)), shot, range(1, 25))
+    found = render_frames(renderer, shot_graph(TemporalAa(gamma=gamma), shot, (1, 24)), shot, range(1, 25))
     assert max(made.max() for made in found) < 5e3 * 1.005
     assert min(made.min() for made in found) >= -1e-3
 
@@ -234,5 +237,5 @@ def test_nothing_flashes_beside_lamps(renderer, gamma):
 def test_empty_ground_stays_empty(renderer):
     """What passed leaves no trace of coverage where all around is empty."""
     shot = {"image": lamp, "velocity": lambda _: np.zeros((9, 32, 4), np.float32)}
-    found = played(renderer, shot_graph(TemporalAa(), shot, (1, 40)), shot, [40])[0]
+    found = render_frames(renderer, shot_graph(TemporalAa(), shot, (1, 40)), shot, [40])[0]
     assert (found[:, :12, 3] == 0.0).all() and found[4, 15:19, 3].max() > 0.5

@@ -11,7 +11,7 @@ from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.distort.transform import Transform
 from halation.renderer import RenderRequest
-from oiio_pictures import buffer
+from oiio_pictures import make_buffer
 from scipy.ndimage import map_coordinates
 
 KERNELS = Transform.values["kernel"].choices
@@ -62,7 +62,7 @@ def test_turned_it_is_openimageios(run, hdr, kernel, name):
     picture = hdr(48, 40)
     node = Transform(rotation=20.0, position=(2.25, -3.5), kernel=kernel)
     matrix = tuple(float(part) for part in forward(node, (48, 40)).T.ravel())
-    expected = oiio.ImageBufAlgo.warp(buffer(picture), matrix, name, wrap="black").get_pixels("float")
+    expected = oiio.ImageBufAlgo.warp(make_buffer(picture), matrix, name, wrap="black").get_pixels("float")
     error = np.abs(run(node, {"image": picture}) - expected)[12:-12, 12:-12]
     assert error.max() < 1e-5 * picture.max()
 
@@ -174,7 +174,7 @@ def test_the_last_kernel_filters_them_all(run, hdr):
     nodes.append(Transform(rotation=9.0, kernel="lanczos"))
     nodes = [node.with_values(scale=(1.0, 1.0)) for node in nodes]
     matrix = tuple(float(part) for part in product(nodes, (48, 40)).T.ravel())
-    expected = oiio.ImageBufAlgo.warp(buffer(picture), matrix, "lanczos3", wrap="black").get_pixels("float")
+    expected = oiio.ImageBufAlgo.warp(make_buffer(picture), matrix, "lanczos3", wrap="black").get_pixels("float")
     found = run(chain(nodes), {"image": picture}, output="out4")
     # Where all of the kernel lies in the picture: OpenImageIO has its own way with rims.
     within = run(chain(nodes), {"image": np.ones_like(picture)}, output="out4")[..., :1]

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from commands import Cli, command
+from commands import Cli, make_cli
 from exr_files import write_exr
 
 WIDTH, HEIGHT = 48, 32
@@ -20,7 +20,7 @@ Suite = Callable[..., Path]
 def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Cli:
     """`cli("-k", "bloom")` runs `halation test` in the folder of the test."""
     monkeypatch.chdir(tmp_path)
-    return command(capfd, "test")
+    return make_cli(capfd, "test")
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.analysis import Survey, survey
 from halation.render_layers.naming import Renderer, Role
-from raycast import Seen, seen
+from raycast import RaycastImage, cast_rays
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"
@@ -25,7 +25,7 @@ NEON_BEFORE = ROOT / "tests/data/blender50_frame_before.exr"
 WIDTH, HEIGHT = 96, 54
 CAMERA = look_at((2.0, -7.0, 2.5), (0.3, 2.0, 1.5), (1.1, 1.1 * WIDTH / HEIGHT))
 BEFORE = look_at((1.9, -7.1, 2.45), (0.33, 2.0, 1.47), (1.1, 1.1 * WIDTH / HEIGHT))
-SEEN = seen(CAMERA, WIDTH, HEIGHT)
+SEEN = cast_rays(CAMERA, WIDTH, HEIGHT)
 
 
 def written(
@@ -54,7 +54,7 @@ def ndc(camera: Camera) -> tuple[float, ...]:
     return tuple(map(float, np.stack([rows[0], rows[1], rows[2], rows[2]]).T.ravel()))
 
 
-def motion(view: Seen = SEEN, before: Camera = BEFORE) -> np.ndarray:
+def motion(view: RaycastImage = SEEN, before: Camera = BEFORE) -> np.ndarray:
     """Previous minus current in pixels, y up."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
     rows = np.reshape(before.rows, (3, 4))
@@ -183,7 +183,7 @@ def test_depth_without_positions(tmp_path: Path) -> None:
 
 
 def test_the_frame_before_tells_motion(tmp_path: Path) -> None:
-    there = seen(BEFORE, WIDTH, HEIGHT)
+    there = cast_rays(BEFORE, WIDTH, HEIGHT)
     now = written(tmp_path / "2.exr", {"P.XYZ": SEEN.position, "motionvector.XY": -motion() / WIDTH})
     then = written(tmp_path / "1.exr", {"P.XYZ": there.position, "motionvector.XY": motion()})
     assert survey(now).conventions[Role.VELOCITY].kind == ""
@@ -195,7 +195,7 @@ def test_the_frame_before_tells_motion(tmp_path: Path) -> None:
 def test_blender_motion_keeps_its_other_half(tmp_path: Path) -> None:
     four = np.concatenate([motion(), motion()], axis=2)
     now = written(tmp_path / "2.exr", {"Position.XYZ": SEEN.position, "Vector.XYZW": four}, {"Software": "Blender 4.5"})
-    then = written(tmp_path / "1.exr", {"Position.XYZ": seen(BEFORE, WIDTH, HEIGHT).position})
+    then = written(tmp_path / "1.exr", {"Position.XYZ": cast_rays(BEFORE, WIDTH, HEIGHT).position})
     found = survey(now, then).conventions[Role.VELOCITY]
     assert found.measured and found.scale == (-1.0, 1.0, -1.0, 1.0)
 

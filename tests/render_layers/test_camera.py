@@ -13,13 +13,13 @@ from halation.media import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import header_camera, residual_of, solve_camera
-from raycast import seen
+from raycast import cast_rays
 
 ROOT = Path(__file__).parents[2]
 WIDTH, HEIGHT = 96, 54
 FOCAL = (1.1, 1.1 * WIDTH / HEIGHT)
 CAMERA = look_at((2.0, -7.0, 2.5), (0.3, 2.0, 1.0), FOCAL)
-SEEN = seen(CAMERA, WIDTH, HEIGHT)
+SEEN = cast_rays(CAMERA, WIDTH, HEIGHT)
 PIXELS = np.array([WIDTH, HEIGHT])
 
 
@@ -48,7 +48,7 @@ def layers(path: Path) -> list[np.ndarray]:
 @pytest.mark.parametrize("camera", [CAMERA, off_center(CAMERA), rolled(CAMERA)], ids=["plain", "crop", "rolled"])
 @pytest.mark.parametrize("with_depth", [False, True])
 def test_exact_positions_give_the_exact_camera(camera: Camera, with_depth: bool) -> None:
-    view = seen(camera, WIDTH, HEIGHT)
+    view = cast_rays(camera, WIDTH, HEIGHT)
     solved = solve_camera(view.position, view.depth if with_depth else None)
     assert np.allclose(solved.camera.rows, camera.rows, rtol=0.0, atol=1e-10)
     assert solved.residual < 1e-10 and solved.worst < 1e-9 and solved.share == 1.0
@@ -76,7 +76,7 @@ def test_a_render_and_a_crop_of_another_version_have_the_same_camera() -> None:
 @pytest.mark.parametrize("sky", [1e10, np.inf, -np.inf, np.nan, 0.0, 7.5])
 def test_sky_is_left_out(sky: float) -> None:
     camera = look_at((2.0, -7.0, 2.5), (0.3, 2.0, 3.0), FOCAL)
-    view = seen(camera, WIDTH, HEIGHT)
+    view = cast_rays(camera, WIDTH, HEIGHT)
     assert 0.3 < 1.0 - view.hit.mean() < 0.6
     position = np.where(view.hit[..., None], view.position, sky).astype(np.float32)
     solved = solve_camera(position)
@@ -87,7 +87,7 @@ def test_sky_is_left_out(sky: float) -> None:
 
 def test_silhouettes_averaged_with_what_is_behind_do_no_harm() -> None:
     """A renderer that filters positions: sky at 0 drags those of the edges far away."""
-    four = seen(CAMERA, 4 * WIDTH, 4 * HEIGHT)
+    four = cast_rays(CAMERA, 4 * WIDTH, 4 * HEIGHT)
     mixed = four.position.reshape(HEIGHT, 4, WIDTH, 4, 3).mean(axis=(1, 3))
     solved = solve_camera(mixed)
     assert solved.residual < 1e-2 and np.allclose(solved.camera.eye, CAMERA.eye, atol=0.02)
@@ -119,7 +119,7 @@ def test_half_floats_still_tell_the_camera() -> None:
         (np.full((20, 30, 3), np.nan), "too few pixels"),
         (np.ones((1, 1, 3)), "too few pixels"),
         (np.random.default_rng(4).uniform(-1.0, 1.0, (40, 60, 3)), "no pinhole camera"),
-        (seen(look_at((0.0, 0.0, 9.0), (0.1, -3.0, 0.0), FOCAL), 40, 30).position, "in one plane"),
+        (cast_rays(look_at((0.0, 0.0, 9.0), (0.1, -3.0, 0.0), FOCAL), 40, 30).position, "in one plane"),
     ],
     ids=["zero", "nan", "one pixel", "noise", "plane"],
 )
@@ -135,7 +135,7 @@ def test_an_orthographic_camera_is_told() -> None:
 
 
 def test_a_small_picture_has_a_camera() -> None:
-    solved = solve_camera(seen(CAMERA, 7, 5).position)
+    solved = solve_camera(cast_rays(CAMERA, 7, 5).position)
     assert np.allclose(solved.camera.eye, CAMERA.eye, atol=1e-8)
 
 

@@ -13,18 +13,18 @@ from halation.render_layers import evidence
 from halation.render_layers.camera import solve_camera
 from halation.render_layers.conventions import Convention, DepthKind, Motion, Space, habit
 from halation.render_layers.naming import Renderer, Role
-from raycast import Seen, seen
+from raycast import RaycastImage, cast_rays
 
 WIDTH, HEIGHT = 160, 90
 FOCAL = (1.1, 1.1 * WIDTH / HEIGHT)
 CAMERA = look_at((2.0, -7.0, 2.5), (0.3, 2.0, 2.0), FOCAL)
 BEFORE = look_at((1.9, -7.1, 2.45), (0.33, 2.0, 1.97), FOCAL)
-SEEN = seen(CAMERA, WIDTH, HEIGHT)
-WIDE = seen(look_at((2.0, -7.0, 2.5), (0.3, 2.0, 0.5), (0.7, 0.7 * WIDTH / HEIGHT)), WIDTH, HEIGHT)
+SEEN = cast_rays(CAMERA, WIDTH, HEIGHT)
+WIDE = cast_rays(look_at((2.0, -7.0, 2.5), (0.3, 2.0, 0.5), (0.7, 0.7 * WIDTH / HEIGHT)), WIDTH, HEIGHT)
 NEAR, FAR = 2.0, 20.0
 
 
-def depth_of(view: Seen, kind: str) -> np.ndarray:
+def depth_of(view: RaycastImage, kind: str) -> np.ndarray:
     """What a renderer of that habit writes, sky included, in single precision."""
     with np.errstate(divide="ignore"):
         made = {
@@ -127,7 +127,7 @@ def test_positions_tell_the_axes_of_normals(space: Space, turned: np.ndarray, co
 
 def test_a_camera_along_the_axes_leaves_normals_to_the_world() -> None:
     level = look_at((0.5, -7.0, 2.0), (0.5, 2.0, 2.0), FOCAL)
-    view = seen(level, WIDTH, HEIGHT)
+    view = cast_rays(level, WIDTH, HEIGHT)
     assert evidence.normal_by_position(view.normal, view.position, level).kind == Space.WORLD
 
 

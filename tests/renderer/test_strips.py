@@ -12,7 +12,7 @@ from halation.media.pictures import row_writer
 from halation.nodes import Kind, catalogue
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import Writing, run_job
-from oiio_pictures import stored
+from oiio_pictures import write_with_attributes
 
 NODES = catalogue()
 WIDTH, HEIGHT = 700, 900
@@ -32,7 +32,7 @@ def blurred() -> Graph:
 def picture(tmp_path) -> str:
     array = np.random.default_rng(5).gamma(0.6, 1.0, (HEIGHT, WIDTH, 4)).astype(np.float32)
     array[100:140, 50] = np.nan
-    return stored(tmp_path / "in.exr", array, format="float")
+    return write_with_attributes(tmp_path / "in.exr", array, format="float")
 
 
 def written(folder: Path, picture: str, memory: int, **how) -> Path:

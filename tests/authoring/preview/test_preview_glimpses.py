@@ -16,7 +16,7 @@ from halation.nodes import catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
 from halation.renderer import Renderer, RenderRequest
-from previews import IMAGE, chain, pixels, settle, want
+from previews import IMAGE, chain, pixels, request_preview, settle
 
 WIDTH, HEIGHT = 1001, 701
 PICTURE = np.random.default_rng(8).random((HEIGHT, WIDTH, 4), np.float32)
@@ -69,12 +69,12 @@ def whole(engine: Renderer, graph: Graph, port: Port = IMAGE) -> np.ndarray:
 
 
 def test_while_a_value_is_dragged_only_what_is_seen_is_computed(preview, engine, monkeypatch):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse, made = SEEN, texels(engine, monkeypatch)
     before = preview.shown("A")
     for step in range(1, 6):
-        want(preview, chain(stops=1.0 + 0.1 * step), bindings=BINDINGS)
+        request_preview(preview, chain(stops=1.0 + 0.1 * step), bindings=BINDINGS)
         until_seen(preview)
         got, region = part(preview, engine)
         assert preview.seen("A").partial and SEEN.region((WIDTH, HEIGHT)) == region
@@ -87,25 +87,25 @@ def test_while_a_value_is_dragged_only_what_is_seen_is_computed(preview, engine,
 
 
 def test_what_is_there_already_is_not_made_again(preview, engine, monkeypatch):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse, made = SEEN, texels(engine, monkeypatch)
-    want(preview, chain(saturation=0.1), bindings=BINDINGS)
+    request_preview(preview, chain(saturation=0.1), bindings=BINDINGS)
     until_seen(preview)
     assert len(made) == 1, "the blurred picture is whole, and read as it is"
     got, region = part(preview, engine)
     np.testing.assert_array_equal(got, of(whole(engine, chain(saturation=0.1)), region))
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     before = len(made)
     settle(preview)
     assert not preview.seen("A").partial and len(made) == before
 
 
 def test_the_rest_waits_until_the_graph_stays_as_it_is(preview, engine, monkeypatch):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse, made = SEEN, texels(engine, monkeypatch)
-    want(preview, chain(stops=2.0), bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     until_seen(preview)
     seen, count = preview.seen("A"), len(made)
     assert preview.work(0.0) and preview.work(0.0) and len(made) == count and preview.seen("A") == seen
@@ -114,10 +114,10 @@ def test_the_rest_waits_until_the_graph_stays_as_it_is(preview, engine, monkeypa
 
 
 def test_panning_computes_what_comes_into_view(preview, engine):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse = SEEN
-    want(preview, chain(stops=2.0), bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     until_seen(preview)
     first = preview.seen("A")
     a_little = GRID / 2 / WIDTH
@@ -137,10 +137,10 @@ def test_panning_computes_what_comes_into_view(preview, engine):
 
 @pytest.mark.parametrize("box", [(0.0, 0.0, 1.0, 1.0), (0.1, 0.1, 0.9, 0.9)])
 def test_where_most_can_be_seen_all_is_computed_at_once(preview, engine, box):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse = VisibleRegion(box, SEEN.picture, SEEN.names)
-    want(preview, chain(stops=2.0), bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     while preview.work(0.0):
         assert not preview.seen("A").partial
         time.sleep(0.0005)
@@ -148,10 +148,10 @@ def test_where_most_can_be_seen_all_is_computed_at_once(preview, engine, box):
 
 
 def test_zooming_out_while_a_part_is_shown(preview, engine):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse = SEEN
-    want(preview, chain(stops=2.0), bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     until_seen(preview)
     preview.glimpse = None
     settle(preview)
@@ -167,10 +167,10 @@ def test_nodes_that_need_everything_stay_right(preview, engine, id):
         return found.connect(Port("inputs", "image"), Port("light", "image")).connect(Port("light", "out"), light)
 
     ports = {"A": Port("outputs", next(iter(graph(0.0).outputs)))}
-    want(preview, graph(0.0), ports, bindings=BINDINGS)
+    request_preview(preview, graph(0.0), ports, bindings=BINDINGS)
     settle(preview)
     preview.glimpse = SEEN
-    want(preview, graph(1.0), ports, bindings=BINDINGS)
+    request_preview(preview, graph(1.0), ports, bindings=BINDINGS)
     until_seen(preview)
     got, region = part(preview, engine)
     settle(preview)
@@ -181,10 +181,10 @@ def test_nodes_that_need_everything_stay_right(preview, engine, id):
 def test_a_proxy_shows_the_same_part(preview, engine):
     glimpse = VisibleRegion(SEEN.box, (2 * WIDTH, 2 * HEIGHT), SEEN.names)
     bindings = {"image": np.random.default_rng(3).random((2 * HEIGHT, 2 * WIDTH, 4), np.float32)}
-    want(preview, chain(), bindings=bindings, scale=0.5)
+    request_preview(preview, chain(), bindings=bindings, scale=0.5)
     settle(preview)
     preview.glimpse = glimpse
-    want(preview, chain(stops=2.0), bindings=bindings, scale=0.5)
+    request_preview(preview, chain(stops=2.0), bindings=bindings, scale=0.5)
     until_seen(preview)
     got, region = part(preview, engine)
     seen = preview.seen("A")
@@ -195,10 +195,10 @@ def test_a_proxy_shows_the_same_part(preview, engine):
 
 def test_both_sides_that_are_compared_are_seen_in_part(preview, engine):
     ports = {"A": IMAGE, "B": Port("blur", "out"), "depth": Port("light", "out")}
-    want(preview, chain(), ports, bindings=BINDINGS)
+    request_preview(preview, chain(), ports, bindings=BINDINGS)
     settle(preview)
     preview.glimpse = VisibleRegion(SEEN.box, SEEN.picture, frozenset("AB"))
-    want(preview, chain(stops=2.0), ports, bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), ports, bindings=BINDINGS)
     until_seen(preview)
     for name in "AB":
         got, region = part(preview, engine, name)
@@ -211,10 +211,10 @@ def test_both_sides_that_are_compared_are_seen_in_part(preview, engine):
 def test_frames_that_need_the_ones_before_are_made_whole(preview, engine):
     graph = chain().add("trails", LightTrails()).connect(Port("color", "out"), Port("trails", "image"))
     ports = {"A": Port("trails", "out")}
-    want(preview, graph, ports, bindings=BINDINGS)
+    request_preview(preview, graph, ports, bindings=BINDINGS)
     settle(preview)
     preview.glimpse = SEEN
-    want(preview, graph.set(Port("light", "stops"), 2.0), ports, bindings=BINDINGS)
+    request_preview(preview, graph.set(Port("light", "stops"), 2.0), ports, bindings=BINDINGS)
     while preview.work(0.0):
         assert not preview.seen("A").partial
         time.sleep(0.0005)
@@ -222,14 +222,14 @@ def test_frames_that_need_the_ones_before_are_made_whole(preview, engine):
 
 
 def test_a_fault_is_found_as_ever(preview, engine):
-    want(preview, chain(), bindings=BINDINGS)
+    request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse = SEEN
     broken = chain().disconnect(Port("blur", "image"))
-    want(preview, broken, bindings=BINDINGS)
+    request_preview(preview, broken, bindings=BINDINGS)
     settle(preview)
     assert "blur" in preview.faults and preview.shown("A") is not None
-    want(preview, chain(stops=2.0), bindings=BINDINGS)
+    request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     settle(preview)
     assert preview.faults == {}
     np.testing.assert_array_equal(pixels(preview, engine), whole(engine, chain(stops=2.0)))

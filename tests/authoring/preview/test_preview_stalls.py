@@ -13,7 +13,7 @@ from halation.authoring.preview import Preview
 from halation.errors import GraphError
 from halation.graph import Graph, Group, Output, Port, Settings
 from halation.nodes import Kind, catalogue
-from previews import IMAGE, PICTURE, chain, passes, pixels, rendered, settle, want
+from previews import IMAGE, PICTURE, chain, count_passes, pixels, render_port, request_preview, settle
 
 NODES = catalogue()
 FLOAT = {"Combined": "float"}
@@ -43,34 +43,34 @@ def ten() -> Graph:
 def test_going_back_and_forth_finds_what_was_computed(preview, engine):
     steps = [chain(), chain(saturation=0.7), chain(sigma=3.0), chain(stops=2.0)]
     for graph in steps:
-        want(preview, graph)
+        request_preview(preview, graph)
         settle(preview)
-    before = passes(engine)
+    before = count_passes(engine)
     for graph in (*reversed(steps), *steps):  # undo, redo
-        want(preview, graph)
+        request_preview(preview, graph)
         settle(preview)
-        np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, graph))
-    assert passes(engine) == before
+        np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, graph))
+    assert count_passes(engine) == before
 
 
 def test_dragging_the_end_of_a_long_chain_runs_its_end_only(preview, engine):
     graph = ten()
-    want(preview, graph, bindings={})
+    request_preview(preview, graph, bindings={})
     settle(preview)
     for count in range(1, 9):
-        before = passes(engine)
-        want(preview, graph.set(Port("n9", "stops"), count / 4), bindings={})
+        before = count_passes(engine)
+        request_preview(preview, graph.set(Port("n9", "stops"), count / 4), bindings={})
         settle(preview)
-        assert passes(engine) == before + 1
+        assert count_passes(engine) == before + 1
 
 
 def test_another_pass_begins_only_while_there_is_time(preview, engine):
-    want(preview, ten(), bindings={})
+    request_preview(preview, ten(), bindings={})
     while preview.work(0.0):
-        before = passes(engine)
-        want(preview, ten().set(Port("n9", "stops"), 1.0), bindings={})
+        before = count_passes(engine)
+        request_preview(preview, ten().set(Port("n9", "stops"), 1.0), bindings={})
         preview.work(0.0)
-        assert passes(engine) <= before + 1
+        assert count_passes(engine) <= before + 1
     assert preview.shown("A") is not None
 
 
@@ -78,10 +78,10 @@ def test_a_picture_that_is_removed_broken_and_replaced_while_it_is_edited(previe
     file = tmp_path / "shot.exr"
     write_exr(file, {"Combined": PICTURE}, FLOAT)
     bound = {"image": file}
-    want(preview, chain(), bindings=bound)
+    request_preview(preview, chain(), bindings=bound)
     settle(preview)
     shown, whole = preview.shown("A"), file.read_bytes()
-    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain()))
+    np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain()))
 
     def spoil_by(act) -> None:
         act()
@@ -113,7 +113,7 @@ def test_a_picture_that_changes_size_between_planning_and_reading(preview, engin
 
     seen: list[int] = []
     engine.runner._load = slow
-    want(preview, chain(), bindings={"image": file})
+    request_preview(preview, chain(), bindings={"image": file})
     settle(preview)
     assert "render again" in preview.faults["inputs.image"]
     preview.refresh()  # what the watcher asks for
@@ -124,9 +124,9 @@ def test_a_picture_that_changes_size_between_planning_and_reading(preview, engin
 def test_a_panel_whose_port_is_broken_does_not_stop_the_other(preview, engine):
     graph = chain().add("lonely", NODES["exposure"](stops=1.0))
     for stops in (1.0, 2.0, 3.0):
-        want(preview, graph.set(Port("light", "stops"), stops), {"A": IMAGE, "B": Port("lonely", "out")})
+        request_preview(preview, graph.set(Port("light", "stops"), stops), {"A": IMAGE, "B": Port("lonely", "out")})
         settle(preview)
-        np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=stops)))
+        np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=stops)))
         assert preview.fault("B") and preview.fault("A") is None
 
 
@@ -135,9 +135,9 @@ def test_with_no_memory_to_spare_pictures_are_right_and_nothing_piles_up(preview
     sizes = []
     for count in range(6):
         graph = chain(stops=float(count))
-        want(preview, graph)
+        request_preview(preview, graph)
         settle(preview)
-        np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, graph))
+        np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, graph))
         sizes.append(preview.memory[0])
     assert sizes[-1] == sizes[2]
 
@@ -153,21 +153,21 @@ def grouped(depth: int) -> Graph:
 
 def test_what_is_seen_inside_of_a_group_follows_edits_of_it(preview, engine):
     ports = {"A": Port("inner/inner/blur", "out"), "B": Port("inner/inputs", "image")}
-    want(preview, grouped(2), ports)
+    request_preview(preview, grouped(2), ports)
     settle(preview)
-    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(), Port("blur", "out")))
+    np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(), Port("blur", "out")))
     np.testing.assert_array_equal(pixels(preview, engine, "B"), PICTURE)
     body = grouped(1)
     inner = body.nodes["inner"]
     changed = replace(inner, graph=inner.graph.set(Port("light", "stops"), 3.0))
     outer = grouped(2)
     graph = outer.replace("inner", replace(outer.nodes["inner"], graph=body.replace("inner", changed)))
-    want(preview, graph, ports)
+    request_preview(preview, graph, ports)
     settle(preview)
-    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=3.0), Port("blur", "out")))
-    want(preview, chain(), {"A": Port("light", "out")})  # out of the group again
+    np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=3.0), Port("blur", "out")))
+    request_preview(preview, chain(), {"A": Port("light", "out")})  # out of the group again
     settle(preview)
-    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(), Port("light", "out")))
+    np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(), Port("light", "out")))
 
 
 def test_hundreds_of_edits_leave_nothing_behind(preview: Preview, engine):
@@ -204,15 +204,15 @@ def test_hundreds_of_edits_leave_nothing_behind(preview: Preview, engine):
         except GraphError:
             continue
         ports = {"A": IMAGE, "B": Port(rng.choice(list(graph.nodes)), "out")}
-        want(preview, graph, ports, bindings={}, scale=rng.choice((1.0, 0.5)))
+        request_preview(preview, graph, ports, bindings={}, scale=rng.choice((1.0, 0.5)))
         for _ in range(rng.randrange(6)):
             preview.work(0.0)
         if step % 100 == 0:
-            want(preview, ten(), bindings={})
+            request_preview(preview, ten(), bindings={})
             settle(preview)
             assert not preview.faults and not engine.device.take_error()
             preview.clear()
-            want(preview, ten(), bindings={})
+            request_preview(preview, ten(), bindings={})
             settle(preview)
             marks.append((preview.memory[0], len(engine.runner.textures._leases)))
     assert len(set(marks)) == 1, marks
@@ -228,11 +228,11 @@ def test_a_slow_file_lets_frames_go_on_and_edits_through(preview, engine, tmp_pa
     engine.runner._load = slow
     frames = 0
     for count in range(1, 5):
-        want(preview, chain(stops=float(count)))
+        request_preview(preview, chain(stops=float(count)))
         for _ in range(3):
             frames += 1
             preview.work(0.001)
     assert not slept or len(slept) < 2, "no frame waited"
     settle(preview)
     assert frames == 12 and len(slept) == 1, "what is being read is still wanted after an edit"
-    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=4.0)))
+    np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=4.0)))

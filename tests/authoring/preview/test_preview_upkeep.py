@@ -7,7 +7,7 @@ from device_textures import read_texture
 from halation.graph import Graph, Input, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
-from previews import PICTURE, chain, passes, rendered, settle, want
+from previews import PICTURE, chain, count_passes, render_port, request_preview, settle
 
 # --- upkeep ----------------------------------------------------------------------------------------------------------
 
@@ -15,7 +15,7 @@ from previews import PICTURE, chain, passes, rendered, settle, want
 def test_times_of_nodes(preview, engine):
     graph = chain().add("more", Exposure(stops=1.0)).connect(Port("color", "out"), Port("more", "image"))
     graph = graph.connect(Port("more", "out"), Port("outputs", "image"))
-    want(preview, graph)
+    request_preview(preview, graph)
     settle(preview)
     assert preview.timings == {}
     preview.timed = True
@@ -27,24 +27,24 @@ def test_times_of_nodes(preview, engine):
     assert timings["color"].shared == ("more",) and timings["blur"].shared == ()
     assert timings["color"].bytes == timings["light"].bytes == PICTURE.nbytes
     assert timings["blur"].bytes == 2 * PICTURE.nbytes
-    want(preview, graph.set(Port("more", "stops"), 2.0))
+    request_preview(preview, graph.set(Port("more", "stops"), 2.0))
     settle(preview)
     assert preview.timings["light"] == timings["light"] and preview.timings["more"] != timings["more"]
 
 
 def test_clearing_computes_all_anew(preview, engine):
-    want(preview, chain())
+    request_preview(preview, chain())
     settle(preview)
-    before = passes(engine)
+    before = count_passes(engine)
     assert preview.memory[0] > PICTURE.nbytes
     preview.clear()
     assert preview.memory[0] == 0 and preview.shown("A") is None and preview.busy
     settle(preview)
-    assert passes(engine) == 2 * before and preview.shown("A") is not None
+    assert count_passes(engine) == 2 * before and preview.shown("A") is not None
 
 
 def test_closing_leaves_no_lease(preview, engine):
-    want(preview, chain())
+    request_preview(preview, chain())
     preview.work(0.0)
     preview.close()
     assert not engine.runner.textures._leases and not preview.busy
@@ -54,44 +54,46 @@ def test_closing_leaves_no_lease(preview, engine):
 
 
 def test_thumbnails_of_what_is_there(preview, engine):
-    want(preview, chain())
+    request_preview(preview, chain())
     settle(preview)
-    before = passes(engine)
+    before = count_passes(engine)
     for path in ("inputs.image", "light", "blur", "color"):
         texture, fresh = preview.thumbnail(path)
         assert texture.size == (37, 23) and fresh
-    assert preview.thumbnail("nobody") is None and passes(engine) == before
-    light = np.clip(rendered(engine, chain(), Port("light", "out")), 0.0, 1.0)
+    assert preview.thumbnail("nobody") is None and count_passes(engine) == before
+    light = np.clip(render_port(engine, chain(), Port("light", "out")), 0.0, 1.0)
     drawn = read_texture(engine.device, preview.thumbnail("light")[0], np.uint8)[..., :3]
     opaque = PICTURE[..., 3] > 0.9
     assert np.corrcoef(drawn[opaque].ravel(), light[opaque][..., :3].ravel())[0, 1] > 0.8
 
 
 def test_a_large_picture_has_a_small_thumbnail(preview):
-    want(preview, chain(), {"A": Port("inputs", "image")}, bindings={"image": np.ones((300, 640, 4), np.float32)})
+    request_preview(
+        preview, chain(), {"A": Port("inputs", "image")}, bindings={"image": np.ones((300, 640, 4), np.float32)}
+    )
     settle(preview)
     assert preview.thumbnail("inputs.image")[0].size == (160, 75)
 
 
 def test_a_thumbnail_grows_stale_and_fresh_again(preview):
-    want(preview, chain())
+    request_preview(preview, chain())
     settle(preview)
-    want(preview, chain(saturation=0.9))
+    request_preview(preview, chain(saturation=0.9))
     assert preview.thumbnail("blur")[1] and not preview.thumbnail("color")[1]
     settle(preview)
     assert preview.thumbnail("color")[1]
-    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
+    request_preview(preview, chain(saturation=0.9), {"A": Port("light", "out")})
     settle(preview)
-    want(preview, chain(sigma=5.0, saturation=0.9), {"A": Port("light", "out")})
+    request_preview(preview, chain(sigma=5.0, saturation=0.9), {"A": Port("light", "out")})
     settle(preview)
     assert preview.thumbnail("light")[1] and not preview.thumbnail("color")[1]
-    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
+    request_preview(preview, chain(saturation=0.9), {"A": Port("light", "out")})
     assert preview.thumbnail("color")[1]
 
 
 def test_thumbnails_can_be_off(preview, engine):
     preview.thumbnailing = False
-    want(preview, chain())
+    request_preview(preview, chain())
     settle(preview)
     assert preview.thumbnail("color") is None
 
@@ -99,7 +101,7 @@ def test_thumbnails_can_be_off(preview, engine):
 def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
     depth = np.linspace(100.0, 900.0, 37 * 23, dtype=np.float32).reshape(23, 37, 1)
     graph = Graph(inputs={"depth": Input(Kind.FIELD)})
-    want(preview, graph, {"A": Port("inputs", "depth")}, bindings={"depth": depth})
+    request_preview(preview, graph, {"A": Port("inputs", "depth")}, bindings={"depth": depth})
     settle(preview)
     drawn = read_texture(engine.device, preview.thumbnail("inputs.depth")[0], np.uint8)
     assert drawn[0, 0, 0] == 0 and drawn[-1, -1, 0] == 255 and 100 < drawn[11, 18, 0] < 155
@@ -108,7 +110,9 @@ def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
 def test_the_sky_does_not_make_a_thumbnail_of_depth_black(preview, engine):
     depth = np.linspace(2.0, 9.0, 37 * 23, dtype=np.float32).reshape(23, 37, 1)
     depth[:5] = 1e10
-    want(preview, Graph(inputs={"depth": Input(Kind.FIELD)}), {"A": Port("inputs", "depth")}, bindings={"depth": depth})
+    request_preview(
+        preview, Graph(inputs={"depth": Input(Kind.FIELD)}), {"A": Port("inputs", "depth")}, bindings={"depth": depth}
+    )
     settle(preview)
     drawn = read_texture(engine.device, preview.thumbnail("inputs.depth")[0], np.uint8)
     assert drawn[2, 3, 0] == 255 and drawn[5, 0, 0] < 10 and 100 < drawn[14, 18, 0] < 155

@@ -17,8 +17,21 @@ import bpy
 
 sys.path.append(str(Path(__file__).parents[2]))
 
-from bench.peers.harness import arguments, said, timed
-from bench.tasks import FRAMES, PUSH, SEQUENCE, SIGMAS, STEPS, TASKS, Bloom, Lens, Reinhard, Ten, picture, scaled
+from bench.peers.harness import print_seconds, read_arguments, time_runs
+from bench.tasks import (
+    FRAMES,
+    PUSH,
+    SEQUENCE,
+    SIGMAS,
+    STEPS,
+    TASKS,
+    Bloom,
+    Lens,
+    Reinhard,
+    Ten,
+    picture_path,
+    scale_length,
+)
 
 NEW = bpy.app.version[0] >= 5
 """Menus became sockets, and the tree a group."""
@@ -138,7 +151,7 @@ def bloom(tree: Tree, a: Any) -> Any:
     return node.outputs[0]
 
 
-def mapped(tree: Tree, a: Any) -> Any:
+def tone_map(tree: Tree, a: Any) -> Any:
     """T3, by Blender's formula."""
     inputs = {"Image": a, "Key": Reinhard.key}
     return tree.menu("CompositorNodeTonemap", inputs, "tonemap_type", "RH_SIMPLE", "Rh Simple")
@@ -169,9 +182,9 @@ def ten(tree: Tree, a: Any, b: Any) -> Any:
     return over.outputs[0]
 
 
-def displaced(tree: Tree, a: Any, noise: Any) -> Any:
+def displace(tree: Tree, a: Any, noise: Any) -> Any:
     """T6."""
-    push = scaled(PUSH, tree.render.resolution_x)
+    push = scale_length(PUSH, tree.render.resolution_x)
     if not NEW:
         inputs = {"Image": a, "Vector": noise, "X Scale": push, "Y Scale": push}
         return tree.add("CompositorNodeDisplace", inputs)
@@ -179,7 +192,7 @@ def displaced(tree: Tree, a: Any, noise: Any) -> Any:
     return tree.add("CompositorNodeDisplace", {"Image": a, "Displacement": away})
 
 
-def defocused(tree: Tree, a: Any, depth: Any) -> Any:
+def defocus(tree: Tree, a: Any, depth: Any) -> Any:
     """T8, by Blender's circle of confusion."""
     lens = tree.scene.camera.data.dof
     lens.use_dof, lens.focus_distance = True, Lens.focus
@@ -187,7 +200,7 @@ def defocused(tree: Tree, a: Any, depth: Any) -> Any:
     return tree.add("CompositorNodeDefocus", {"Image": a, "Z": depth}, **settings)
 
 
-def smeared(tree: Tree, a: Any, velocity: Any, depth: Any) -> Any:
+def blur_by_motion(tree: Tree, a: Any, velocity: Any, depth: Any) -> Any:
     """T9."""
     inputs = {"Image": a, "Z": depth, "Speed": velocity, "Samples": STEPS, "Shutter": 0.5}
     return tree.add("CompositorNodeVecBlur", inputs)
@@ -197,25 +210,25 @@ WORKS: dict[str, Callable[..., Any]] = {
     "copy": lambda tree, a: a,
     **{name: lambda tree, a, s=sigma: tree.blur(a, s) for name, sigma in SIGMAS.items()},
     "T2": bloom,
-    "T3": mapped,
+    "T3": tone_map,
     "T4": lambda tree, a: tree.sobel(a),
     "T5": ten,
-    "T6": displaced,
-    "T8": defocused,
-    "T9": smeared,
+    "T6": displace,
+    "T8": defocus,
+    "T9": blur_by_motion,
     "T10": ten,
 }
 
 
 def main() -> None:
     """As the other peers."""
-    task, folder, out, repeat, listed = arguments()
+    task, folder, out, repeat, listed = read_arguments()
     if listed:
         print("\n" + json.dumps({"tasks": list(WORKS), "version": bpy.app.version_string}))
         return
     tree = Tree()
     names = (*TASKS[task].inputs, *(["depth"] if task == "T9" else []))
-    paths = [picture(folder, name) for name in names]
+    paths = [picture_path(folder, name) for name in names]
     if task == "T10":
         paths[0] = folder / SEQUENCE.format(1)
     given = [tree.picture(path) for path in paths]
@@ -231,7 +244,7 @@ def main() -> None:
     elif out:
         bpy.ops.render.render(write_still=True)
     else:
-        said(timed(lambda: bpy.ops.render.render(write_still=False), repeat))
+        print_seconds(time_runs(lambda: bpy.ops.render.render(write_still=False), repeat))
 
 
 if __name__ == "__main__":

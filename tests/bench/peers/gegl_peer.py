@@ -8,7 +8,7 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
-from bench.tasks import FRAMES, PUSH, SEQUENCE, SIGMAS, Lens, Ten, picture, scaled
+from bench.tasks import FRAMES, PUSH, SEQUENCE, SIGMAS, Lens, Ten, picture_path, scale_length
 
 TASKS = ("copy", *SIGMAS, "T2", "T3", "T4", "T5", "T6", "T8", "T10")
 
@@ -49,7 +49,7 @@ def whole(text: str) -> str:
 def command(program: str, task: str, folder: Path, size: tuple[int, int], out: Path) -> list[str]:
     """The command line that does a task; graphs are written beside `out`. Of T10, `out` has {} for the frame."""
     width, height = size
-    a, b = picture(folder, "a"), picture(folder, "b")
+    a, b = picture_path(folder, "a"), picture_path(folder, "b")
     single = {
         "copy": "nop",
         "T2": "bloom radius=16 threshold=80 strength=50",
@@ -62,23 +62,24 @@ def command(program: str, task: str, folder: Path, size: tuple[int, int], out: P
         lines = [
             shlex.join([program, "-i", str(graph), "-o", str(out).format(f"{frame:04d}")])
             for frame in range(1, FRAMES + 1)
-            for graph in [_written(out, f"gegl{frame}", ten(folder / SEQUENCE.format(frame), b, size))]
+            for graph in [_write(out, f"gegl{frame}", ten(folder / SEQUENCE.format(frame), b, size))]
         ]
         return ["sh", "-c", " && ".join(lines)]
-    push = 2.0 * scaled(PUSH, width)
+    push = 2.0 * scale_length(PUSH, width)
     move = {"amount_x": push, "amount_y": push, "sampler_type": "linear", "abyss_policy": "clamp"}
-    soft = {"radius": scaled(Lens.largest, width) / 2.0, "linear_mask": "true"}
+    soft = {"radius": scale_length(Lens.largest, width) / 2.0, "linear_mask": "true"}
     graph = {
         "T5": lambda: ten(a, b, size),
         "T6": lambda: whole(node("displace", node("perlin-noise", scale=64), **move) + node("exr-load", path=a)),
         "T8": lambda: whole(
-            node("variable-blur", node("exr-load", path=picture(folder, "mask")), **soft) + node("exr-load", path=a)
+            node("variable-blur", node("exr-load", path=picture_path(folder, "mask")), **soft)
+            + node("exr-load", path=a)
         ),
     }[task]()
-    return [program, "-i", str(_written(out, f"gegl_{task}", graph)), "-o", str(out)]
+    return [program, "-i", str(_write(out, f"gegl_{task}", graph)), "-o", str(out)]
 
 
-def _written(out: Path, name: str, text: str) -> Path:
+def _write(out: Path, name: str, text: str) -> Path:
     path = out.with_name(f"{name}.xml")
     path.write_text(text, "utf-8")
     return path

@@ -14,12 +14,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from bench.tasks import FRAMES, SEQUENCE, TASKS, picture
+from bench.tasks import FRAMES, SEQUENCE, TASKS, picture_path
 
 Work = Callable[..., Any]
 
 
-def arguments() -> tuple[str, Path, str, int, bool]:
+def read_arguments() -> tuple[str, Path, str, int, bool]:
     """Task, folder of the pictures, file to write, repeats, and whether only the tasks are to be listed."""
     reader = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     reader.add_argument("task", nargs="?", default="")
@@ -31,7 +31,7 @@ def arguments() -> tuple[str, Path, str, int, bool]:
     return given.task, given.folder, given.out, given.repeat, given.list
 
 
-def timed(work: Callable[[], Any], repeat: int) -> list[float]:
+def time_runs(work: Callable[[], Any], repeat: int) -> list[float]:
     """Seconds of some runs, after one that does not count."""
     seconds: list[float] = []
     for _ in range(repeat + 1):
@@ -41,29 +41,29 @@ def timed(work: Callable[[], Any], repeat: int) -> list[float]:
     return seconds[1:]
 
 
-def said(seconds: list[float]) -> None:
+def print_seconds(seconds: list[float]) -> None:
     """Print the result."""
     print("\n" + json.dumps({"seconds": seconds}), flush=True)
 
 
 def main(works: Mapping[str, Work], read: Work | None = None, write: Work | None = None) -> None:
     """A peer: `works` make a picture of those that a task takes; they are float arrays, unless `read` says else."""
-    task, folder, out, repeat, listed = arguments()
+    task, folder, out, repeat, listed = read_arguments()
     if listed:
         print(json.dumps({"tasks": list(works)}))
         return
     from bench import exr
 
-    exr.threaded()
+    exr.use_all_processors()
     work, read = works[task], read or exr.read
     write = write or (lambda path, pixels: exr.write(path, pixels, half=True))
     if task == "T10":
-        b = read(picture(folder, "b"))
+        b = read(picture_path(folder, "b"))
         for frame in range(1, FRAMES + 1):
             write(Path(out.format(f"{frame:04d}")), work(read(folder / SEQUENCE.format(frame)), b))
         return
-    given = [read(picture(folder, name)) for name in TASKS[task].inputs]
+    given = [read(picture_path(folder, name)) for name in TASKS[task].inputs]
     if out:
         write(Path(out), work(*given))
     else:
-        said(timed(lambda: work(*given), repeat))
+        print_seconds(time_runs(lambda: work(*given), repeat))

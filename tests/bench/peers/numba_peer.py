@@ -13,7 +13,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[2]))
 
 from bench.peers.harness import main
-from bench.tasks import GOLDEN_ANGLE, LUMINANCE, PUSH, SIGMAS, STEPS, Lens, Occlusion, Ten, scaled
+from bench.tasks import GOLDEN_ANGLE, LUMINANCE, PUSH, SIGMAS, STEPS, Lens, Occlusion, Ten, scale_length
 
 Array = np.ndarray
 compiled: Any = numba.njit(parallel=True, fastmath=True, cache=True)
@@ -62,7 +62,7 @@ def blur(a: Array, sigma: float) -> Array:
 
 
 @compiled
-def graded(a, exposure, gain, lift, power, saturation, top, bend, luminance):
+def grade(a, exposure, gain, lift, power, saturation, top, bend, luminance):
     """The first five nodes of T5."""
     height, width, _ = a.shape
     out, none = np.empty_like(a), np.float32(0.0)
@@ -81,7 +81,7 @@ def graded(a, exposure, gain, lift, power, saturation, top, bend, luminance):
 
 
 @compiled
-def finished(x, soft, b, mix, strength):
+def finish(x, soft, b, mix, strength):
     """The last four nodes of T5."""
     height, width, _ = x.shape
     out = np.empty_like(x)
@@ -103,7 +103,7 @@ def finished(x, soft, b, mix, strength):
 def ten(a: Array, b: Array) -> Array:
     """T5."""
     f = np.float32
-    x = graded(
+    x = grade(
         a,
         f(Ten.exposure),
         np.array(Ten.gain, f),
@@ -114,11 +114,11 @@ def ten(a: Array, b: Array) -> Array:
         f(Ten.curve[1]),
         np.array(LUMINANCE, f),
     )
-    return finished(x, blur(x, Ten.sigma), b, f(Ten.mix), f(Ten.edges))
+    return finish(x, blur(x, Ten.sigma), b, f(Ten.mix), f(Ten.edges))
 
 
 @compiled
-def displaced(a, noise, push):
+def displace(a, noise, push):
     """T6."""
     height, width, channels = a.shape
     out = np.empty_like(a)
@@ -161,7 +161,7 @@ def occlusion(depth, normal, samples, radius, reach, bias, focal, golden):
 
 
 @compiled
-def gathered(a, depth, focus, aperture, largest, samples, golden):
+def blur_by_depth(a, depth, focus, aperture, largest, samples, golden):
     """T8."""
     height, width, _ = a.shape
     out = np.empty_like(a)
@@ -190,7 +190,7 @@ def gathered(a, depth, focus, aperture, largest, samples, golden):
 
 
 @compiled
-def smeared(a, velocity, steps):
+def blur_by_motion(a, velocity, steps):
     """T9."""
     height, width, _ = a.shape
     out = np.empty_like(a)
@@ -213,14 +213,14 @@ def smeared(a, velocity, steps):
 def _occlusion(depth: Array, normal: Array) -> Array:
     far, width = Occlusion, depth.shape[1]
     return occlusion(
-        depth, normal, far.samples, scaled(far.radius, width), far.reach, far.bias, far.focal, GOLDEN_ANGLE
+        depth, normal, far.samples, scale_length(far.radius, width), far.reach, far.bias, far.focal, GOLDEN_ANGLE
     )
 
 
-def _gathered(a: Array, depth: Array) -> Array:
+def _blur_by_depth(a: Array, depth: Array) -> Array:
     width = a.shape[1]
-    aperture, largest = scaled(Lens.aperture, width), scaled(Lens.largest, width)
-    return gathered(a, depth, Lens.focus, aperture, largest, Lens.samples, GOLDEN_ANGLE)
+    aperture, largest = scale_length(Lens.aperture, width), scale_length(Lens.largest, width)
+    return blur_by_depth(a, depth, Lens.focus, aperture, largest, Lens.samples, GOLDEN_ANGLE)
 
 
 WORKS = {name: lambda a, sigma=sigma: blur(a, sigma) for name, sigma in SIGMAS.items()}
@@ -229,9 +229,9 @@ WORKS |= {
     "T5": ten,
     "T10": ten,
     "T7": _occlusion,
-    "T8": _gathered,
-    "T6": lambda a, noise: displaced(a, noise, np.float32(scaled(PUSH, a.shape[1]))),
-    "T9": lambda a, velocity: smeared(a, velocity, STEPS),
+    "T8": _blur_by_depth,
+    "T6": lambda a, noise: displace(a, noise, np.float32(scale_length(PUSH, a.shape[1]))),
+    "T9": lambda a, velocity: blur_by_motion(a, velocity, STEPS),
 }
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[2]))
 
 from bench.peers.harness import main
-from bench.tasks import LUMINANCE, PUSH, SIGMAS, Bloom, Lens, Reinhard, Ten, scaled
+from bench.tasks import LUMINANCE, PUSH, SIGMAS, Bloom, Lens, Reinhard, Ten, scale_length
 
 Array = np.ndarray
 EDGE = cv2.BORDER_REPLICATE
@@ -51,7 +51,7 @@ def bloom(a: Array) -> Array:
     return cv2.addWeighted(a, 1.0, total, Bloom.strength / 3.0, 0.0)
 
 
-def mapped(a: Array) -> Array:
+def tone_map(a: Array) -> Array:
     """T3."""
     light = cv2.transform(a, np.array([[*LUMINANCE, 0.0]], np.float32))
     factor = Reinhard.key / math.exp(cv2.mean(cv2.log(cv2.max(light, 0.0) + Reinhard.delta))[0])
@@ -94,20 +94,22 @@ def ten(a: Array, b: Array) -> Array:
     return cv2.add(drawn, cv2.multiply(b, cv2.merge([1.0 - drawn[..., 3]] * 4)))
 
 
-def displaced(a: Array, noise: Array) -> Array:
+def displace(a: Array, noise: Array) -> Array:
     """T6."""
     height, width = a.shape[:2]
     x, y = np.meshgrid(np.arange(width, dtype=np.float32), np.arange(height, dtype=np.float32))
-    push = scaled(PUSH, width)
+    push = scale_length(PUSH, width)
     across, down = cv2.scaleAdd(noise[..., 0], push, x), cv2.scaleAdd(noise[..., 1], push, y)
     return cv2.remap(a, across, down, cv2.INTER_LINEAR, borderMode=EDGE)
 
 
-def layered(a: Array, depth: Array) -> Array:
+def blur_by_depth(a: Array, depth: Array) -> Array:
     """T8, as far as OpenCV goes: levels of blur mixed by the circle of confusion, without occlusion."""
     far, width = depth[..., 0], a.shape[1]
-    circle = np.minimum(np.abs(far - Lens.focus) / far * scaled(Lens.aperture, width), scaled(Lens.largest, width))
-    levels = [a, *(exact(a, scaled(sigma, width)) for sigma in (2.0, 4.0, 8.0))]
+    circle = np.minimum(
+        np.abs(far - Lens.focus) / far * scale_length(Lens.aperture, width), scale_length(Lens.largest, width)
+    )
+    levels = [a, *(exact(a, scale_length(sigma, width)) for sigma in (2.0, 4.0, 8.0))]
     place = np.clip(np.log2(np.maximum(circle, 1.0)), 0.0, 2.999)
     number = place.astype(np.int32)
     part, made = cv2.merge([place - number] * 4).astype(np.float32), np.empty_like(a)
@@ -122,7 +124,7 @@ WORKS |= {"T5": ten, "T10": ten}
 if FAST:
     WORKS = {name: WORKS[name] for name in ("T1s10", "T5", "T10")}
 else:
-    WORKS |= {"copy": lambda a: a, "T2": bloom, "T3": mapped, "T4": edges, "T6": displaced, "T8": layered}
+    WORKS |= {"copy": lambda a: a, "T2": bloom, "T3": tone_map, "T4": edges, "T6": displace, "T8": blur_by_depth}
 
 if __name__ == "__main__":
     main(WORKS)

@@ -105,19 +105,19 @@ class Device:
 
     def blur(self, of: Texture, into: Texture, sigma: float) -> Texture:
         """At a reduced size where that is exact enough."""
-        found = self.reduced(of, sigma)
+        found = self.reduce(of, sigma)
         if found is None:
             return self.exact(of, into, sigma)
         small, factor, apron = found
         tall = self.texture("tall", small.width, of.height)
-        return self.enlarged(self.enlarged(small, tall, factor, apron, 1), into, factor, apron, 0)
+        return self.enlarge(self.enlarge(small, tall, factor, apron, 1), into, factor, apron, 0)
 
     def exact(self, of: Texture, into: Texture, sigma: float) -> Texture:
         """Rows, then columns."""
         between = self.texture("between", *of.size, into.dtype)
         return self._line(self._line(of, between, sigma, 0), into, sigma, 1)
 
-    def reduced(self, of: Texture, sigma: float) -> tuple[Texture, int, int] | None:
+    def reduce(self, of: Texture, sigma: float) -> tuple[Texture, int, int] | None:
         """The blurred picture at a smaller size, by how much, and the apron around it in pixels of the large one."""
         factor, variance, steps = self._steps(sigma)
         if factor == 1:
@@ -213,16 +213,16 @@ void main() {{
         end = f"ivec2({of.width - 1}, {of.height - 1})"
         return self._along(_strip(taps, count, axis, str(step), end, margin), into, of, axis, count)
 
-    def enlarged(self, of: Texture, into: Texture, factor: int, apron: int, axis: int) -> Texture:
+    def enlarge(self, of: Texture, into: Texture, factor: int, apron: int, axis: int) -> Texture:
         """Back to the large size along one axis, by cubic B-splines."""
-        return self.pixels(f"{enlarging(0, factor, apron, axis)} o = found;", into, of, head=SPLINE)
+        return self.pixels(f"{enlarging_shader(0, factor, apron, axis)} o = found;", into, of, head=SPLINE)
 
     def _along(self, text: str, into: Texture, of: Texture, axis: int, count: int, **values: Any) -> Texture:
         length, lines = into.size if axis == 0 else into.size[::-1]
         return self.run(text, into, [of], (lines, -(-length // count)), **values)
 
 
-def enlarging(number: int, factor: int, apron: int, axis: int) -> str:
+def enlarging_shader(number: int, factor: int, apron: int, axis: int) -> str:
     """GLSL that sets `found` to a pixel of an enlarged texture."""
     spots = [f"ivec2(i + {k}, p.y)" if axis == 0 else f"ivec2(p.x, i + {k})" for k in range(-1, 3)]
     terms = " + ".join(f"w[{k}] * at{number}({spot})" for k, spot in enumerate(spots))

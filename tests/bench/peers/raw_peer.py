@@ -21,8 +21,8 @@ import numpy as np
 sys.path.append(str(Path(__file__).parents[2]))
 
 from bench import exr
-from bench.peers.harness import arguments, said, timed
-from bench.peers.raw_device import SPLINE, Array, Device, enlarging
+from bench.peers.harness import print_seconds, read_arguments, time_runs
+from bench.peers.raw_device import SPLINE, Array, Device, enlarging_shader
 from bench.tasks import (
     FRAMES,
     GOLDEN_ANGLE,
@@ -37,8 +37,8 @@ from bench.tasks import (
     Occlusion,
     Reinhard,
     Ten,
-    picture,
-    scaled,
+    picture_path,
+    scale_length,
 )
 
 Texture = moderngl.Texture
@@ -96,7 +96,7 @@ def bloom(device: Device, a: Texture) -> Texture:
     return device.pixels(body, result(device, a), a, *soft)
 
 
-def mapped(device: Device, a: Texture) -> Texture:
+def tone_map(device: Device, a: Texture) -> Texture:
     """T3: sums of 8 x 8 pixels until there is one."""
     sums = a
     while max(sums.size) > 1:
@@ -118,12 +118,12 @@ def ten(device: Device, a: Texture, b: Texture) -> Texture:
     """T5 in as few passes as can be: grades, the small blur, half of the enlargement, all the rest."""
     body = f"vec4 c = at0(p); vec3 x = c.rgb; {''.join(GRADES)} o = vec4(x, c.a);"
     graded = device.pixels(body, device.texture("graded", *a.size), a)
-    found = device.reduced(graded, Ten.sigma)
+    found = device.reduce(graded, Ten.sigma)
     assert found is not None
     small, factor, apron = found
-    wide = device.enlarged(small, device.texture("wide", a.width, small.height), factor, apron, 0)
+    wide = device.enlarge(small, device.texture("wide", a.width, small.height), factor, apron, 0)
     tail = (
-        f"{enlarging(1, factor, apron, 1)} o = mix(v, found, {Ten.mix}); o.rgb += {Ten.edges} * e; "
+        f"{enlarging_shader(1, factor, apron, 1)} o = mix(v, found, {Ten.mix}); o.rgb += {Ten.edges} * e; "
         "o += (1 - o.a) * at2(p);"
     )
     return sobel(device, tail, result(device, a), graded, wide, b, head=SPLINE)
@@ -143,11 +143,11 @@ def ten_apart(device: Device, a: Texture, b: Texture) -> Texture:
     return device.pixels("o = at0(p); o += (1 - o.a) * at1(p);", result(device, a), drawn, b)
 
 
-def displaced(device: Device, a: Texture, noise: Texture) -> Texture:
+def displace(device: Device, a: Texture, noise: Texture) -> Texture:
     """T6."""
     body = (
-        f"vec2 u = clamp(vec2(p) + {scaled(PUSH, a.width)} * at1(p).xy, vec2(0), vec2(last)); ivec2 i = ivec2(u), "
-        "j = min(i + 1, last); vec2 f = u - i; o = mix(mix(at0(i), at0(ivec2(j.x, i.y)), f.x), "
+        f"vec2 u = clamp(vec2(p) + {scale_length(PUSH, a.width)} * at1(p).xy, vec2(0), vec2(last)); "
+        "ivec2 i = ivec2(u), j = min(i + 1, last); vec2 f = u - i; o = mix(mix(at0(i), at0(ivec2(j.x, i.y)), f.x), "
         "mix(at0(ivec2(i.x, j.y)), at0(j), f.x), f.y);"
     )
     return device.pixels(body, result(device, a), a, noise)
@@ -161,7 +161,7 @@ def points(places: list[tuple[float, float]]) -> str:
 
 def occlusion(device: Device, depth: Texture, normal: Texture) -> Texture:
     """T7."""
-    far, count, radius = Occlusion, Occlusion.samples, scaled(Occlusion.radius, depth.width)
+    far, count, radius = Occlusion, Occlusion.samples, scale_length(Occlusion.radius, depth.width)
     head = (
         points([((i + 0.5) / count * radius, i * GOLDEN_ANGLE) for i in range(count)])
         + f"""
@@ -183,13 +183,13 @@ o = vec4(max(0, 1 - 2 * s * {far.reach} / {count}));"""
     return device.pixels(body, device.texture("open", *depth.size, "f4", 1), depth, normal, head=head)
 
 
-def gathered(device: Device, a: Texture, depth: Texture) -> Texture:
+def blur_by_depth(device: Device, a: Texture, depth: Texture) -> Texture:
     """T8."""
-    largest = scaled(Lens.largest, a.width)
+    largest, aperture = scale_length(Lens.largest, a.width), scale_length(Lens.aperture, a.width)
     head = (
         points([(math.sqrt(i / Lens.samples) * largest, i * GOLDEN_ANGLE) for i in range(1, Lens.samples)])
         + f"""
-float circle(float z) {{ return min(abs(z - {Lens.focus}) / z * {scaled(Lens.aperture, a.width)}, {largest}); }}"""
+float circle(float z) {{ return min(abs(z - {Lens.focus}) / z * {aperture}, {largest}); }}"""
     )
     body = f"""
 float z = at1(p).x, own = circle(z), total = 1; o = at0(p);
@@ -202,7 +202,7 @@ o /= total;"""
     return device.pixels(body, result(device, a), a, depth, head=head)
 
 
-def smeared(device: Device, a: Texture, velocity: Texture) -> Texture:
+def blur_by_motion(device: Device, a: Texture, velocity: Texture) -> Texture:
     """T9."""
     body = (
         f"vec2 u = at1(p).zw; o = vec4(0); for (int i = 0; i < {STEPS}; ++i) o += at0(clamp(p + ivec2(round(u * "
@@ -211,29 +211,29 @@ def smeared(device: Device, a: Texture, velocity: Texture) -> Texture:
     return device.pixels(body, result(device, a), a, velocity)
 
 
-def blurred(device: Device, a: Texture, sigma: float) -> Texture:
+def blur(device: Device, a: Texture, sigma: float) -> Texture:
     """T1. A small sigma is exact at full size only."""
     return (device.exact if sigma < 5.0 else device.blur)(a, result(device, a), sigma)
 
 
 WORKS: Mapping[str, Shaded] = {
     "copy": lambda device, a: a,
-    **{name: lambda device, a, sigma=sigma: blurred(device, a, sigma) for name, sigma in SIGMAS.items()},
+    **{name: lambda device, a, sigma=sigma: blur(device, a, sigma) for name, sigma in SIGMAS.items()},
     "T2": bloom,
-    "T3": mapped,
+    "T3": tone_map,
     "T4": lambda device, a: sobel(device, "o = vec4(e, v.a);", result(device, a), a),
     "T5": ten_apart if os.environ.get("RAW_UNFUSED") else ten,
-    "T6": displaced,
+    "T6": displace,
     "T7": occlusion,
-    "T8": gathered,
-    "T9": smeared,
+    "T8": blur_by_depth,
+    "T9": blur_by_motion,
     "T10": ten,
 }
 
 
 def read(folder: Path, name: str) -> Array:
     """A picture, half if it is one."""
-    return exr.read(picture(folder, name), half=name in "ab")
+    return exr.read(picture_path(folder, name), half=name in "ab")
 
 
 def sequence(device: Device, folder: Path, out: str) -> None:
@@ -263,11 +263,11 @@ def sequence(device: Device, folder: Path, out: str) -> None:
 
 def main() -> None:
     """As the other peers."""
-    task, folder, out, repeat, listed = arguments()
+    task, folder, out, repeat, listed = read_arguments()
     if listed:
         print(json.dumps({"tasks": list(WORKS)}))
         return
-    exr.threaded()
+    exr.use_all_processors()
     device = Device()
     if task == "T10":
         sequence(device, folder, out)
@@ -281,7 +281,7 @@ def main() -> None:
     if out:
         exr.write(Path(out), np.asarray(work()), half=True)
     else:
-        said(timed(work, repeat))
+        print_seconds(time_runs(work, repeat))
 
 
 if __name__ == "__main__":
