@@ -26,7 +26,7 @@ class Camera(Struct, frozen=True):
 
     @property
     def eye(self) -> Vector3:
-        """Where it stands."""
+        """The position of the camera in the world."""
         x, y, z = (row[3] for row in _in_fours(self.inverse))
         return x, y, z
 
@@ -71,7 +71,7 @@ class Camera(Struct, frozen=True):
         return tuple(rows)
 
     def project(self, place: Vector3) -> Vector3:
-        """u, v and depth of a place in the world; what lies in the camera's own plane has none and raises."""
+        """u, v and depth of a place in the world. Raises ZeroDivisionError for a place in the camera's own plane."""
         u, v, depth = (_dot(self._row(index), place) + self.rows[4 * index + 3] for index in range(3))
         return u / depth, v / depth, depth
 
@@ -142,6 +142,6 @@ def _unit(a: Vector3) -> Vector3:
 
 
 def _without(a: Vector3, along: Vector3) -> Vector3:
-    """What of `a` is at right angles to a unit vector."""
+    """The part of `a` that is at right angles to a unit vector."""
     share = _dot(a, along)
     return a[0] - share * along[0], a[1] - share * along[1], a[2] - share * along[2]

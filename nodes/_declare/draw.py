@@ -1,4 +1,4 @@
-"""What a filter may draw. Only the compiler knows how."""
+"""What a filter can draw. The compiler implements it."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class ShaderText(Struct, frozen=True):
 
 
 class Draw(Protocol):
-    """Records what a node wants drawn; nothing runs yet, but sizes are known.
+    """Records the draws of a node. Nothing runs yet, but sizes are known.
 
     Functions are looked up in the node's own GLSL file. `result` is the type of what is drawn.
     """
@@ -170,7 +170,7 @@ class Draw(Protocol):
         size: Size | None = None,
         result: Socket | None = None,
     ) -> Drawn:
-        """Run a program that is no function of ours over every pixel of `size`; four channels come out.
+        """Run a complete shader program from outside over every pixel of `size`; four channels come out.
 
         Pictures are by the names of its samplers, which filter (bilinear) and end in their outermost pixels. What it
         does not draw stays black.

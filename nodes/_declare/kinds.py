@@ -1,4 +1,4 @@
-"""Socket kinds: what travels on links. All that the machine must know of a kind stands here, in one table.
+"""Socket kinds: what travels on links. One table declares everything that the rest of the code needs of a kind.
 
 A kind is carried in one of three ways, which decides how it is lowered:
 
@@ -30,7 +30,7 @@ class Kind(StrEnum):
 
     @property
     def facts(self) -> KindFacts:
-        """All that the machine knows of it."""
+        """The declaration of the kind."""
         return KINDS[self]
 
     @property

@@ -1,4 +1,4 @@
-"""Lights as a value: a flat list of numbers, as many for every light."""
+"""Lights as a value: a flat list of numbers, equally many for every light."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ EVERYTHING = "*"
 
 
 def matte_of(mattes: Sequence[Matte], kind: str) -> Matte | None:
-    """The one that tells apart what is wanted, or the only one that does not say what it tells apart."""
+    """The cryptomatte of a kind (object, material, asset), or the only one whose kind is not known."""
     plain = [matte for matte in mattes if not matte.kind]
     return next((matte for matte in mattes if matte.kind == kind), plain[0] if len(plain) == 1 else None)
 

@@ -82,7 +82,7 @@ class Node:
         cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
 
     def identity(self) -> str | None:
-        """The input that passes through unchanged at these values, or None. Not asked while a value is wired."""
+        """The input that passes through unchanged at these values, or None. It is not called while a value is wired."""
         return None
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
@@ -92,7 +92,7 @@ class Node:
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         """The frames of an input that this frame is made of, by input; one that is not named is seen at `frame` alone.
 
-        For filters, which get at them by `draw.at`.
+        For filters, which read those frames by `draw.at`.
         """
         return {}
 

@@ -1,4 +1,4 @@
-"""Changes of color that OpenColorIO knows how to compute."""
+"""Changes of color that OpenColorIO computes."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ things; `s` seconds; `scene` the scene's own units (radiance, depth).
 
 
 def unit_factor(unit: Unit | None, scale: float, height: float) -> float:
-    """What turns a number into working units, for a proxy of `scale` and a picture `height` pixels high."""
+    """The factor from a unit to working units, for a proxy of `scale` and a picture `height` pixels high."""
     return {"px": scale, "height": height, "deg": math.pi / 180.0}.get(unit or "", 1.0)
 
 
@@ -193,7 +193,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
     elif base is str:
         facts["type"] = "text"
     else:
-        raise TypeError(f"value '{name}': {hint!r} is no type that a value can have")
+        raise TypeError(f"value '{name}': a value cannot have the type {hint!r}")
     for note in notes:
         if isinstance(note, Slider):
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "unit")}

@@ -14,7 +14,7 @@ _NOTHING = 0.1
 
 
 class VariableBlur(Filter):
-    """Blur by a mask: where the field is 1 with the whole sigma, where it is 0 not at all.
+    """Blur by a mask: with the whole sigma where the field is 1, not at all where it is 0.
 
     Every pixel shows its surroundings through a Gaussian of its own sigma, `sigma * field`. It is mixed from three of a
     ladder of blurs, three to an octave: with the right variance, as near as can be in shape, and nowhere negative.

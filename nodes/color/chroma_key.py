@@ -18,7 +18,7 @@ class ChromaKey(Pointwise):
     screen: Annotated[RGBA, Doc("The color of the empty screen, as it is lit.")] = (0.06, 0.5, 0.1, 1.0)
     method: Annotated[
         Literal["difference", "distance"],
-        Doc("Difference keeps hair, smoke and shadows; distance is for screens of a color that is no primary."),
+        Doc("Difference keeps hair, smoke and shadows; distance is for screens that are neither green, blue nor red."),
     ] = "difference"
     limit: Annotated[
         Literal["maximum", "average"],

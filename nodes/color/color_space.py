@@ -8,7 +8,7 @@ class ColorSpace(Filter):
     """Convert colors from one space to another: primaries, white point and encoding.
 
     Between nodes pictures are in the working space, linear Rec.709 unless the graph says otherwise: convert to another
-    space for an operation that wants it, and back. A space of the graph's color config is named in `source_name` or
+    space for an operation that needs it, and back. A space of the graph's color config is named in `source_name` or
     `target_name`. To the HDR displays (PQ, HLG) 1 is 100 cd/m2. Computed by OpenColorIO's own GLSL, exactly; what the
     config does not have comes from the ACES studio config. Works on the color without its alpha; alpha stays.
     """

@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
 
 
 class Sanitize(Filter):
-    """Repair pixels that are no numbers, infinite, too bright or negative, before they spread.
+    """Repair pixels that are NaN, infinite, too bright or negative, before they spread.
 
     `neighbors` gives a broken channel the average of the sound ones among the 3 x 3 pixels around, or 0 where there is
     none, as OpenImageIO's fixNonFinite; sound channels of the same pixel stay.

@@ -69,12 +69,12 @@ class LensDistortion(Filter):
 
     def _bounds(self, x: float, y: float) -> tuple[float, float | None]:
         """How far from the axis straight points lie that are seen at most so far across and down, and how far they
-        move, all in focal lengths; None where nobody knows."""
+        move, all in focal lengths; None where that is unknown."""
         radius = math.hypot(x, y)
         if self.direction == "undistort":
             pushed = sum(abs(k) * radius**power for k, power in ((self.k1, 3), (self.k2, 5), (self.k3, 7)))
             return radius, pushed + 3.0 * radius**2 * (abs(self.p1) + abs(self.p2))
-        if self.p1 or self.p2 or self.edge != "black":  # what a bend hides that turns back lies anywhere
+        if self.p1 or self.p2 or self.edge != "black":  # behind a bend that turns back, the source can lie anywhere
             return _ENDLESS, None
         step = radius / _STEPS
         straight = bent = moved = 0.0

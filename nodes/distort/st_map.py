@@ -7,7 +7,7 @@ class StMap(Filter):
     """Show what a map points to: every pixel of the map holds a position in the picture, from 0 to 1.
 
     Maps come from lens calibration and render passes (UV). A pixel whose neighbors point far apart averages what lies
-    between. Where the map is no number, nothing is shown.
+    between. Where the map is NaN, nothing is shown.
     """
 
     image = Image()

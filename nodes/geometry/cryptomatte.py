@@ -15,7 +15,7 @@ class Cryptomatte(Reader):
     """
 
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
-    layer: Annotated[Literal["object", "material", "asset"], Doc("What is told apart.")] = "object"
+    layer: Annotated[Literal["object", "material", "asset"], Doc("What has a matte of its own.")] = "object"
     pick: Annotated[
         str,
         Picks("layer"),
@@ -27,7 +27,7 @@ class Cryptomatte(Reader):
     invert: Annotated[bool, Doc("Everything else.")] = False
 
     matte = Output(Field(doc="How much of each pixel is covered by what was picked, 0..1."))
-    colors = Output(Image(doc="A color for every id, to see which is where."))
+    colors = Output(Image(doc="A color for every id, to find them in the picture."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         matte = matte_of(draw.render(self.path).mattes, self.layer)

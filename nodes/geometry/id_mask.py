@@ -26,7 +26,7 @@ class IdMask(Filter):
     invert: Annotated[bool, Doc("Mask everything else.")] = False
 
     mask = Output(Field(doc="1 or 0."))
-    colors = Output(Image(doc="A color for every number, to see which is where; 0 is black."))
+    colors = Output(Image(doc="A color for every number, to find them in the picture; 0 is black."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         mask, spans = draw.point("id_mask_none", result=Field()), _spans(self.pick)
@@ -41,5 +41,5 @@ class IdMask(Filter):
 
 
 def _spans(pick: str) -> list[tuple[float, float]]:
-    """The spans that a text names; what is no number is skipped."""
+    """The spans of numbers that a text names; other words are skipped."""
     return [(float(match[1]), float(match[2] or match[1])) for match in _SPAN.finditer(pick)]

@@ -106,7 +106,7 @@ class ReadRender(Reader):
         return outputs
 
     def _list_chosen_layers(self) -> dict[str, str]:
-        """The layers that somebody chose, by role."""
+        """The layers that the user chose, by role."""
         chosen = {value.role: str(getattr(self, value.name)) for value in self.values.values() if value.type == "text"}
         return {role: layer for role, layer in chosen.items() if role and layer}
 
@@ -116,7 +116,7 @@ class ReadRender(Reader):
         kind = meaning.kind if meaning.kind in _KINDS else "planar"
         focal, center = (render.camera.focal, render.camera.center) if render.camera else ((1.0, 1.0), (0.5, 0.5))
         if kind == "radial" and not render.camera:
-            kind = "planar"  # nobody knows how wide the view is
+            kind = "planar"  # without a camera the width of the view is unknown
         if kind == "planar" and (meaning.scale, meaning.offset) == ((1.0,), (0.0,)):
             return stored
         return draw.point(

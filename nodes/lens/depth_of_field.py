@@ -222,7 +222,7 @@ class DepthOfField(Filter):
         )
 
     def _bokeh(self, draw: Draw, finest: float, stretch: tuple[float, float]) -> dict[str, Any]:
-        """Of the aperture, squeezed along both axes: what the gathering functions are told of it."""
+        """The arguments of the gathering functions that describe the aperture, squeezed along both axes."""
         inner, area, middle = 1.0, math.pi, 0
         if self.aperture == "blades":
             inner = 1.0 + (math.cos(math.pi / self.blades) - 1.0) * (1.0 - self.roundness)

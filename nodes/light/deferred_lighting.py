@@ -30,7 +30,7 @@ TILE = 16
 """Pixels across a tile."""
 
 FEW = 8
-"""Up to so many lights, each pixel asks all of them: sorting them into tiles costs more than it saves."""
+"""Up to so many lights, each pixel loops over all of them: sorting them into tiles costs more than it saves."""
 
 _HERE = ("albedo", "material", "occlusion", "normal", "place")
 """What a pixel is lit by that is its own; lights and what they reach may be read anywhere."""

@@ -62,7 +62,7 @@ class ImageBasedLight(Filter):
     ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     specular: Annotated[
-        Fraction, Doc("How much surfaces reflect that are no metal: 0.5 is 4 percent head on, as most things do.")
+        Fraction, Doc("How much non-metals reflect: 0.5 is 4 percent head on, as for most materials.")
     ] = 0.5
 
     out = Output(Image(doc="All of it, opaque where there is a surface."))

@@ -6,7 +6,7 @@ from .._declare import Doc, Image, Pointwise, ProxyNote, Slider
 class Halftone(Pointwise):
     """Print the picture: dots or lines of ink on white paper, which make tones by the area that they cover.
 
-    Every screen covers exactly the share of the paper that the tone asks for, in linear light, so that from afar the
+    Every screen covers exactly the share of the paper that the tone needs, in linear light, so that from afar the
     colors are right up to white (Demichel's equation; full gray component replacement). Four inks lie at the
     printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
     """

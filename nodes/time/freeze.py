@@ -23,7 +23,7 @@ class Freeze(Filter):
             12,
             unit="count",
             minimum=0,
-            doc="0 holds one frame for ever; above, so many frames pass until another one is shown: 2 is on twos.",
+            doc="0 holds one frame forever; otherwise each held frame is shown for so many frames: 2 is on twos.",
         ),
     ] = 0
 

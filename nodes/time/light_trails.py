@@ -15,7 +15,7 @@ class LightTrails(Temporal):
     image = Image()
     fade: Annotated[
         Literal["time", "never"],
-        Doc("Trails fade with time, or stay for ever, as stars and the lamps of cars on film."),
+        Doc("Trails fade with time, or stay forever, as stars and the lamps of cars on film."),
     ] = "time"
     time: Annotated[
         float,

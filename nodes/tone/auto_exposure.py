@@ -32,7 +32,7 @@ class AutoExposure(Filter):
     Histogram meters the geometric mean of the luminances between two percentiles, from 128 bins of a quarter stop
     between 2^-16 and 2^16 (a pixel counts for its two nearest bins by distance, so that their mean is exact). Average
     and log average (Reinhard et al. 2002) are of all pixels; maximum makes the brightest pixel 1. Pixels count by
-    their alpha, those that are no numbers not at all. `exposure` is in stops, `average` the luminance metered.
+    their alpha; NaN does not count. `exposure` is in stops, `average` the luminance metered.
     """
 
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
@@ -41,7 +41,9 @@ class AutoExposure(Filter):
     mask = Field(1.0, doc="How much each pixel counts.")
     metering: Annotated[
         Literal["histogram", "log average", "average", "maximum"],
-        Doc("Histogram leaves extremes out. Log average heeds dark areas, average bright ones; maximum clips nothing."),
+        Doc(
+            "Histogram leaves extremes out. Log average follows dark areas, average bright ones; maximum clips nothing."
+        ),
     ] = "histogram"
     low: Annotated[Fraction, Doc("Histogram: this share of the pixels is too dark to count.")] = 0.1
     high: Annotated[Fraction, Doc("Histogram: all above this share is too bright to count.")] = 0.9

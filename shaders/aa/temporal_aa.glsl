@@ -104,7 +104,7 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of, and not negative.
     vec3 rgb = max(temporal_aa_rgb(mixed), darkest);
     mixed.xyz = temporal_aa_mixed(rgb * min(1.0, brightest / max(luminance(rgb), 1e-6)));
-    // What is left of the past where all around is empty is no coverage.
+    // Where everything around is empty, the past adds no coverage.
     mixed.w = squares.w == 0.0 ? 0.0 : clamp(mixed.w, 0.0, 1.0);
     return mixed;
 }

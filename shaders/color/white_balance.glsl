@@ -4,7 +4,7 @@
 const float white_balance_daylight = 6504.0;  // correlated color temperature of D65
 const float white_balance_offset = 0.0032647;  // how far D65 lies from the Planckian locus: its Duv
 const float white_balance_unit = 1.0 / 3000.0;  // Duv of one step of tint, as in Adobe's raw converter
-const float white_balance_darkest = 0.02;  // of a cone: less is no light that an eye could take for white
+const float white_balance_darkest = 0.02;  // of a cone: no eye takes darker light for white
 
 // Matrices are written by rows and multiplied from the left. Rec.709 and D65 to XYZ: IEC 61966-2-1.
 const mat3 WHITE_BALANCE_XYZ = mat3(

@@ -72,7 +72,7 @@ void depth_of_field_apart(out vec4 stays, out vec4 clean) {
 bool depth_of_field_hides(float other, float here) { return here - other >= 1.0 && abs(other) >= 1.0; }
 
 // The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges. What
-// edges gain, as those of a lamp behind something dark do, is taken from nobody.
+// edges gain, as those of a lamp behind something dark do, is taken from no other pixel.
 vec4 depth_of_field_whole() {
     const ivec2 beside[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
     float here = radius_at(pixel);

@@ -2,7 +2,7 @@
 #include "lib/alpha.glsl"
 #include "lib/finite.glsl"
 
-// The light of a pixel without its alpha, and how much it counts: by what it covers, nothing where it is no number.
+// The light of a pixel without its alpha, and how much it counts: by what it covers, 0 where it is NaN.
 vec4 metered(vec4 image) {
     if (!is_finite(image) || image.a <= ALPHA_NONE) return vec4(0.0);
     return vec4(max(straight(image).rgb, 0.0), image.a);

@@ -36,7 +36,7 @@ vec3 ggx_sky(vec3 f0, float nv, float alpha) {
     return f0 * parts.x + parts.y;
 }
 
-// Phong's lobe around the mirrored way to the eye, as energy wants it (Lafortune and Willems 1994). For small alphas as
+// Phong's lobe around the mirrored way to the eye, scaled so that it conserves energy (Lafortune and Willems 1994). For small alphas as
 // wide as that of facets; for the largest, its exponent is 1.
 float phong_lobe(float rl, float alpha) {
     float power = 0.5 / (alpha * alpha) + 0.5;

@@ -16,7 +16,7 @@ vec2 fourier_root(int frequency, int points, float direction) {
 // a / b, exact for all positions: dividing integers would cost the software rasterizer more than the rest of a stage.
 int fourier_quotient(int a, int b) { return int((float(a) + 0.5) / float(b)); }
 
-// The first stage along an axis: transforms of every `apart`-th pixel. What is no number counts as black, and so does
+// The first stage along an axis: transforms of every `apart`-th pixel. NaN counts as black, and so does
 // what lies behind the first `terms` of them.
 vec4 fourier_first(int axis, int terms, int radix, int apart) {
     int start = fourier_quotient(pixel[axis], radix);

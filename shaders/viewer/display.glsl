@@ -2,7 +2,7 @@
 #include "viewer/palette.glsl"
 #include "viewer/view.glsl"
 
-// One panel: pictures a and b, placed on it, as a person sees them. Rows run downwards, as in pictures.
+// One panel: pictures a and b, placed on it, as the user sees them. Rows run downwards, as in pictures.
 // DATA, VIEWED, COMPARE and the names of modes come before this file, and view_transform() where it is needed.
 
 uniform sampler2D a;
