@@ -39,13 +39,13 @@ class Batch:
         self._progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
-def middle(renderer: Renderer, graph: Graph) -> int:
+def middle_frame(renderer: Renderer, graph: Graph) -> int:
     """The frame that stands for all of a graph: by then something has happened."""
     return sum(renderer.frames(graph)) // 2
 
 
 @contextmanager
-def batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
+def open_batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     """Make the folder, open a device and show the bar; at the end both are closed.
 
     `budget` is how many bytes of results may stay on the device from one picture to the next.
@@ -60,13 +60,13 @@ def batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     except OSError as fault:
         raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
     renderer = Renderer(open_device(), budget=budget)
-    with shown(renderer, total) as work:
+    with show_progress(renderer, total) as work:
         yield work
     renderer.close()
 
 
 @contextmanager
-def shown(renderer: Renderer, total: int) -> Iterator[Batch]:
+def show_progress(renderer: Renderer, total: int) -> Iterator[Batch]:
     """Show the bar of what somebody else's device does."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn

@@ -11,8 +11,20 @@ import typer
 
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
-from .batch import shown
-from .options import AsJson, Form, GraphFile, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .batch import show_progress
+from .options import (
+    AsJson,
+    Form,
+    GraphFile,
+    Inputs,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import print_json
 from .watchdog import Timeout, rerun_watched
 
@@ -63,26 +75,26 @@ def bench(
     depth = parsing.precision(precision) if precision is not None else None
     way = parsing.form(form) if form is not None else None
     canvas, proxy, chosen = parsing.size(size), parsing.scale(scale), parsing.frames(frame, frames)
-    whole = opened(graph, parsing.sets(sets))
+    whole = open_graph(graph, parsing.sets(sets))
     report_problems(graph, whole)
     if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
-    bindings, targets = bound(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
+    bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
     at = chosen or (LazyResourceProvider().frames(whole, bindings)[0],)
     renderer = Renderer(open_device(way), budget=0)
-    wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
-    with shown(renderer, len(at)) as work:
-        found = measured(renderer, whole, wanted, at, repeats, warm_up, work.step)
-    if not found.passes:
+    request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
+    with show_progress(renderer, len(at)) as work:
+        timings = measured(renderer, whole, request, at, repeats, warm_up, work.step)
+    if not timings.passes:
         raise UsageError(f"{graph}: there is nothing to measure: its outputs are made without a single pass")
-    compared = against(found, compare) if compare else None
-    slower = compared.slower(limit) if compared and limit is not None else ()
+    comparison = against(timings, compare) if compare else None
+    slower = comparison.slower(limit) if comparison and limit is not None else ()
     if as_json:
-        print_json(_as_json(graph, found, renderer.device.description, at, compared, slower))
+        print_json(_as_json(graph, timings, renderer.device.description, at, comparison, slower))
     else:
-        _print(found, passes, renderer.device.target.software, repeats)
-        if compared:
-            _print_compared(compared, slower, limit, renderer.device.description)
+        _print(timings, passes, renderer.device.target.software, repeats)
+        if comparison:
+            _print_compared(comparison, slower, limit, renderer.device.description)
     return 1 if slower else 0
 
 
@@ -93,45 +105,45 @@ def _limit(text: str | None) -> float | None:
     if text is None:
         return None
     try:
-        found = float(text.removesuffix("x"))
+        ratio = float(text.removesuffix("x"))
     except ValueError:
-        found = math.nan
-    if not 0.0 < found < math.inf:
+        ratio = math.nan
+    if not 0.0 < ratio < math.inf:
         raise UsageError(f"--fail-over {text}: write how many times as long is too long, such as 1.2")
-    return found
+    return ratio
 
 
-def _print(found: Bench, by_pass: bool, software: bool, repeats: int) -> None:
+def _print(timings: Bench, by_pass: bool, software: bool, repeats: int) -> None:
     from ..compiler.explain import size_text
     from ..renderer.bench import shares
 
     if by_pass:
         rows = [
             (" + ".join(one.functions) + f"  [{', '.join(one.nodes)}]", one.median, one.read, one.written)
-            for one in sorted(found.passes, key=lambda one: -one.median)
+            for one in sorted(timings.passes, key=lambda one: -one.median)
         ]
     else:
-        rows = [(_together(one), one.median, one.read, one.written) for one in shares(found.passes)]
+        rows = [(_together(one), one.median, one.read, one.written) for one in shares(timings.passes)]
     block, wide = _block(), min(60, max(len(row[0]) for row in rows))
     most = max(row[1] for row in rows)
     for label, seconds, read, written in rows:
         bar = block * max(1, round(_BAR * seconds / most))
         text = label if len(label) <= wide else f"{label[: wide - 3]}..."
         print(
-            f"{text:<{wide}}  {seconds * 1e3:9.3f} ms  {seconds / found.median:6.1%}  {bar:<{_BAR}}  "
+            f"{text:<{wide}}  {seconds * 1e3:9.3f} ms  {seconds / timings.median:6.1%}  {bar:<{_BAR}}  "
             f"reads {size_text(read):>9}, writes {size_text(written):>9}"
         )
     how = "the clock around each pass" if software else "timer queries of the GPU"
-    width, height = found.size
-    lead = f", {found.lead} frames led up to it" if found.lead else ""
+    width, height = timings.size
+    lead = f", {timings.lead} frames led up to it" if timings.lead else ""
     print(
-        f"{'total':<{wide}}  {found.median * 1e3:9.3f} ms  at {width}x{height}; median of {repeats} by {how}, "
-        f"fastest {found.fastest * 1e3:.3f} ms{lead}"
+        f"{'total':<{wide}}  {timings.median * 1e3:9.3f} ms  at {width}x{height}; median of {repeats} by {how}, "
+        f"fastest {timings.fastest * 1e3:.3f} ms{lead}"
     )
     print(
-        f"{'once':<{wide}}  plan {found.planning * 1e3:.1f} ms, {found.programs} programs "
-        f"{found.compiling * 1e3:.1f} ms, first run with files {found.loading * 1e3:.1f} ms; "
-        f"{size_text(found.peak_bytes)} of textures at the peak"
+        f"{'once':<{wide}}  plan {timings.planning * 1e3:.1f} ms, {timings.programs} programs "
+        f"{timings.compiling * 1e3:.1f} ms, first run with files {timings.loading * 1e3:.1f} ms; "
+        f"{size_text(timings.peak_bytes)} of textures at the peak"
     )
 
 
@@ -140,14 +152,14 @@ def _together(share: Share) -> str:
     return ", ".join(share.nodes) + (f"  {share.count} passes" if share.count > 1 else "")
 
 
-def _print_compared(compared: Against, slower: tuple[Ratio, ...], limit: float | None, device: str) -> None:
-    if compared.device != device:
-        print(f"the baseline was measured on another device: {compared.device}")
-    if compared.gone or compared.new:
-        print(f"{compared.new} passes are new, {compared.gone} are gone")
-    for one in slower or sorted(compared.ratios[1:], key=lambda one: -one.judged)[:5]:
+def _print_compared(comparison: Against, slower: tuple[Ratio, ...], limit: float | None, device: str) -> None:
+    if comparison.device != device:
+        print(f"the baseline was measured on another device: {comparison.device}")
+    if comparison.gone or comparison.new:
+        print(f"{comparison.new} passes are new, {comparison.gone} are gone")
+    for one in slower or sorted(comparison.ratios[1:], key=lambda one: -one.judged)[:5]:
         print(f"  {_ratio(one)}")
-    whole = compared.ratios[0]
+    whole = comparison.ratios[0]
     if not slower or whole not in slower:
         print(f"  {_ratio(whole)}")
     if limit is not None:
@@ -155,12 +167,12 @@ def _print_compared(compared: Against, slower: tuple[Ratio, ...], limit: float |
         print(f"{verdict}; judged by the smaller ratio of median and fastest time, passes from 2 % of the whole on")
 
 
-def _ratio(one: Ratio) -> str:
-    name = ", ".join(one.nodes) if one.nodes else "total"
-    what = f" ({' + '.join(one.functions)})" if one.functions else ""
+def _ratio(ratio: Ratio) -> str:
+    name = ", ".join(ratio.nodes) if ratio.nodes else "total"
+    functions = f" ({' + '.join(ratio.functions)})" if ratio.functions else ""
     return (
-        f"{one.judged:5.2f}x  {name}{what}: {one.then * 1e3:.3f} -> {one.now * 1e3:.3f} ms "
-        f"(median {one.median:.2f}x, fastest {one.fastest:.2f}x)"
+        f"{ratio.judged:5.2f}x  {name}{functions}: {ratio.then * 1e3:.3f} -> {ratio.now * 1e3:.3f} ms "
+        f"(median {ratio.median:.2f}x, fastest {ratio.fastest:.2f}x)"
     )
 
 
@@ -170,35 +182,40 @@ def _block() -> str:
 
 
 def _as_json(
-    graph: Path, found: Bench, device: str, frames: tuple[int, ...], compared: Against | None, slower: tuple[Ratio, ...]
+    graph: Path,
+    timings: Bench,
+    device: str,
+    frames: tuple[int, ...],
+    comparison: Against | None,
+    slower: tuple[Ratio, ...],
 ) -> dict[str, Any]:
     from ..renderer.bench import names, shares
 
-    made: dict[str, Any] = {
+    report: dict[str, Any] = {
         "graph": str(graph),
         "device": device,
-        "size": list(found.size),
+        "size": list(timings.size),
         "frames": list(frames),
-        "repeats": len(found.totals),
-        "median": found.median,
-        "fastest": found.fastest,
-        "planning": found.planning,
-        "compiling": found.compiling,
-        "programs": found.programs,
-        "loading": found.loading,
-        "peak_bytes": found.peak_bytes,
-        "lead": found.lead,
+        "repeats": len(timings.totals),
+        "median": timings.median,
+        "fastest": timings.fastest,
+        "planning": timings.planning,
+        "compiling": timings.compiling,
+        "programs": timings.programs,
+        "loading": timings.loading,
+        "peak_bytes": timings.peak_bytes,
+        "lead": timings.lead,
         "nodes": [
             {
                 "nodes": list(one.nodes),
                 "passes": one.count,
                 "median": one.median,
                 "fastest": one.fastest,
-                "share": one.median / found.median,
+                "share": one.median / timings.median,
                 "read_bytes": one.read,
                 "written_bytes": one.written,
             }
-            for one in shares(found.passes)
+            for one in shares(timings.passes)
         ],
         "passes": [
             {
@@ -210,25 +227,25 @@ def _as_json(
                 "read_bytes": one.read,
                 "written_bytes": one.written,
             }
-            for name, one in zip(names(found.passes), found.passes, strict=True)
+            for name, one in zip(names(timings.passes), timings.passes, strict=True)
         ],
     }
-    if compared:
-        made["compared"] = {
-            "device": compared.device,
-            "new": compared.new,
-            "gone": compared.gone,
-            "ratios": [_told(one) for one in compared.ratios],
-            "slower": [_told(one) for one in slower],
+    if comparison:
+        report["compared"] = {
+            "device": comparison.device,
+            "new": comparison.new,
+            "gone": comparison.gone,
+            "ratios": [_ratio_facts(one) for one in comparison.ratios],
+            "slower": [_ratio_facts(one) for one in slower],
         }
-    return made
+    return report
 
 
-def _told(one: Ratio) -> dict[str, Any]:
+def _ratio_facts(ratio: Ratio) -> dict[str, Any]:
     return {
-        "nodes": list(one.nodes),
-        "functions": list(one.functions),
-        "median": one.median,
-        "fastest": one.fastest,
-        "ratio": one.judged,
+        "nodes": list(ratio.nodes),
+        "functions": list(ratio.functions),
+        "median": ratio.median,
+        "fastest": ratio.fastest,
+        "ratio": ratio.judged,
     }

@@ -16,7 +16,7 @@ from .plugins import note_refused_plugins, refused_plugins
 
 if TYPE_CHECKING:
     from ..graph.rules import Rule
-    from ..lint.checking import Checker, Finding, Report
+    from ..lint.checking import CheckReport, Finding, GraphChecker
 
 _REFUSED = 3
 """What `--strict` makes of a warning: the graph is at fault."""
@@ -39,7 +39,7 @@ def check(
 ) -> int:
     """Look for faults in graphs: schema, types, links, loops, ranges, files and layers, and habits that cost."""
     from ..errors import UsageError
-    from ..lint.checking import RULES, Checker
+    from ..lint.checking import RULES, GraphChecker
 
     if rules:
         _list(RULES, as_json)
@@ -48,27 +48,27 @@ def check(
         raise UsageError("no graph is given: name files, folders or patterns; see halation check --help")
     if as_json and sarif == "-":
         raise UsageError("--json and --sarif -: both would go to standard output; choose one, or name a file")
-    checker = Checker(frozenset(_known(off or (), RULES)))
+    checker = GraphChecker(frozenset(_check_rules(off or (), RULES)))
     reports = _reports(checker, graphs, quiet=as_json or sarif == "-")
     if sarif:
         _write_sarif(reports, RULES, sarif)
     if as_json:
         refused = refused_plugins()
         also = {"refused_plugins": refused} if refused else {}
-        print_json({"graphs": [_told(report, strict) for report in reports], **also})
+        print_json({"graphs": [_report_facts(report, strict) for report in reports], **also})
     else:
         note_refused_plugins()
     return max((_code(report, strict) for report in reports), default=0)
 
 
-def _reports(checker: Checker, graphs: Sequence[Path], quiet: bool) -> list[Report]:
+def _reports(checker: GraphChecker, graphs: Sequence[Path], quiet: bool) -> list[CheckReport]:
     """Check one after the other; say at once what is found."""
-    from ..lint.files import graphs as found
+    from ..lint.files import find_graphs as find_graphs
 
-    reports: list[Report] = []
-    for path in found(graphs):
+    reports: list[CheckReport] = []
+    for path in find_graphs(graphs):
         text = standard_input() if str(path) == "-" else None
-        report = checker.file(path) if text is None else checker.text(text, "-", "")
+        report = checker.check_file(path) if text is None else checker.check_text(text, "-", "")
         reports.append(report)
         for finding in () if quiet else report.findings:
             problem = finding.problem
@@ -85,7 +85,7 @@ def _reports(checker: Checker, graphs: Sequence[Path], quiet: bool) -> list[Repo
     return reports
 
 
-def _known(names: Sequence[str], rules: Mapping[str, Rule]) -> Sequence[str]:
+def _check_rules(names: Sequence[str], rules: Mapping[str, Rule]) -> Sequence[str]:
     from ..errors import UsageError
     from ..graph import did_you_mean
 
@@ -107,20 +107,20 @@ def _list(rules: Mapping[str, Rule], as_json: bool) -> None:
         print(f"{rule.name} ({rule.severity}): {rule.doc} {rule.way_out}")
 
 
-def _code(report: Report, strict: bool) -> int:
+def _code(report: CheckReport, strict: bool) -> int:
     return report.code or (_REFUSED if strict and report.findings else 0)
 
 
-def _told(report: Report, strict: bool) -> dict[str, Any]:
+def _report_facts(report: CheckReport, strict: bool) -> dict[str, Any]:
     def problem(finding: Finding) -> dict[str, Any]:
-        found = finding.problem
+        problem_found = finding.problem
         return {
-            "rule": found.rule.name,
-            "severity": found.severity,
+            "rule": problem_found.rule.name,
+            "severity": problem_found.severity,
             "line": finding.line,
-            "node": found.node,
-            "socket": found.socket,
-            "sentence": found.sentence,
+            "node": problem_found.node,
+            "socket": problem_found.socket,
+            "sentence": problem_found.sentence,
         }
 
     return {
@@ -130,7 +130,7 @@ def _told(report: Report, strict: bool) -> dict[str, Any]:
     }
 
 
-def _write_sarif(reports: Sequence[Report], rules: Mapping[str, Rule], file: str) -> None:
+def _write_sarif(reports: Sequence[CheckReport], rules: Mapping[str, Rule], file: str) -> None:
     """Paths in the log start at the repository that this folder is in, else at this folder."""
     from ..lint.sarif import sarif
     from ..lint.surroundings import Surroundings

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .batch import batch, middle
+from .batch import middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
 
@@ -24,20 +24,22 @@ def demo(
     from ..renderer import RenderRequest
     from ..renderer.jobs.job import Writing, run_job
 
-    done: list[dict[str, object]] = []
-    with batch(output, len(paths())) as work:
+    rows: list[dict[str, object]] = []
+    with open_batch(output, len(paths())) as work:
         for path in paths():
             work.step(path.stem)
             started = time.perf_counter()
             graph = document.load(path)
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
-            report = run_job(work.renderer, graph, RenderRequest(), Writing(pictures), (middle(work.renderer, graph),))
+            report = run_job(
+                work.renderer, graph, RenderRequest(), Writing(pictures), (middle_frame(work.renderer, graph),)
+            )
             spent = time.perf_counter() - started
             word = "pass  " if report.passes == 1 else "passes"
             work.say(f"{path.stem:<24} {report.passes:>3} {word}  {spent:5.2f} s  {pictures[1][1]}")
             written = [str(item) for item in report.written]
-            done.append({"preset": path.stem, "seconds": round(spent, 3), "written": written})
+            rows.append({"preset": path.stem, "seconds": round(spent, 3), "written": written})
     if as_json:
-        print_json({"device": work.device, "pictures": done})
+        print_json({"device": work.device, "pictures": rows})
     return 0

@@ -10,10 +10,10 @@ import typer
 from . import parsing
 from .options import AsJson, Inputs, Scale, SizeText
 from .outcome import print_json
-from .versions import is_colored, painted, show, version
+from .versions import is_colored, load_version, paint, print_lines
 
 if TYPE_CHECKING:
-    from ..document.diff_merge import Change, Difference, Line
+    from ..document.diff_merge import DifferenceLine, GraphDifference, PartChange
 
 TROUBLE = 2
 """What `diff` makes of exit code 1, which says that there is a difference."""
@@ -39,7 +39,7 @@ def diff(
 
     Nodes, values, links, keys, ends, settings, code; groups are looked into. How a file is written makes no difference.
     """
-    from ..document.diff_merge import difference, told
+    from ..document.diff_merge import compare_graphs, describe_difference
     from ..errors import RenderError, UsageError
 
     if a == b == "-":
@@ -50,42 +50,42 @@ def diff(
         raise UsageError(f"-o {output}: the pictures side by side are a .png")
     if render and "-" in (a, b):
         raise UsageError("--render reads both graphs twice: name files instead of -")
-    before, after = version(a), version(b)
-    found = difference(before, after, layout=layout)
-    lines = told(found, before, after)
-    report: dict[str, Any] = {"a": a, "b": b, "same": not found, **as_tree(found, lines)}
+    before, after = load_version(a), load_version(b)
+    changes = compare_graphs(before, after, layout=layout)
+    lines = describe_difference(changes, before, after)
+    report: dict[str, Any] = {"a": a, "b": b, "same": not changes, **as_tree(changes, lines)}
     if not as_json:
-        show(lines, is_colored())
+        print_lines(lines, is_colored())
     if render:
-        from .picture_diff import compared
+        from .picture_diff import render_and_compare
 
-        wanted = (parsing.inputs(inputs), parsing.size(size), parsing.scale(scale), frame)
+        choices = (parsing.inputs(inputs), parsing.size(size), parsing.scale(scale), frame)
         try:
-            report["pictures"] = compared(a, b, wanted, output)
+            report["pictures"] = render_and_compare(a, b, choices, output)
         except RenderError as fault:
             fault.exit_code = TROUBLE
             raise
-        report["same"] = not found and all(one["same"] for one in report["pictures"])
+        report["same"] = not changes and all(one["same"] for one in report["pictures"])
         for one in report["pictures"] if not as_json else ():
             sign = "=" if one["same"] else "~"
-            print(painted(f"{sign} picture {one['output']}: {one['words']}", sign, is_colored()))
+            print(paint(f"{sign} picture {one['output']}: {one['words']}", sign, is_colored()))
     if as_json:
         print_json(report)
     return 0 if report["same"] else 1
 
 
-def as_tree(found: Difference, lines: tuple[Line, ...]) -> dict[str, Any]:
+def as_tree(changes: GraphDifference, lines: tuple[DifferenceLine, ...]) -> dict[str, Any]:
     """A difference for machines: every change with its place, and the same lines that people read."""
     return {
-        "renamed": [{"group": list(one.group), "old": one.old, "new": one.new} for one in found.renamed],
-        "changes": [_change(change) for change in found.changes],
+        "renamed": [{"group": list(one.group), "old": one.old, "new": one.new} for one in changes.renamed],
+        "changes": [_change(change) for change in changes.changes],
         "lines": [f"{line.sign} {line.words}" for line in lines],
     }
 
 
-def _change(change: Change) -> dict[str, Any]:
+def _change(change: PartChange) -> dict[str, Any]:
     """What is absent has no key."""
-    from ..document.diff_merge import ABSENT, plain
+    from ..document.diff_merge import ABSENT, to_document
 
-    sides = {"before": plain(change.before), "after": plain(change.after)}
+    sides = {"before": to_document(change.before), "after": to_document(change.after)}
     return {"at": list(change.at), **{side: part for side, part in sides.items() if part is not ABSENT}}

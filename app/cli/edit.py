@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from . import parsing
-from .options import Inputs, bound
+from .options import Inputs, resolve_inputs
 
 
 def edit(
@@ -24,7 +24,7 @@ def edit(
     if graph is not None:
         from .. import document
 
-        bindings = bound(document.load(graph), parsing.inputs(inputs))
+        bindings = resolve_inputs(document.load(graph), parsing.inputs(inputs))
     from ..editor import edit as open_editor
 
     open_editor(graph, bindings)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from ..errors import UsageError
 from . import parsing
-from .options import bound, opened, report_problems
+from .options import open_graph, report_problems, resolve_inputs
 from .outcome import note, print_json
 from .progress import progress_reporter
 from .watchdog import needs_watchdog
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> int:
     """Render what a job says and report it; the exit code. Raises the errors of `app.errors`."""
     started = time.perf_counter()
-    graph = opened(Path(job.graph), job.sets, job.document)
+    graph = open_graph(Path(job.graph), job.sets, job.document)
     report_problems(Path(job.graph), graph)
     if job.codec and not job.videos:
         raise UsageError(f"--codec {job.codec}: that is for videos: write -o NAME.mp4, .mov, .mkv or .webm")
@@ -34,10 +34,10 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
         note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
     watch = needs_watchdog(graph, job.timeout)
-    job = replace(job, inputs=bound(graph, job.inputs))
+    job = replace(job, inputs=resolve_inputs(graph, job.inputs))
     targets = parsing.targets(graph, job.node)
     ahead = None if watch or job.processes > 1 else _begin_loading(job, graph, targets)
-    if not job.frames and (not watch or parsing.numbered(job.files)):
+    if not job.frames and (not watch or parsing.holds_frames(job.files)):
         job = replace(job, frames=_default_frames(job, graph))
     if helper_jobs := _split(job, graph, targets, watch):
         from .helpers import run_helpers
@@ -68,7 +68,7 @@ def _default_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
 
     provider = LazyResourceProvider()
     first, last = provider.frames(graph, job.inputs)
-    return tuple(range(first, last + 1)) if parsing.numbered(job.files) else (first,)
+    return tuple(range(first, last + 1)) if parsing.holds_frames(job.files) else (first,)
 
 
 def _split(job: RenderJob, graph: Graph, targets: Mapping[str, Port], watch: bool) -> list[RenderJob]:

@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Memory, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    Memory,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import print_json
 
 if TYPE_CHECKING:
@@ -50,10 +62,10 @@ def explain(
         raise UsageError("--dot and --json: choose one")
     way, most = parsing.form_or_device(form), parsing.memory(memory)
     depth = parsing.precision(precision) if precision is not None else None
-    opened_graph = opened(graph, parsing.sets(sets))
+    opened_graph = open_graph(graph, parsing.sets(sets))
     report_problems(graph, opened_graph)
     lazy = LazyResourceProvider()
-    bindings = bound(opened_graph, parsing.inputs(inputs))
+    bindings = resolve_inputs(opened_graph, parsing.inputs(inputs))
     request = compiler.Request(
         parsing.targets(opened_graph, node),
         lazy.bind(opened_graph, bindings),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Node, Sets, SizeText, opened, report_problems
+from .options import AsJson, GraphFile, Node, Sets, SizeText, open_graph, report_problems
 from .outcome import note, print_json
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def export_isf(
 
     if as_json and output is None:
         raise UsageError("--json and a shader would both go to standard output: write the shader to a file with -o")
-    opened_graph = opened(graph, parsing.sets(sets))
+    opened_graph = open_graph(graph, parsing.sets(sets))
     report_problems(graph, opened_graph)
     if selection:
         from ..graph.selection import selected
@@ -48,23 +48,23 @@ def export_isf(
         except GraphError as fault:
             raise UsageError(f"--select {selection}: {fault}") from None
     target = _target(opened_graph, node)
-    found = exported(opened_graph, target, LazyResourceProvider(), size=parsing.size(size))
-    if found.reasons:
-        said = [f"{_owner(owner)} {why}" for owner, why in found.reasons]
-        for line in said[1:] if len(said) > 1 else ():
+    shader = exported(opened_graph, target, LazyResourceProvider(), size=parsing.size(size))
+    if shader.reasons:
+        reasons = [f"{_owner(owner)} {why}" for owner, why in shader.reasons]
+        for line in reasons[1:] if len(reasons) > 1 else ():
             note(f"{graph}: {line}")
-        more = f" (the first of {len(said)} reasons)" if len(said) > 1 else ""
-        raise GraphError(f"{graph}: it cannot be written as one shader: {said[0]}{more}", node=found.reasons[0][0])
-    for line in found.notes:
+        more = f" (the first of {len(reasons)} reasons)" if len(reasons) > 1 else ""
+        raise GraphError(f"{graph}: it cannot be written as one shader: {reasons[0]}{more}", node=shader.reasons[0][0])
+    for line in shader.notes:
         note(f"{graph}: {line}")
     if output is None:
-        print(found.text, end="")
+        print(shader.text, end="")
     else:
         from ..resources.atomic_write import write_text_atomically
 
-        write_text_atomically(output, found.text)
+        write_text_atomically(output, shader.text)
     if as_json:
-        print_json({"file": str(output), "notes": list(found.notes)})
+        print_json({"file": str(output), "notes": list(shader.notes)})
     return 0
 
 
@@ -72,14 +72,14 @@ def _target(graph: Graph, node: str) -> Port:
     """The only output of the graph, or that of a node."""
     from ..errors import UsageError
 
-    found = parsing.targets(graph, node)
+    targets = parsing.targets(graph, node)
     if node:
-        return next(iter(found.values()))
+        return next(iter(targets.values()))
     from ..graph import OUTPUTS, Port
 
     if len(graph.outputs) != 1:
-        known = ", ".join(graph.outputs) or "none"
-        raise UsageError(f"a shader makes one picture, and the outputs of this graph are {known}: choose by --node")
+        names = ", ".join(graph.outputs) or "none"
+        raise UsageError(f"a shader makes one picture, and the outputs of this graph are {names}: choose by --node")
     return Port(OUTPUTS, next(iter(graph.outputs)))
 
 

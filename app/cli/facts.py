@@ -85,11 +85,11 @@ def facts_of(node: type[Node]) -> dict[str, Any]:
 def passes_of(node: type[Node]) -> dict[str, Any]:
     """What a node compiles to at its defaults: its passes, with what each writes."""
     from .. import compiler
-    from .specimen import FULL_HD, drawn, planned
+    from .specimen import FULL_HD, drawable_outputs, plan_node
 
-    if not drawn(node):
+    if not drawable_outputs(node):
         return {"size": list(FULL_HD), "passes": [], "peak_bytes": 0}
-    plan: dict[str, Any] = compiler.as_json(planned(node, FULL_HD))
+    plan: dict[str, Any] = compiler.as_json(plan_node(node, FULL_HD))
     surfaces = plan["surfaces"]
     passes = [
         {

@@ -28,15 +28,15 @@ def fmt(
     """Rewrite graphs in the canonical format; - writes to standard output."""
     from .. import document
     from ..errors import UsageError
-    from ..lint.files import graphs as found
+    from ..lint.files import find_graphs as find_graphs
     from ..resources.atomic_write import write_text_atomically
 
     if any(str(path) == "-" for path in graphs):
         if len(graphs) > 1 or as_json:
             raise UsageError("- formats standard input alone, to standard output: name no files, and leave out --json")
-        return _piped(name, check)
+        return _format_input(name, check)
     # All are read before one is written: a fault in the last file leaves the first as it is.
-    formatted = {path: document.dumps(document.load(path)) for path in found(graphs)}
+    formatted = {path: document.dumps(document.load(path)) for path in find_graphs(graphs)}
     changed = [path for path, text in formatted.items() if path.read_bytes() != text.encode()]
     for path in changed if not check else ():
         write_text_atomically(path, formatted[path])
@@ -49,7 +49,7 @@ def fmt(
     return 1 if check and changed else 0
 
 
-def _piped(name: str, check: bool) -> int:
+def _format_input(name: str, check: bool) -> int:
     """Format standard input: what an editor of text does when it saves `name`."""
     from .. import document
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .batch import batch, middle
+from .batch import middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
 
@@ -48,22 +48,24 @@ def gallery(
     from halation.presets import paths
 
     from ..media.comparison.contact_sheet import write_sheet
-    from .specimen import drawn
+    from .specimen import drawable_outputs
 
-    done: list[dict[str, object]] = []
-    pictures = len(paths()) + len(moving()) + sum(bool(drawn(node)) for node in catalogue().values())
-    with batch(output, pictures) as work:
-        for name, made in (("presets", preset_sheet), ("time", time_sheet), ("nodes", node_sheet)):
-            if made is time_sheet and not moving():
+    rows: list[dict[str, object]] = []
+    pictures = (
+        len(paths()) + len(animated_presets()) + sum(bool(drawable_outputs(node)) for node in catalogue().values())
+    )
+    with open_batch(output, pictures) as work:
+        for name, make_sheet in (("presets", preset_sheet), ("time", time_sheet), ("nodes", node_sheet)):
+            if make_sheet is time_sheet and not animated_presets():
                 continue
             started, file = time.perf_counter(), output / f"{name}.jpg"
-            sheet = made(work.renderer, work.step)
+            sheet = make_sheet(work.renderer, work.step)
             write_sheet(file, sheet.light, ", ".join(sheet.names))
             spent = time.perf_counter() - started
             work.say(f"{name:<24} {len(sheet.names):>3} pictures  {spent:5.2f} s  {file}")
-            done.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(spent, 3)})
+            rows.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(spent, 3)})
     if as_json:
-        print_json({"device": work.device, "sheets": done})
+        print_json({"device": work.device, "sheets": rows})
     return 0
 
 
@@ -78,7 +80,7 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     for path in paths():
         step(path.stem)
         graph = document.load(path)
-        (pictures[path.stem],) = frames_of(graph, renderer, (middle(renderer, graph),)).values()
+        (pictures[path.stem],) = frames_of(graph, renderer, (middle_frame(renderer, graph),)).values()
     return Sheet(make_grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
 
 
@@ -87,7 +89,7 @@ def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     from ..media.comparison.contact_sheet import make_grouped_sheet
 
     rows: dict[str, dict[str, Array]] = {}
-    for name, graph in moving().items():
+    for name, graph in animated_presets().items():
         step(name)
         first, last = renderer.frames(graph)
         frames = [first + round((last - first) * part / (_MOMENTS - 1)) for part in range(_MOMENTS)]
@@ -95,7 +97,7 @@ def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     return Sheet(make_grouped_sheet(rows, _MOMENTS, _WIDTH, letters=_LETTERS), tuple(rows))
 
 
-def moving() -> dict[str, Graph]:
+def animated_presets() -> dict[str, Graph]:
     """The presets that have frames, by name."""
     from halation.presets import paths
 
@@ -124,9 +126,9 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
 
     from ..editor.theme.palette import DARK
     from ..media.comparison.contact_sheet import make_grouped_sheet
-    from .specimen import drawn
+    from .specimen import drawable_outputs
 
-    nodes = [node for id, node in catalogue().items() if drawn(node) and (not ids or id in ids)]
+    nodes = [node for id, node in catalogue().items() if drawable_outputs(node) and (not ids or id in ids)]
     groups: dict[str, dict[str, Array]] = {node.category: {} for node in nodes}
     for node in nodes:
         step(node.id)
@@ -140,19 +142,21 @@ def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     """What a node makes of the sample, as light of the display: its first picture, else its data made visible."""
     from halation.nodes import Kind
 
-    from .specimen import CANVAS, over, untouched
+    from .specimen import CANVAS, sample_graph, show_on_sample
 
-    graph = over(node, sample)
-    found = renderer.render(graph)
-    name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(found)))
+    graph = show_on_sample(node, sample)
+    outputs = renderer.render(graph)
+    name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(outputs)))
     if graph.outputs[name].kind is Kind.NUMBER:
         from ..media.comparison.contact_sheet import make_caption, show_light
 
-        numbers = [f"{name.replace('_', ' ')}  {array.item():.4g}" for name, array in found.items() if array.size == 1]
-        return make_caption(show_light(renderer.render(untouched(sample))["image"]), numbers)
+        numbers = [
+            f"{name.replace('_', ' ')}  {array.item():.4g}" for name, array in outputs.items() if array.size == 1
+        ]
+        return make_caption(show_light(renderer.render(sample_graph(sample))["image"]), numbers)
     if graph.outputs[name].kind is Kind.COLOR:
-        found[name] = found[name].repeat(CANVAS[0], axis=1).repeat(CANVAS[1], axis=0)
-    return light_of(graph.outputs[name].kind, found[name])
+        outputs[name] = outputs[name].repeat(CANVAS[0], axis=1).repeat(CANVAS[1], axis=0)
+    return light_of(graph.outputs[name].kind, outputs[name])
 
 
 def light_of(kind: Kind, array: Array) -> Array:

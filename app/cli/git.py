@@ -13,12 +13,12 @@ def git(*words: str, folder: Path | None = None) -> str:
     return _run(words, folder).decode(errors="surrogateescape")
 
 
-def top(folder: Path | None = None) -> Path:
+def repository_root(folder: Path | None = None) -> Path:
     """The root of the repository that a folder, by default this one, is in. Raises UsageError."""
     return Path(git("rev-parse", "--show-toplevel", folder=folder).rstrip("\n"))
 
 
-def revision(source: str) -> tuple[str, str]:
+def read_revision(source: str) -> tuple[str, str]:
     """The text of `REV:path`, and the folder where its relative paths start.
 
     The path starts at the root of the repository, or at this folder. Raises DocumentError, UsageError.
@@ -27,7 +27,7 @@ def revision(source: str) -> tuple[str, str]:
 
     before, path = source[: source.rindex(":")], source[source.rindex(":") + 1 :]
     try:
-        name, folder = source, top()
+        name, folder = source, repository_root()
     except UsageError as fault:
         raise DocumentError(source, "", f"there is no such file ({str(fault).removeprefix('git: ')})") from None
     try:
@@ -37,8 +37,8 @@ def revision(source: str) -> tuple[str, str]:
         try:
             size = int(_run(("cat-file", "-s", name)))
         except UsageError:
-            said = str(fault).removeprefix("git: ")
-            raise DocumentError(source, "", f"there is no such file, nor such a version in git ({said})") from None
+            reason = str(fault).removeprefix("git: ")
+            raise DocumentError(source, "", f"there is no such file, nor such a version in git ({reason})") from None
     if fault := size_fault(max(size, 1)):
         raise DocumentError(source, "", fault)
     try:
@@ -52,10 +52,10 @@ def revision(source: str) -> tuple[str, str]:
 
 def _run(words: tuple[str, ...], folder: Path | None = None) -> bytes:
     try:
-        done = subprocess.run(["git", *words], cwd=folder, capture_output=True, check=False)
+        process = subprocess.run(["git", *words], cwd=folder, capture_output=True, check=False)
     except OSError:
         raise UsageError("git is not installed, or cannot be run") from None
-    if done.returncode:
-        said = done.stderr.decode(errors="replace").strip().splitlines() or [f"it ended with {done.returncode}"]
-        raise UsageError(f"git: {said[0].removeprefix('fatal: ').rstrip('.')}")
-    return done.stdout
+    if process.returncode:
+        lines = process.stderr.decode(errors="replace").strip().splitlines() or [f"it ended with {process.returncode}"]
+        raise UsageError(f"git: {lines[0].removeprefix('fatal: ').rstrip('.')}")
+    return process.stdout

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .outcome import note
-from .versions import is_colored, painted, show
+from .versions import is_colored, paint, print_lines
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -39,39 +39,39 @@ def git_driver(
 
 def _diff(words: Sequence[str]) -> int:
     """`git diff`: path, then file, hash and mode of both sides; the new path of one that moved. Git wants a 0."""
-    from ..document.diff_merge import difference, told
+    from ..document.diff_merge import compare_graphs, describe_difference
     from ..graph import Graph
 
     path, colored = words[7] if len(words) > 7 else words[0], is_colored()
     if len(words) == 1:
-        print(painted(f"graph {path}: the merge is unfinished", "@", colored))
+        print(paint(f"graph {path}: the merge is unfinished", "@", colored))
         return 0
     before, after = _read(words[1]), _read(words[4])
     graphs = [_graph(text, path) if text else Graph() for text in (before, after)]
     moved = f"{words[0]} -> {path}" if path != words[0] else path
     state = ", new" if words[2] == "." else ", deleted" if words[5] == "." else ""
-    one, other = graphs
-    if one is None or other is None:
+    graph_before, graph_after = graphs
+    if graph_before is None or graph_after is None:
         for line in difflib.unified_diff(
             before.splitlines(), after.splitlines(), f"a/{words[0]}", f"b/{path}", lineterm=""
         ):
-            print(painted(line, line[:1], colored))
+            print(paint(line, line[:1], colored))
         return 0
-    lines = told(difference(one, other), one, other)
-    print(painted(f"graph {moved}{state}", "@", colored))
+    lines = describe_difference(compare_graphs(graph_before, graph_after), graph_before, graph_after)
+    print(paint(f"graph {moved}{state}", "@", colored))
     if not lines:
         print("  only the layout, or how the file is written")
-    show(lines, colored)
+    print_lines(lines, colored)
     return 0
 
 
 def _text(file: str) -> int:
     """`git log -p`, `git show`: a fact on each line, which git compares."""
-    from ..document.diff_merge import facts
+    from ..document.diff_merge import describe_graph
 
     text = _read(file)
     graph = _graph(text, file)
-    sys.stdout.write(text if graph is None else "".join(f"{line}\n" for line in facts(graph)))
+    sys.stdout.write(text if graph is None else "".join(f"{line}\n" for line in describe_graph(graph)))
     return 0
 
 
@@ -79,20 +79,20 @@ def _merge(base: str, ours: str, theirs: str, path: str) -> int:
     """`git merge` and all that merges: the result goes where ours was."""
     from ..errors import DocumentError
     from ..resources.atomic_write import write_text_atomically
-    from .merge import merged_versions, tell
+    from .merge import merge_versions, report_conflicts
 
     if not any('"halation"' in _read(file) for file in (ours, theirs)):
         return subprocess.run(
             ["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs], check=False
         ).returncode
     try:
-        made = merged_versions(base, ours, theirs)
+        merge_result = merge_versions(base, ours, theirs)
     except DocumentError as fault:
         note(f"halation: {path}: it cannot be merged, ours is left as it was: {fault}")
         return CONFLICTS
-    write_text_atomically(Path(ours), made.text)
-    tell(made, path)
-    return CONFLICTS if made.conflicts else 0
+    write_text_atomically(Path(ours), merge_result.text)
+    report_conflicts(merge_result, path)
+    return CONFLICTS if merge_result.conflicts else 0
 
 
 def _graph(text: str, name: str) -> Graph | None:

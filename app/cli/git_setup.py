@@ -38,23 +38,25 @@ def git_setup(
     Halation on this machine, and each clone needs it. Other JSON files stay text.
     """
     from ..errors import UsageError
-    from .git import top
+    from .git import repository_root
 
     try:
-        root = top()
+        root = repository_root()
     except UsageError:
         if not everywhere:
             raise UsageError("this folder is in no git repository: go into one, or add --global") from None
         root = None
-    done = _configure("--global" if everywhere else "--local", remove)
+    changes = _configure("--global" if everywhere else "--local", remove)
     if root:
-        done += _attribute(root / ".gitattributes", list(patterns or ()) or _found(root), bool(patterns), remove)
+        changes += _attribute(
+            root / ".gitattributes", list(patterns or ()) or _find_patterns(root), bool(patterns), remove
+        )
     elif patterns:
         raise UsageError("this folder is in no git repository: patterns go into the .gitattributes of one")
     if as_json:
-        print_json({"changed": done})
+        print_json({"changed": changes})
     else:
-        print("\n".join(done) if done else "nothing is to be changed")
+        print("\n".join(changes) if changes else "nothing is to be changed")
     return 0
 
 
@@ -74,42 +76,42 @@ def _configure(scope: str, remove: bool) -> list[str]:
     from ..errors import UsageError
     from .git import git
 
-    done: list[str] = []
+    changes: list[str] = []
     for name, text in settings().items():
         try:
-            now = git("config", scope, "--get", name).rstrip("\n")
+            current = git("config", scope, "--get", name).rstrip("\n")
         except UsageError:  # there is none
-            now = None
-        if remove and now is not None:
+            current = None
+        if remove and current is not None:
             git("config", scope, "--unset-all", name)
-            done.append(f"git config {scope}: removed {name}")
-        elif not remove and now != text:
+            changes.append(f"git config {scope}: removed {name}")
+        elif not remove and current != text:
             git("config", scope, "--replace-all", name, text)
-            done.append(f"git config {scope}: {name} = {text}")
-    return done
+            changes.append(f"git config {scope}: {name} = {text}")
+    return changes
 
 
-def _attribute(file: Path, patterns: Sequence[str], given: bool, remove: bool) -> list[str]:
+def _attribute(file: Path, patterns: Sequence[str], only_these: bool, remove: bool) -> list[str]:
     """Add or remove lines of .gitattributes; what was changed. With `given`, only the lines of these patterns go."""
     from ..resources.atomic_write import write_text_atomically
 
     old = file.read_text(encoding="utf-8") if file.exists() else ""
-    lines, ours = old.splitlines(), {f"{_quoted(pattern)} {ATTRIBUTES}" for pattern in patterns}
+    lines, own_lines = old.splitlines(), {f"{_quote(pattern)} {ATTRIBUTES}" for pattern in patterns}
     if remove:
-        gone = [line for line in lines if line.endswith(f" {ATTRIBUTES}") and (line in ours or not given)]
-        kept = [line for line in lines if line not in gone]
-        if gone and not kept:
+        removed = [line for line in lines if line.endswith(f" {ATTRIBUTES}") and (line in own_lines or not only_these)]
+        remaining = [line for line in lines if line not in removed]
+        if removed and not remaining:
             file.unlink()
-        elif gone:
-            write_text_atomically(file, "".join(f"{line}\n" for line in kept))
-        return [f"{file}: removed {line}" for line in gone]
-    new = sorted(ours.difference(lines))
+        elif removed:
+            write_text_atomically(file, "".join(f"{line}\n" for line in remaining))
+        return [f"{file}: removed {line}" for line in removed]
+    new = sorted(own_lines.difference(lines))
     if new:
         write_text_atomically(file, "".join(f"{line}\n" for line in (*lines, *new)))
     return [f"{file}: {line}" for line in new]
 
 
-def _found(root: Path) -> list[str]:
+def _find_patterns(root: Path) -> list[str]:
     """Patterns for the folders that hold graphs, of all files that are tracked or may be."""
     from .git import git
 
@@ -131,7 +133,7 @@ def _pattern(path: Path, root: Path) -> str:
     return "/*.json" if folder == "." else f"/{escaped}/*.json"
 
 
-def _quoted(pattern: str) -> str:
+def _quote(pattern: str) -> str:
     """A pattern as .gitattributes has it: white space needs quotes."""
     if not any(letter.isspace() or letter == '"' for letter in pattern):
         return pattern

@@ -103,7 +103,7 @@ class _Crew:
 
     def run(self) -> list[dict[str, Any]]:
         """Wait for all of them: their reports. Raises HalationError as `run_helpers`."""
-        self._progress.shared([helper.process.pid for helper in self._helpers])
+        self._progress.report_helpers([helper.process.pid for helper in self._helpers])
         threads = [threading.Thread(target=self._follow, args=(helper,), daemon=True) for helper in self._helpers]
         for thread in threads:
             thread.start()
@@ -169,9 +169,9 @@ class _Crew:
                 self._done += 1
                 written = tuple(Path(path) for path in event["written"])
                 report = self._frame_report(event["frame"], written, event["passes"], event["kept"])
-                self._progress.finished(report, self._done, self._total)
+                self._progress.report_frame(report, self._done, self._total)
             elif len(self._helpers) == 1:  # passes of several frames at once would only confuse
-                self._progress.passed(event["frame"], event["pass"], event["passes"], event["nodes"])
+                self._progress.report_pass(event["frame"], event["pass"], event["passes"], event["nodes"])
             return
         if line and line not in self._notes and not line.startswith("halation: "):
             self._notes.add(line)

@@ -37,11 +37,11 @@ def info(
     shot = find_sequence(str(file))
     if shot is not None:
         check_has_files(shot)
-    found = survey(shot.path(shot.frames[0]) if shot else file, before)
+    survey_result = survey(shot.path(shot.frames[0]) if shot else file, before)
     if as_json:
-        print_json({**(_shot_facts(shot) if shot else {}), **_facts(found)})
+        print_json({**(_shot_facts(shot) if shot else {}), **_facts(survey_result)})
         return 0
-    head, gap, rest = "\n".join(report(found)).partition("\n\n")
+    head, gap, rest = "\n".join(report(survey_result)).partition("\n\n")
     print(f"{_shot_lines(shot)}\n\n{head}" if shot else f"{head}{_neighbors(str(file))}", rest, sep=gap)
     return 0
 
@@ -80,17 +80,17 @@ def _shot_facts(shot: FrameSequence) -> dict[str, Any]:
     }
 
 
-def _facts(found: Survey) -> dict[str, Any]:
+def _facts(survey: Survey) -> dict[str, Any]:
     """Everything, for machines."""
     from ..media.color_spaces import describe_color_spaces
 
-    header = found.header
+    header = survey.header
     return {
         "file": header.info.path,
         "format": header.info.format,
         "size": list(header.info.size),
-        "renderer": found.maker.renderer,
-        "renderer_reason": found.maker.reason,
+        "renderer": survey.maker.renderer,
+        "renderer_reason": survey.maker.reason,
         "parts": [
             {
                 "index": part.index,
@@ -113,11 +113,11 @@ def _facts(found: Survey) -> dict[str, Any]:
                 "reason": item.reason,
                 "candidates": list(item.candidates),
             }
-            for item in found.passes
+            for item in survey.passes
         ],
         "color_spaces": [list(row) for row in describe_color_spaces(header.info.path)],
-        "roles": {role: layer.name if (layer := found.layer(role)) else None for role in found.roles},
-        "undecided": {role: [layer.name for layer in layers] for role, layers in found.rivals.items()},
+        "roles": {role: layer.name if (layer := survey.layer(role)) else None for role in survey.roles},
+        "undecided": {role: [layer.name for layer in layers] for role, layers in survey.rivals.items()},
         "conventions": {
             role: {
                 "kind": rule.kind,
@@ -126,9 +126,9 @@ def _facts(found: Survey) -> dict[str, Any]:
                 "scale": list(rule.scale),
                 "offset": list(rule.offset),
             }
-            for role, rule in found.conventions.items()
+            for role, rule in survey.conventions.items()
         },
-        "camera": _camera_facts(found.camera.camera, found.camera.reason, found.camera.solved),
+        "camera": _camera_facts(survey.camera.camera, survey.camera.reason, survey.camera.solved),
         "metadata": {name: _plain(value) for name, value in header.attributes.items()},
     }
 

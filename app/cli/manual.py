@@ -25,16 +25,16 @@ def page(nodes: Sequence[type[Node]]) -> str:
     menus: dict[str, list[type[Node]]] = {}
     for node in nodes:
         menus.setdefault(node.category, []).append(node)
-    contents = ", ".join(f"[{name}](#{_slug(_heading(name, menu))})" for name, menu in menus.items())
+    contents = ", ".join(f"[{name}](#{_slug(_menu_title(name, menu))})" for name, menu in menus.items())
     blocks = [_INTRODUCTION.format(count=len(nodes), menus=len(menus)).rstrip(), contents]
     for name, menu in menus.items():
-        blocks += [f"## {_heading(name, menu)}", _menu(menu)]
+        blocks += [f"## {_menu_title(name, menu)}", _menu(menu)]
         for node in menu:
             blocks += _section(node)
     return "\n\n".join(blocks) + "\n"
 
 
-def _heading(name: str, menu: Sequence[type[Node]]) -> str:
+def _menu_title(name: str, menu: Sequence[type[Node]]) -> str:
     """The name of a menu and how many nodes it has; so no menu's anchor is that of a node."""
     return f"{name.capitalize()} ({len(menu)})"
 

@@ -14,7 +14,7 @@ from .outcome import note, print_json
 from .versions import text_of
 
 if TYPE_CHECKING:
-    from ..document.diff_merge import Merged, Side
+    from ..document.diff_merge import MergedGraph, Side
     from ..graph import Graph
 
 TROUBLE = 2
@@ -54,29 +54,29 @@ def merge(
             raise UsageError("three versions are merged: name BASE, OURS and THEIRS; see halation merge --help")
         if graphs.count("-") > 1:
             raise UsageError("- is there once: name files for the others")
-        made = merged_versions(*graphs)
+        merge_result = merge_versions(*graphs)
         if output:
             from ..resources.atomic_write import write_text_atomically
 
-            write_text_atomically(output, made.text)
+            write_text_atomically(output, merge_result.text)
     except OutputError as fault:
         fault.exit_code = TROUBLE
         raise
     if as_json:
-        told = [{"path": conflict.path, **conflict.entry()} for conflict in made.conflicts]
-        print_json({"conflicts": told, **({"written": str(output)} if output else {"merged": made.text})})
+        conflicts = [{"path": conflict.path, **conflict.entry()} for conflict in merge_result.conflicts]
+        print_json({"conflicts": conflicts, **({"written": str(output)} if output else {"merged": merge_result.text})})
     else:
         if not output:
-            sys.stdout.write(made.text)
-        tell(made, str(output or graphs[1]))
-    return 1 if made.conflicts else 0
+            sys.stdout.write(merge_result.text)
+        report_conflicts(merge_result, str(output or graphs[1]))
+    return 1 if merge_result.conflicts else 0
 
 
-def merged_versions(base: str, ours: str, theirs: str) -> Merged:
+def merge_versions(base: str, ours: str, theirs: str) -> MergedGraph:
     """The merge of three versions; a base without text is an empty graph. Raises DocumentError that names the side."""
-    from ..document.diff_merge import merged
+    from ..document.diff_merge import merge_graphs
 
-    return merged(_side(base, "base"), _side(ours, "ours"), _side(theirs, "theirs"))
+    return merge_graphs(_side(base, "base"), _side(ours, "ours"), _side(theirs, "theirs"))
 
 
 def _side(source: str, side: str) -> Graph:
@@ -89,12 +89,12 @@ def _side(source: str, side: str) -> Graph:
     return document.loads(text, f"{source} ({side})", folder, follow=False)
 
 
-def tell(made: Merged, name: str) -> None:
+def report_conflicts(merge_result: MergedGraph, name: str) -> None:
     """Name the conflicts on standard error."""
     from ..document import loads
     from ..graph import problems
 
-    for problem in problems(loads(made.text, follow=False)) if made.conflicts else ():
+    for problem in problems(loads(merge_result.text, follow=False)) if merge_result.conflicts else ():
         if problem.rule.name == "unmerged":
             note(f"{name}: {problem.sentence}")
 
@@ -103,29 +103,29 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     """Decide conflicts; the exit code is 1 if some are left."""
     from .. import document
     from ..document.canonical import pretty
-    from ..document.diff_merge import conflicts_of, resolved
+    from ..document.diff_merge import read_conflicts, resolve_conflicts
     from ..document.disk import read_text
     from ..document.syntax import parse
     from ..errors import UsageError
     from ..resources.atomic_write import write_text_atomically
 
     chosen = dict(map(_choice, choices))
-    done: dict[Path, str] = {}
+    texts: dict[Path, str] = {}
     for path in map(Path, graphs):
         try:
-            tree = resolved(parse(read_text(path), str(path)), chosen)
+            tree = resolve_conflicts(parse(read_text(path), str(path)), chosen)
         except UsageError as fault:
             raise UsageError(f"{path}: {fault}") from None
-        done[path] = document.dumps(document.loads(pretty(tree), str(path), str(path.parent), follow=False))
-    left: dict[str, list[str]] = {}
-    for path, text in done.items():
+        texts[path] = document.dumps(document.loads(pretty(tree), str(path), str(path.parent), follow=False))
+    open_conflicts: dict[str, list[str]] = {}
+    for path, text in texts.items():
         write_text_atomically(path, text)
-        left[str(path)] = [conflict.path for conflict in conflicts_of(parse(text, str(path)))]
+        open_conflicts[str(path)] = [conflict.path for conflict in read_conflicts(parse(text, str(path)))]
     if as_json:
-        print_json({"graphs": [{"graph": path, "conflicts": open} for path, open in left.items()]})
-    for path, open in left.items() if not as_json else ():
+        print_json({"graphs": [{"graph": path, "conflicts": open} for path, open in open_conflicts.items()]})
+    for path, open in open_conflicts.items() if not as_json else ():
         note(f"{path}: {'to be decided: ' + ', '.join(open) if open else 'nothing is left to be decided'}")
-    return 1 if any(left.values()) else 0
+    return 1 if any(open_conflicts.values()) else 0
 
 
 def _choice(text: str) -> tuple[str, Side]:

@@ -30,23 +30,25 @@ def nodes(
     from ..errors import UsageError
     from ..graph import did_you_mean
 
-    known = catalogue()
+    classes = catalogue()
     if id.endswith((".fs", ".glsl")):
-        known = {id: _written(id)}
-    if id and id not in known:
-        raise UsageError(f"there is no node '{id}'{did_you_mean(id, known)}")
+        classes = {id: _load_code(id)}
+    if id and id not in classes:
+        raise UsageError(f"there is no node '{id}'{did_you_mean(id, classes)}")
     if markdown and (id or as_json):
         raise UsageError("--markdown prints the whole catalogue: leave out the node and --json")
     if markdown:
         from .manual import page
 
-        print(page(list(known.values())), end="")
+        print(page(list(classes.values())), end="")
     elif as_json:
-        print_json(facts_of(known[id]) if id else {"nodes": [facts_of(node) for node in known.values()], **_refused()})
+        print_json(
+            facts_of(classes[id]) if id else {"nodes": [facts_of(node) for node in classes.values()], **_refused()}
+        )
     elif id:
-        _page(known[id])
+        _page(classes[id])
     else:
-        _list(list(known.values()))
+        _list(list(classes.values()))
         note_refused_plugins()
     return 0
 
@@ -57,7 +59,7 @@ def _refused() -> dict[str, Any]:
     return {"refused_plugins": refused} if refused else {}
 
 
-def _written(file: str) -> type[Node]:
+def _load_code(file: str) -> type[Node]:
     """The node that is made of a file of code. Raises UsageError."""
     from ..custom_nodes import CodeFault, node_type
     from ..document.code import read_code
@@ -108,8 +110,8 @@ def _print_passes(node: type[Node]) -> None:
     print(f"passes at these values, {width}x{height}")
     widest = max((len(item["label"]) for item in facts["passes"]), default=0)
     for index, item in enumerate(facts["passes"]):
-        made = ", ".join(f"{'x'.join(map(str, one['size']))} {one['format']}" for one in item["writes"])
-        print(f"  {index:<4} {item['label']:<{widest}}  {made}")
+        surfaces = ", ".join(f"{'x'.join(map(str, one['size']))} {one['format']}" for one in item["writes"])
+        print(f"  {index:<4} {item['label']:<{widest}}  {surfaces}")
     if not facts["passes"]:
         print(f"  none: {'the picture goes through as it is' if node.inputs else 'nothing has to be drawn'}")
     print(f"  {size_text(facts['peak_bytes'])} of textures at the peak")

@@ -82,7 +82,7 @@ def add_root(command: Callable[..., int]) -> Callable[..., int]:
     return run
 
 
-def opened(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "") -> Graph:
+def open_graph(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "") -> Graph:
     """A graph with the values of `--set` in it. Raises DocumentError, UsageError.
 
     For the path "-" it is the one in `document`, or in standard input if that is empty. Relative paths in it start at
@@ -92,11 +92,11 @@ def opened(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document:
 
     graph = loads(document or standard_input(), "-") if str(path) == "-" else load(path)
     for name, text in sets.items():
-        graph = changed(graph, name, text)
+        graph = override_value(graph, name, text)
     return graph
 
 
-def changed(graph: Graph, name: str, text: str) -> Graph:
+def override_value(graph: Graph, name: str, text: str) -> Graph:
     """A graph with one value set as `--set` has it. Raises UsageError."""
     from ..errors import GraphError, UsageError
     from ..graph import animation_fault
@@ -105,8 +105,8 @@ def changed(graph: Graph, name: str, text: str) -> Graph:
     try:
         graph = graph.override(name, value)
         for port, item in graph.animation.items():
-            if item is value and (said := animation_fault(graph, port, item)):
-                raise GraphError(said)
+            if item is value and (reason := animation_fault(graph, port, item)):
+                raise GraphError(reason)
     except GraphError as fault:
         raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
     return graph
@@ -122,7 +122,7 @@ def standard_input() -> str:
         raise DocumentError("-", "", f"the text is not UTF-8 (byte {error.start}); save it as UTF-8") from None
 
 
-def bound(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
+def resolve_inputs(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
     """Files by the name of the input that they fill; the one named "" fills the only input. Raises UsageError."""
     from ..errors import UsageError
     from ..graph import did_you_mean
@@ -148,11 +148,11 @@ def report_problems(path: Path, graph: Graph) -> None:
     from ..errors import GraphError
     from ..graph import problems
 
-    found = problems(graph)
-    errors = [problem for problem in found if problem.severity == "error"]
+    graph_problems = problems(graph)
+    errors = [problem for problem in graph_problems if problem.severity == "error"]
     if errors:
         how = "" if str(path) == "-" else f": halation check {path}"
         more = f" (and {len(errors) - 1} more{how})" if len(errors) > 1 else ""
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
-    for problem in found:
+    for problem in graph_problems:
         note(f"{path}: {problem.sentence}")

@@ -28,7 +28,7 @@ Exit codes:
 130  interrupted"""
 
 
-def guarded(command: Callable[..., int]) -> Callable[..., int]:
+def catch_faults(command: Callable[..., int]) -> Callable[..., int]:
     """Turn what a command raises into a sentence and an exit code; under `--json` into an object as well."""
 
     @functools.wraps(command)
@@ -36,20 +36,20 @@ def guarded(command: Callable[..., int]) -> Callable[..., int]:
         try:
             return command(*args, **options)
         except (Exception, KeyboardInterrupt) as fault:
-            return failed(fault, bool(options.get("as_json")))
+            return report_failure(fault, bool(options.get("as_json")))
 
     return run
 
 
-def failed(fault: BaseException, as_json: bool) -> int:
+def report_failure(fault: BaseException, as_json: bool) -> int:
     """Say what went wrong; the exit code for it."""
     if isinstance(fault, BrokenPipeError):
         # Whoever read our output has gone: that is no fault of ours, and nothing can be said to them.
-        _silence()
+        _close_output()
         return BROKEN_PIPE
     if isinstance(fault, OSError) and fault.filename is None:
-        _silence()
-    kind, code, sentence = _told(fault)
+        _close_output()
+    kind, code, sentence = _describe(fault)
     if code == BUG and os.environ.get("HALATION_DEBUG"):
         raise fault
     with contextlib.suppress(OSError):
@@ -59,7 +59,7 @@ def failed(fault: BaseException, as_json: bool) -> int:
     return code
 
 
-def _told(fault: BaseException) -> tuple[str, int, str]:
+def _describe(fault: BaseException) -> tuple[str, int, str]:
     """Kind, exit code and sentence."""
     if isinstance(fault, HalationError):
         return type(fault).__name__, fault.exit_code, str(fault)
@@ -72,23 +72,23 @@ def _told(fault: BaseException) -> tuple[str, int, str]:
     if format_message := getattr(fault, "format_message", None):  # what the parser of the command line raises
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"
-        said = str(format_message()).strip().rstrip(".")
-        return "UsageError", USAGE, f"{said[:1].lower()}{said[1:]}; see {command} --help"
-    said = " ".join(str(fault).split())
-    return "Bug", BUG, f"this is a bug in Halation ({type(fault).__name__}: {said}); HALATION_DEBUG=1 shows where"
+        text = str(format_message()).strip().rstrip(".")
+        return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}; see {command} --help"
+    text = " ".join(str(fault).split())
+    return "Bug", BUG, f"this is a bug in Halation ({type(fault).__name__}: {text}); HALATION_DEBUG=1 shows where"
 
 
-def settle(code: int) -> int:
+def flush_output(code: int) -> int:
     """Get the last output out; the exit code if that works, else another."""
     try:
         sys.stdout.flush()
         sys.stderr.flush()
     except OSError as fault:
-        return code or failed(fault, False)
+        return code or report_failure(fault, False)
     return code
 
 
-def _silence() -> None:
+def _close_output() -> None:
     """Send to nowhere what is still waiting to be written to standard output."""
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

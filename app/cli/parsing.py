@@ -19,15 +19,15 @@ _Word = TypeVar("_Word", bound=str)
 
 def assignments(items: Sequence[str], flag: str) -> dict[str, str]:
     """`name=text` pairs in order. Raises UsageError for anything else and for a name given twice."""
-    found: dict[str, str] = {}
+    texts: dict[str, str] = {}
     for item in items:
         name, equals, text = item.partition("=")
         if not equals or not name or not text:
             raise UsageError(f"{flag} {item}: write {flag} NAME=VALUE")
-        if name in found:
+        if name in texts:
             raise UsageError(f"{flag} {item}: '{name}' is given twice")
-        found[name] = text
-    return found
+        texts[name] = text
+    return texts
 
 
 def inputs(items: Sequence[str] | None) -> dict[str, str]:
@@ -48,22 +48,22 @@ def sets(items: Sequence[str] | None) -> dict[str, str]:
 
 def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
     """`-o out.exr` or `-o name=out.exr` as names and files; the name of a bare path is empty."""
-    found: list[tuple[str, Path]] = []
+    files: list[tuple[str, Path]] = []
     for item in items:
         name, equals, text = item.partition("=")
         if not equals or "/" in name or "." in name:
             name, text = "", item
         elif not name or not text:
             raise UsageError(f"-o {item}: write -o FILE or -o NAME=FILE")
-        found.append((name, Path(text)))
-    return tuple(found)
+        files.append((name, Path(text)))
+    return tuple(files)
 
 
 def value(text: str) -> Any:
     """A value as typed: a number, true or false, numbers with commas between, or a word."""
     for candidate in (text, f"[{text}]"):
         try:
-            return json.loads(candidate, parse_constant=_refused)
+            return json.loads(candidate, parse_constant=_refuse_constant)
         except (ValueError, RecursionError):
             continue
     return text
@@ -75,12 +75,12 @@ def memory(text: str | None) -> int:
         return 0
     number, unit = (text[:-1], text[-1].upper()) if text[-1:].isalpha() else (text, "")
     try:
-        found = float(number) * 1024 ** " KMGT".index(unit or " ")
+        nbytes = float(number) * 1024 ** " KMGT".index(unit or " ")
     except ValueError:
-        found = 0.0
-    if not 1.0 <= found < 2.0**63:
+        nbytes = 0.0
+    if not 1.0 <= nbytes < 2.0**63:
         raise UsageError(f"--memory {text}: give a size as 512M or 2G")
-    return int(found)
+    return int(nbytes)
 
 
 def setting(text: str) -> Any:
@@ -110,25 +110,25 @@ def setting(text: str) -> Any:
     return text if numbers else Keys(tuple(keys))
 
 
-def frames(one: int | None, text: str | None) -> tuple[int, ...] | None:
+def frames(frame: int | None, text: str | None) -> tuple[int, ...] | None:
     """The frames that --frame or --frames name, if any."""
     if text is None:
-        return None if one is None else (one,)
-    if one is not None:
+        return None if frame is None else (frame,)
+    if frame is not None:
         raise UsageError("--frame and --frames: give one of them")
     from ..graph.frames import parse_frames
 
     return parse_frames(text)
 
 
-def numbered(files: Sequence[tuple[str, Path]]) -> bool:
+def holds_frames(files: Sequence[tuple[str, Path]]) -> bool:
     """True if the name of a file has a place for the frame number, or is that of a video, which holds all frames."""
     from ..graph.frames import Pattern, is_video
 
     return any(Pattern.parse(str(path)) or is_video(str(path)) for _, path in files)
 
 
-def _refused(word: str) -> Any:
+def _refuse_constant(word: str) -> Any:
     raise UsageError(f"--set: {word} is no value; write a finite number")
 
 
@@ -180,8 +180,8 @@ def targets(graph: Graph, node: str) -> dict[str, Port]:
         raise UsageError(f"--node {node}: {fault}") from None
 
 
-def _choice(text: str, known: tuple[_Word, ...], flag: str) -> _Word:
-    for word in known:
+def _choice(text: str, choices: tuple[_Word, ...], flag: str) -> _Word:
+    for word in choices:
         if word == text:
             return word
-    raise UsageError(f"{flag} {text}: choose {' or '.join(known)}")
+    raise UsageError(f"{flag} {text}: choose {' or '.join(choices)}")

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .options import bound, report_problems
+from .options import report_problems, resolve_inputs
 from .outcome import note
-from .versions import version
+from .versions import load_version
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
 Pictures = Mapping[str, Any]
 """Arrays [h, w, c] by output."""
 
-How = tuple[Mapping[str, str], tuple[int, int] | None, float, int | None]
+RenderChoices = tuple[Mapping[str, str], tuple[int, int] | None, float, int | None]
 """Files of inputs, size, scale and frame, of which the last may be left open."""
 
 
-def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, Any]]:
+def render_and_compare(a: str, b: str, how: RenderChoices, output: Path | None) -> list[dict[str, Any]]:
     """How far every output of two graphs is apart; with `output` they are shown there side by side.
 
     Raises the errors of `app.errors`.
@@ -31,42 +31,44 @@ def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, An
     from ..renderer import Renderer, open_device
 
     inputs, size, scale, frame = how
-    graphs = [version(source, follow=True) for source in (a, b)]
+    graphs = [load_version(source, follow=True) for source in (a, b)]
     for source, graph in zip((a, b), graphs, strict=True):
         report_problems(Path(source), graph)
     bindings = _bindings(graphs, inputs)
     renderer = Renderer(open_device())
     note(renderer.device.description)
-    made: list[Pictures] = []
+    both: list[Pictures] = []
     try:
         for graph, bound_inputs in zip(graphs, bindings, strict=True):
-            pictures, frame = _rendered(renderer, graph, bound_inputs, (size, scale), frame)
-            made.append(pictures)
+            pictures, frame = _render(renderer, graph, bound_inputs, (size, scale), frame)
+            both.append(pictures)
     finally:
         renderer.close()
-    before, after = made
-    found: list[dict[str, Any]] = []
+    before, after = both
+    measurements: list[dict[str, Any]] = []
     for name in dict.fromkeys((*before, *after)):
         if name in before and name in after:
-            found.append(_told(name, compare_pictures(after[name], before[name], linear=_is_color(graphs, name))))
+            measurements.append(
+                _describe_difference(name, compare_pictures(after[name], before[name], linear=_is_color(graphs, name)))
+            )
         else:
-            found.append({"output": name, "same": False, "words": f"only {a if name in before else b} has it"})
+            measurements.append({"output": name, "same": False, "words": f"only {a if name in before else b} has it"})
     if output:
         _show(output, (a, b), graphs, before, after)
-    return found
+    return measurements
 
 
 def _bindings(graphs: Sequence[Graph], inputs: Mapping[str, str]) -> list[dict[str, str]]:
     """The files for the inputs of both: an input that only one of them has is filled there."""
     if set(inputs) - {""} - set[str]().union(*(graph.inputs for graph in graphs)):
-        bound(graphs[0], inputs)
+        resolve_inputs(graphs[0], inputs)
     return [
-        bound(graph, {name: file for name, file in inputs.items() if not name or name in graph.inputs})
+        resolve_inputs(graph, {name: file for name, file in inputs.items() if not name or name in graph.inputs})
         for graph in graphs
     ]
 
 
-def _rendered(
+def _render(
     renderer: Any,
     graph: Graph,
     inputs: Mapping[str, str],
@@ -84,7 +86,7 @@ def _rendered(
         reel.close()
 
 
-def _told(name: str, far: PictureDifference) -> dict[str, Any]:
+def _describe_difference(name: str, far: PictureDifference) -> dict[str, Any]:
     """The measures of two pictures, and in words; what is not finite is null for machines."""
     if far.fault:
         return {

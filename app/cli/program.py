@@ -15,9 +15,9 @@ from typer.main import get_command
 
 from ..version import VERSION
 from .options import add_root
-from .outcome import EXIT_CODES, failed, guarded, settle
+from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
 
-_SHOWN = (
+_VISIBLE = (
     "edit",
     "render",
     "check",
@@ -60,22 +60,22 @@ class Commands(Mapping[str, Any]):
     """
 
     def __getitem__(self, name: str) -> Any:
-        if name not in (*_SHOWN, *_HIDDEN):
+        if name not in (*_VISIBLE, *_HIDDEN):
             raise KeyError(name)
         return _command(name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter((*_SHOWN, *_HIDDEN))
+        return iter((*_VISIBLE, *_HIDDEN))
 
     def __len__(self) -> int:
-        return len(_SHOWN) + len(_HIDDEN)
+        return len(_VISIBLE) + len(_HIDDEN)
 
 
 class _Group(TyperGroup):
     """A group that knows its commands by name until one is wanted."""
 
-    def __init__(self, **given: Any) -> None:
-        super().__init__(**{**given, "commands": Commands()})
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**{**options, "commands": Commands()})
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Their names, in the order of the help."""
@@ -93,7 +93,7 @@ app = typer.Typer(
 
 
 @app.callback(invoke_without_command=True)
-def whole(
+def main_options(
     context: typer.Context,
     version: bool = typer.Option(False, "--version", help="Print the version and stop."),
 ) -> None:
@@ -113,8 +113,8 @@ def run(arguments: Sequence[str]) -> int:
         words = tuple(arguments)
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
     except (Exception, KeyboardInterrupt) as fault:
-        code = failed(fault, as_json)
-    return settle(code if isinstance(code, int) else 0)
+        code = report_failure(fault, as_json)
+    return flush_output(code if isinstance(code, int) else 0)
 
 
 @cache
@@ -122,5 +122,5 @@ def _command(name: str) -> Any:
     function = name.replace("-", "_")
     command = getattr(import_module(f".{function}", __package__), function)
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-    alone.command(hidden=name in _HIDDEN)(guarded(command if name in WITHOUT_ROOT else add_root(command)))
+    alone.command(hidden=name in _HIDDEN)(catch_faults(command if name in WITHOUT_ROOT else add_root(command)))
     return get_command(alone)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..renderer.jobs.job import FrameReport
 
 _PATIENCE = 0.3
-"""Seconds that work may take without a bar."""
+"""Seconds that work may take without a bar: a choice, so that short renderings do not flicker."""
 
 
 @contextmanager
@@ -26,7 +26,7 @@ def progress_reporter(kind: Literal["bar", "json"], frames: int) -> Iterator[Pro
     if kind == "json":
         yield JsonLines()
         return
-    bar = Bar(frames)
+    bar = ProgressBar(frames)
     try:
         yield bar
     finally:
@@ -36,15 +36,15 @@ def progress_reporter(kind: Literal["bar", "json"], frames: int) -> Iterator[Pro
 class JsonLines:
     """One JSON object on standard error for every pass and every frame."""
 
-    def shared(self, processes: Sequence[int]) -> None:
+    def report_helpers(self, processes: Sequence[int]) -> None:
         """Say which processes share the frames: who kills this one has to kill them too."""
         note(json.dumps({"processes": list(processes)}))
 
-    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """Say which pass is through."""
         note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": nodes}))
 
-    def finished(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
         """Say which frame is there."""
         written = [str(path) for path in report.written]
         note(
@@ -61,7 +61,7 @@ class JsonLines:
         )
 
 
-class Bar:
+class ProgressBar:
     """A progress bar on standard error, where that is a terminal and the work is long enough to watch.
 
     It counts frames, or the passes of a single one.
@@ -73,17 +73,17 @@ class Bar:
         self._progress: RichProgress | None = None
         self._started = time.perf_counter()
 
-    def shared(self, processes: Sequence[int]) -> None:
+    def report_helpers(self, processes: Sequence[int]) -> None:
         """A bar has nothing to say of processes."""
 
-    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """Show what is computed."""
         if self._frames == 1:
             self._show(nodes[-1], done, total)
         else:
             self._show(f"frame {frame}  {nodes[-1]}", None, self._frames)
 
-    def finished(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
         """Show how many frames are there."""
         if total > 1:
             self._show(f"frame {report.frame}", done, total)
@@ -93,7 +93,7 @@ class Bar:
         if self._progress is not None:
             self._progress.stop()
 
-    def _show(self, word: str, done: int | None, total: int) -> None:
+    def _show(self, word: str, count: int | None, total: int) -> None:
         if self._quiet or time.perf_counter() - self._started < _PATIENCE:
             return
         if self._progress is None:
@@ -101,14 +101,14 @@ class Bar:
             from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
             unit = "passes" if self._frames == 1 else "frames"
-            count = TextColumn("{task.completed}/{task.total} " + unit)
-            left = () if self._frames == 1 else (TimeRemainingColumn(), TextColumn("left"))
-            columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), count, *left)
+            counter = TextColumn("{task.completed}/{task.total} " + unit)
+            time_left = () if self._frames == 1 else (TimeRemainingColumn(), TextColumn("left"))
+            columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), counter, *time_left)
             self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
             self._progress.start()
             self._progress.add_task("render", total=total)
-        self._progress.update(self._progress.task_ids[0], completed=done, description=word)
+        self._progress.update(self._progress.task_ids[0], completed=count, description=word)
 
 
-ProgressReporter = JsonLines | Bar
+ProgressReporter = JsonLines | ProgressBar
 """What hears of frames, and of the processes that share them."""

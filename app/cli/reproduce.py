@@ -50,15 +50,15 @@ def reproduce(
     from ..renderer.provenance.finding import Finder, missing
     from ..renderer.provenance.recipe import read_recipe
 
-    given = parsing.assignments(inputs or (), "-i")
+    given_files = parsing.assignments(inputs or (), "-i")
     recipe = read_recipe(picture)
-    found = Finder(recipe, given, search or ()).all()
-    saved = _saved(recipe, found, graph) if graph else ""
+    files = Finder(recipe, given_files, search or ()).all()
+    saved = _save_graph(recipe, files, graph) if graph else ""
     if graph and not output:
         if as_json:
-            print_json({"picture": str(picture), "graph": saved, "inputs": [_input(item) for item in found]})
+            print_json({"picture": str(picture), "graph": saved, "inputs": [_input_facts(item) for item in files]})
         return 0
-    if fault := missing(found, picture):
+    if fault := missing(files, picture):
         raise fault
     report_problems(picture, recipe.graph)
     if (code := rerun_watched(context, picture, recipe.graph, timeout)) is not None:
@@ -68,15 +68,15 @@ def reproduce(
 
     renderer = Renderer(open_alike(recipe), budget=0)
     note(renderer.device.description)
-    made = reproduce(renderer, recipe, found, tuple(output or ()), tolerance)
+    reproduction = reproduce(renderer, recipe, files, tuple(output or ()), tolerance)
     if as_json:
-        print_json(_as_json(recipe, found, made, saved))
+        print_json(_as_json(recipe, files, reproduction, saved))
     else:
-        _print(recipe, found, made)
-    return 0 if made.same else 1
+        _print(recipe, files, reproduction)
+    return 0 if reproduction.same else 1
 
 
-def _saved(recipe: Recipe, found: tuple[Found, ...], path: Path) -> str:
+def _save_graph(recipe: Recipe, files: tuple[Found, ...], path: Path) -> str:
     """Save the graph with what was found in it; where to."""
     from dataclasses import replace
 
@@ -84,7 +84,7 @@ def _saved(recipe: Recipe, found: tuple[Found, ...], path: Path) -> str:
     from ..graph.paths import rebased
     from ..renderer.provenance.finding import pointed
 
-    whole = pointed(recipe.graph, found)
+    whole = pointed(recipe.graph, files)
     folder = str(path.absolute().parent)
     below = rebased(replace(whole, folder=str(recipe.path.absolute().parent)), folder)
     if str(path) == "-":
@@ -95,12 +95,12 @@ def _saved(recipe: Recipe, found: tuple[Found, ...], path: Path) -> str:
     return str(path)
 
 
-def _print(recipe: Recipe, found: tuple[Found, ...], made: Reproduction) -> None:
+def _print(recipe: Recipe, files: tuple[Found, ...], reproduction: Reproduction) -> None:
     proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
     print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
-    for item in made.differences:
+    for item in reproduction.differences:
         print(f"  {item.what:<9} was {item.then}, is {item.now}")
-    for item in found:
+    for item in files:
         name = item.used.pattern or item.used.name
         then = item.used.together or item.used.digest
         if item.state == "same":
@@ -109,13 +109,13 @@ def _print(recipe: Recipe, found: tuple[Found, ...], made: Reproduction) -> None
         else:
             now = f"changed, was {then[:_SHORT]}, is {item.digest[:_SHORT]} ({item.path})"
             print(f"  input     {_name(item)}: {name}: {now}")
-    for layer in made.layers:
-        print(f"  pixels    {f'{layer.name}: ' if layer.name else ''}{_told(layer, made.tolerance)}")
-    for path in made.written:
+    for layer in reproduction.layers:
+        print(f"  pixels    {f'{layer.name}: ' if layer.name else ''}{_describe_layer(layer, reproduction.tolerance)}")
+    for path in reproduction.written:
         note(f"{path}  the rebuilt picture")
 
 
-def _told(layer: Layer, tolerance: float) -> str:
+def _describe_layer(layer: Layer, tolerance: float) -> str:
     measured = layer.compared
     if measured.fault:
         return f"differ: {measured.fault}"
@@ -133,7 +133,7 @@ def _name(item: Found) -> str:
     return item.used.owner.removeprefix("inputs.")
 
 
-def _input(item: Found) -> dict[str, Any]:
+def _input_facts(item: Found) -> dict[str, Any]:
     used = item.used
     return {
         "name": _name(item),
@@ -146,16 +146,16 @@ def _input(item: Found) -> dict[str, Any]:
     }
 
 
-def _as_json(recipe: Recipe, found: tuple[Found, ...], made: Reproduction, saved: str) -> dict[str, Any]:
+def _as_json(recipe: Recipe, files: tuple[Found, ...], reproduction: Reproduction, saved: str) -> dict[str, Any]:
     return {
         "picture": str(recipe.path),
-        "same": made.same,
-        "tolerance": made.tolerance,
+        "same": reproduction.same,
+        "tolerance": reproduction.tolerance,
         "frame": recipe.frame,
         "version": recipe.version,
         "renderer": recipe.renderer,
-        "differences": [{"what": item.what, "then": item.then, "now": item.now} for item in made.differences],
-        "inputs": [_input(item) for item in found],
+        "differences": [{"what": item.what, "then": item.then, "now": item.now} for item in reproduction.differences],
+        "inputs": [_input_facts(item) for item in files],
         "pixels": [
             {
                 "layer": layer.name,
@@ -166,13 +166,13 @@ def _as_json(recipe: Recipe, found: tuple[Found, ...], made: Reproduction, saved
                 "failing": layer.compared.failing,
                 "fault": layer.compared.fault,
             }
-            for layer in made.layers
+            for layer in reproduction.layers
         ],
         "graph": saved,
-        "written": [str(path) for path in made.written],
+        "written": [str(path) for path in reproduction.written],
     }
 
 
-def _number(found: float) -> float | None:
+def _number(measure: float) -> float | None:
     """JSON has no infinity."""
-    return found if found < float("inf") else None
+    return measure if measure < float("inf") else None

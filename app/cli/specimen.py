@@ -65,44 +65,46 @@ class _SameSize(LazyResourceProvider):
         return Render({role: role for role in _ROLES}, dict.fromkeys(_ROLES, 4), mattes=(Matte("object", mattes, {}),))
 
 
-def drawn(node: type[Node]) -> tuple[str, ...]:
+def drawable_outputs(node: type[Node]) -> tuple[str, ...]:
     """The outputs that can be rendered: all but those that are only planned, such as cameras."""
     return tuple(name for name, output in node.outputs.items() if not output.socket.kind.is_planned)
 
 
-def planned(node: type[Node], size: Size, target: Target = NULL) -> Plan:
+def plan_node(node: type[Node], size: Size, target: Target = NULL) -> Plan:
     """What a node compiles to at its defaults, all that it draws wanted, over pictures of that size. Needs no OpenGL.
 
     Raises GraphError for a node that draws nothing.
     """
-    graph = Graph(settings=Settings(size, color=BUILT_IN)).add(NODE, node(**_reading(node, "picture.exr")))
+    graph = Graph(settings=Settings(size, color=BUILT_IN)).add(NODE, node(**_path_values(node, "picture.exr")))
     pictures: dict[str, Picture] = {}
     for name, socket in node.inputs.items():
         if socket.optional:
             continue
         if socket.kind is Kind.CAMERA:
-            graph = _made(graph, name, "camera", "camera")
+            graph = _link_new_node(graph, name, "camera", "camera")
             continue
-        graph = _fed(graph, name, name, Input(socket.kind, socket.channels, default=0.0 if socket.single else None))
+        graph = _link_input(
+            graph, name, name, Input(socket.kind, socket.channels, default=0.0 if socket.single else None)
+        )
         if not socket.single:
             pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
-    targets = {name: Port(NODE, name) for name in drawn(node)}
+    targets = {name: Port(NODE, name) for name in drawable_outputs(node)}
     return compile_graph(graph, Request(targets, pictures), _SameSize(size), target=target)
 
 
-def over(node: type[Node], sample: Path) -> Graph:
+def show_on_sample(node: type[Node], sample: Path) -> Graph:
     """A node at its defaults with everything that it takes to see it, its outputs those of the graph.
 
     The picture is the sample's color; a picture to lay upon it is a glow. Fields are its depth, ids or luminance,
     vectors its positions, normals or motion, or random; maps of positions stir the picture.
     """
-    graph = Graph(settings=Settings(CANVAS)).add(NODE, node(**_reading(node, str(sample))))
+    graph = Graph(settings=Settings(CANVAS)).add(NODE, node(**_path_values(node, str(sample))))
     needed = {name: socket for name, socket in node.inputs.items() if _is_needed(node, socket)}
     images = [name for name, socket in needed.items() if socket.kind is Kind.IMAGE]
     base = "image" if "image" in images else next(reversed(images), "")
     for name, socket in needed.items():
         if socket.kind is Kind.IMAGE and name != base:
-            graph = _made(
+            graph = _link_new_node(
                 graph,
                 name,
                 "ramp",
@@ -114,26 +116,28 @@ def over(node: type[Node], sample: Path) -> Graph:
                 second=(0.0, 0.0, 0.0, 0.0),
             )
         elif socket.kind is Kind.IMAGE:
-            graph = _fed(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
+            graph = _link_input(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
         elif name in _DATA:
-            graph = _fed(graph, name, name, _layer(Kind.FIELD, 1, sample, _DATA[name]))
+            graph = _link_input(graph, name, name, _layer(Kind.FIELD, 1, sample, _DATA[name]))
         elif socket.kind is Kind.FIELD:
-            graph = _made(graph, name, "luminance", "out")
-            graph = _fed(graph, "image", "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance")
+            graph = _link_new_node(graph, name, "luminance", "out")
+            graph = _link_input(
+                graph, "image", "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance"
+            )
         elif socket.kind is Kind.VECTOR:
             graph = _vector(graph, name, socket, sample)
         elif socket.kind is Kind.CAMERA:
-            graph = _made(graph, name, "solve_camera", "camera", path=str(sample))
+            graph = _link_new_node(graph, name, "solve_camera", "camera", path=str(sample))
         else:
-            graph = _fed(graph, name, name, Input(socket.kind, default=0.5))
+            graph = _link_input(graph, name, name, Input(socket.kind, default=0.5))
     # A file may not hold all that its reader could show.
-    for name in drawn(node)[:1] if issubclass(node, Source) else drawn(node):
+    for name in drawable_outputs(node)[:1] if issubclass(node, Source) else drawable_outputs(node):
         end = Output(node.outputs[name].socket.kind, node.outputs[name].socket.channels)
         graph = graph.add_output(name, end).connect(Port(NODE, name), Port("outputs", name))
     return graph
 
 
-def untouched(sample: Path) -> Graph:
+def sample_graph(sample: Path) -> Graph:
     """The sample's color as it is."""
     graph = Graph().add_input("beauty", _layer(Kind.IMAGE, 4, sample, "Combined")).add_output("image", Output())
     return graph.connect(Port("inputs", "beauty"), Port("outputs", "image"))
@@ -150,12 +154,12 @@ def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
     """Feed a vector."""
     if socket.channels == 3:
         key = "position" if name == "position" else "normal"
-        return _fed(graph, name, key, _layer(Kind.VECTOR, 3, sample, key.capitalize()))
+        return _link_input(graph, name, key, _layer(Kind.VECTOR, 3, sample, key.capitalize()))
     if socket.channels == 4:
-        return _fed(graph, name, "motion", _layer(Kind.VECTOR, 4, sample, "Vector"))
+        return _link_input(graph, name, "motion", _layer(Kind.VECTOR, 4, sample, "Vector"))
     if name not in ("st", "uv"):
-        return _made(graph, name, "noise", "vector")
-    graph, map = _made(graph, name, "combine_vector2", "vector"), f"{name}_combine_vector2"
+        return _link_new_node(graph, name, "noise", "vector")
+    graph, map = _link_new_node(graph, name, "combine_vector2", "vector"), f"{name}_combine_vector2"
     graph = graph.add("positions", _node("combine")).add("stirred", _node("swirl")).add("parts", _node("separate"))
     graph = graph.add("across", _node("ramp")).add("up", _node("ramp", start=(0.5, 1.0), end=(0.5, 0.0)))
     links = {
@@ -171,13 +175,13 @@ def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
     return graph
 
 
-def _made(graph: Graph, name: str, kind: str, output: str, **values: Any) -> Graph:
+def _link_new_node(graph: Graph, name: str, kind: str, output: str, **values: Any) -> Graph:
     """Feed an input of the node by another node."""
     id = f"{name}_{kind}"
     return graph.add(id, _node(kind, **values)).connect(Port(id, output), Port(NODE, name))
 
 
-def _fed(graph: Graph, name: str, key: str, end: Input, id: str = NODE) -> Graph:
+def _link_input(graph: Graph, name: str, key: str, end: Input, id: str = NODE) -> Graph:
     """Feed an input of a node by an input of the graph, which may be there already."""
     graph = graph if key in graph.inputs else graph.add_input(key, end)
     return graph.connect(Port("inputs", key), Port(id, name))
@@ -191,7 +195,7 @@ def _layer(kind: Kind, width: int, sample: Path, layer: str) -> Input:
     return Input(kind, width, str(sample), layer)
 
 
-def _reading(node: type[Node], path: str) -> dict[str, Any]:
+def _path_values(node: type[Node], path: str) -> dict[str, Any]:
     """The picture there as a value, for a node that reads pictures."""
     paths = (name for name, value in node.values.items() if value.type == "path")
     return dict.fromkeys(paths, path) if issubclass(node, Source) else {}

@@ -10,8 +10,19 @@ import typer
 
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
-from .batch import batch
-from .options import AsJson, GraphFile, Inputs, Node, Precision, Scale, SizeText, bound, opened, report_problems
+from .batch import open_batch
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    Node,
+    Precision,
+    Scale,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import note, print_json
 from .sweeping import axes
 from .watchdog import Timeout, rerun_watched
@@ -71,11 +82,11 @@ def sweep(
     depth = parsing.precision(precision) if precision is not None else None
     chosen = parsing.frames(frame, frames) or ()
     canvas, proxy = parsing.size(size), parsing.scale(scale)
-    whole, swept = axes(opened(graph), sets or (), chosen)
+    whole, swept = axes(open_graph(graph), sets or (), chosen)
     report_problems(graph, whole)
     if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
-    bindings, targets = bound(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
+    bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
     at = chosen[0] if chosen else LazyResourceProvider().frames(whole, bindings)[0]
     name = _output(whole, show, node)
     look = view or ("" if node else whole.outputs[name].view)
@@ -84,19 +95,19 @@ def sweep(
     if output.suffix.casefold() in (".exr", ".hdr"):
         raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
     written = Writing((("", cells),), view, precision=depth or "half") if cells is not None else None
-    wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
+    request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in swept)}"
-    with batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
-        how = sweeping.Swept(wanted, name, look, cell, columns, written, _ending(ending), title)
-        made = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)
+    with open_batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
+        how = sweeping.Swept(request, name, look, cell, columns, written, _suffix(ending), title)
+        sheet = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)
         device = work.device
-    said = {"ImageDescription": "\n".join(item.label for item in made.cells)}
-    media.write_picture(output, {"": made.light}, kinds={"": Kind.IMAGE}, view="none", metadata=said)
+    metadata = {"ImageDescription": "\n".join(item.label for item in sheet.cells)}
+    media.write_picture(output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata)
     spent = time.perf_counter() - started
     if as_json:
-        print_json(_as_json(output, made, device, spent))
+        print_json(_as_json(output, sheet, device, spent))
     else:
-        height, width = made.light.shape[:2]
+        height, width = sheet.light.shape[:2]
         note(f"{output}  {count} pictures, {width}x{height}, {spent:.2f} s")
     return 0
 
@@ -117,23 +128,23 @@ def _output(graph: Graph, show: str, node: str) -> str:
     return show or next(iter(graph.outputs))
 
 
-def _ending(text: str) -> str:
+def _suffix(text: str) -> str:
     return text if text.startswith(".") else f".{text}"
 
 
-def _as_json(output: Path, made: Any, device: str, spent: float) -> dict[str, Any]:
+def _as_json(output: Path, sheet: Any, device: str, spent: float) -> dict[str, Any]:
     return {
         "written": str(output),
-        "size": list(made.light.shape[1::-1]),
+        "size": list(sheet.light.shape[1::-1]),
         "device": device,
         "cells": [
             {
                 "label": cell.label,
                 "frame": cell.frame,
                 "values": {axis.name: step.text for axis, step in cell.steps if step.frame is None},
-                **({"file": str(made.files[place])} if made.files else {}),
+                **({"file": str(sheet.files[place])} if sheet.files else {}),
             }
-            for place, cell in enumerate(made.cells)
+            for place, cell in enumerate(sheet.cells)
         ],
         "seconds": round(spent, 3),
     }

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from .options import changed
+from .options import override_value
 
 if TYPE_CHECKING:
     from halation.nodes import Value
@@ -33,26 +33,26 @@ def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Grap
         if not equals or not name or not text:
             raise UsageError(f"--set {item}: write --set NAME=VALUE,VALUE,...")
         typed.setdefault(name, []).append(text)
-    found: dict[str, tuple[str, ...]] = {}
+    steps: dict[str, tuple[str, ...]] = {}
     labels = {FRAME: FRAME}
     for name, texts in typed.items():
         value = _value(graph, name)
         labels[name] = (value.label or value.name) if value else name.rpartition(".")[2]
-        found[name] = tuple(dict.fromkeys(part for text in texts for part in _parts(name, text, value)))
-        if len(found[name]) == 1:
-            graph = changed(graph, name, found.pop(name)[0])
+        steps[name] = tuple(dict.fromkeys(part for text in texts for part in _parts(name, text, value)))
+        if len(steps[name]) == 1:
+            graph = override_value(graph, name, steps.pop(name)[0])
     if len(frames) > 1:
-        found[FRAME] = tuple(map(str, frames))
-    said = used_labels(tuple(found), labels)
+        steps[FRAME] = tuple(map(str, frames))
+    labels_used = used_labels(tuple(steps), labels)
 
     def step(name: str, text: str) -> Step:
         if name == FRAME and len(frames) > 1:
             return Step(text, lambda graph: graph, int(text))
-        changed(graph, name, text)  # what cannot be set is refused before anything is rendered
-        return Step(text, lambda graph: changed(graph, name, text))
+        override_value(graph, name, text)  # what cannot be set is refused before anything is rendered
+        return Step(text, lambda graph: override_value(graph, name, text))
 
-    made = (Axis(name, said[name], tuple(step(name, text) for text in texts)) for name, texts in found.items())
-    return graph, tuple(made)
+    swept = (Axis(name, labels_used[name], tuple(step(name, text) for text in texts)) for name, texts in steps.items())
+    return graph, tuple(swept)
 
 
 def _value(graph: Graph, name: str) -> Value | None:
@@ -100,18 +100,23 @@ def _parts(name: str, text: str, value: Value | None) -> Iterator[str]:
                 yield one.strip()
 
 
-def _vector(name: str, text: str, one: str, value: Value) -> str:
+def _vector(name: str, text: str, numbers: str, value: Value) -> str:
     """One list of numbers. Raises UsageError for several in a row."""
     from ..errors import UsageError
 
     count = 4 if value.type == "color" else value.length
-    given = one.strip().strip("[]").count(",") + 1
-    if value.type in ("color", "vector", "matrix") and given != count and "@" not in one and not one.startswith("="):
+    given_count = numbers.strip().strip("[]").count(",") + 1
+    if (
+        value.type in ("color", "vector", "matrix")
+        and given_count != count
+        and "@" not in numbers
+        and not numbers.startswith("=")
+    ):
         raise UsageError(
-            f"--set {name}={text}: a {value.type} is {count} numbers, and {given} are given; separate several of them "
-            f"by ';' (in quotes), or repeat --set {name}=..."
+            f"--set {name}={text}: a {value.type} is {count} numbers, and {given_count} are given; separate several of "
+            f"them by ';' (in quotes), or repeat --set {name}=..."
         )
-    return one.strip()
+    return numbers.strip()
 
 
 def _range(name: str, match: re.Match[str], whole: bool) -> Iterator[str]:

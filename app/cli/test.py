@@ -54,7 +54,7 @@ def test(
 
     cases = chosen(load_suites(suites or [Path()]), select)
     if listed:
-        return _listed(cases, as_json)
+        return _list_cases(cases, as_json)
     from ..regression.crew import run_cases
     from ..regression.junit import write_junit
     from ..regression.report import check_report, write_report
@@ -79,7 +79,7 @@ def test(
     return 1 if session.count("failed") else 0
 
 
-def _listed(cases: tuple[Case, ...], as_json: bool) -> int:
+def _list_cases(cases: tuple[Case, ...], as_json: bool) -> int:
     if as_json:
         print_json({"cases": [{"id": case.id, "graph": str(case.graph), "skip": case.skip} for case in cases]})
         return 0
@@ -96,7 +96,7 @@ def _line(outcome: Outcome) -> str:
     measured = worst is not None and worst.value is not None and outcome.status == "passed"
     value = f"  {outcome.case.metric} {number(worst.value or 0.0)}" if worst is not None and measured else ""
     head = f"{_MARKS[outcome.status]}  {outcome.case.id}{value}  {outcome.seconds:.2f} s"
-    said = outcome.sentence if outcome.status != "passed" else ""
+    sentence = outcome.sentence if outcome.status != "passed" else ""
     files = [path for check in outcome.checks for path in check.files]
     where = f"\n      pictures: {files[0].parent}" if files else ""
-    return f"{head}{f'{chr(10)}      {said}' if said else ''}{where}"
+    return f"{head}{f'{chr(10)}      {sentence}' if sentence else ''}{where}"

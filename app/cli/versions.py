@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from .options import standard_input
 
 if TYPE_CHECKING:
-    from ..document.diff_merge import Line
+    from ..document.diff_merge import DifferenceLine
     from ..graph import Graph
 
 _COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}
@@ -23,17 +23,17 @@ def text_of(source: str) -> tuple[str, str]:
     Raises DocumentError, UsageError.
     """
     from ..document.disk import read_text
-    from .git import revision
+    from .git import read_revision
 
     if source == "-":
         return standard_input(), ""
     path = Path(source)
     if ":" in source and not path.drive and not os.path.lexists(path):
-        return revision(source)
+        return read_revision(source)
     return read_text(path), str(path.parent)
 
 
-def version(source: str, *, follow: bool = False, name: str = "") -> Graph:
+def load_version(source: str, *, follow: bool = False, name: str = "") -> Graph:
     """The graph there. With `follow` groups in files of their own are read too. Raises DocumentError, UsageError."""
     from .. import document
 
@@ -47,15 +47,15 @@ def is_colored() -> bool:
     return seen and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
-def show(lines: Iterable[Line], colored: bool) -> None:
+def print_lines(lines: Iterable[DifferenceLine], colored: bool) -> None:
     """Print what differs: a sign and a sentence for each, changed lines of code below."""
     for line in lines:
-        print(painted(f"{line.sign} {line.words}", line.sign, colored))
+        print(paint(f"{line.sign} {line.words}", line.sign, colored))
         for below in line.below:
-            print("    " + painted(below, below[:1], colored))
+            print("    " + paint(below, below[:1], colored))
 
 
-def painted(text: str, sign: str, colored: bool) -> str:
+def paint(text: str, sign: str, colored: bool) -> str:
     """A line in the color of its sign, with nothing in it that a terminal would obey."""
     plain = "".join(letter if letter.isprintable() or letter == "\t" else ascii(letter)[1:-1] for letter in text)
     return f"\x1b[{_COLORS[sign]}m{plain}\x1b[0m" if colored and sign in _COLORS else plain

@@ -21,16 +21,16 @@ from .options import (
     Scale,
     Sets,
     SizeText,
-    bound,
-    opened,
+    open_graph,
     report_problems,
+    resolve_inputs,
 )
 from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
     from ..graph import Graph
     from ..renderer.jobs.job import Progress, Report
-    from ..watch.rerendering import Turn
+    from ..watch.rerendering import WatchReport
 
 _LISTED = 3
 
@@ -59,7 +59,7 @@ def watch(
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.jobs.job import Writing, run_job
-    from ..watch.rerendering import Rerendering
+    from ..watch.rerendering import ContinuousRenderer
 
     if str(graph) == "-":
         raise UsageError("-: standard input cannot be watched: name the file of a graph")
@@ -70,59 +70,59 @@ def watch(
     note(renderer.device.description)
 
     def load() -> Graph:
-        found = opened(graph, parsing.sets(sets))
-        report_problems(graph, found)
-        return found
+        graph_now = open_graph(graph, parsing.sets(sets))
+        report_problems(graph, graph_now)
+        return graph_now
 
-    def render(found: Graph, progress: Progress) -> Report:
-        bindings, targets = bound(found, parsing.inputs(inputs)), parsing.targets(found, node)
-        first, last = (0, 0) if chosen else LazyResourceProvider().frames(found, bindings)
-        every = chosen or (tuple(range(first, last + 1)) if parsing.numbered(files) else (first,))
-        wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
+    def render(graph_now: Graph, progress: Progress) -> Report:
+        bindings, targets = resolve_inputs(graph_now, parsing.inputs(inputs)), parsing.targets(graph_now, node)
+        first, last = (0, 0) if chosen else LazyResourceProvider().frames(graph_now, bindings)
+        every = chosen or (tuple(range(first, last + 1)) if parsing.holds_frames(files) else (first,))
+        request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
         return run_job(
-            renderer, found, wanted, Writing(files, view, compression, depth or "half"), every, progress=progress
+            renderer, graph_now, request, Writing(files, view, compression, depth or "half"), every, progress=progress
         )
 
-    turns = Rerendering(graph, lambda found: bound(found, parsing.inputs(inputs)), load, render)
-    begun = False
+    renderings = ContinuousRenderer(graph, lambda found: resolve_inputs(found, parsing.inputs(inputs)), load, render)
+    has_rendered = False
     try:
-        for turn in turns:
-            if isinstance(turn.fault, UsageError) and not begun:
+        for turn in renderings:
+            if isinstance(turn.fault, UsageError) and not has_rendered:
                 raise turn.fault  # what was typed will not change
-            begun = True
-            _tell_json(turn) if as_json else _tell(turn)
+            has_rendered = True
+            _print_report_json(turn) if as_json else _print_report(turn)
     except KeyboardInterrupt:
-        if not begun:
+        if not has_rendered:
             raise
         note("halation: interrupted; nothing unfinished was left behind")  # which is how it is meant to end
     finally:
-        turns.close()
+        renderings.close()
     return INTERRUPTED
 
 
-def _tell(turn: Turn) -> None:
+def _print_report(turn: WatchReport) -> None:
     """One line."""
-    now = time.strftime("%H:%M:%S")
+    clock = time.strftime("%H:%M:%S")
     if turn.report is None:
-        note(f"{now}  {turn.fault}")
+        note(f"{clock}  {turn.fault}")
         return
     files = [str(path) for path in turn.report.written]
-    what = files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
+    written = files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
     names = [path.name for path in turn.changed]
     more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
     why = f"  ({', '.join(names[:_LISTED])}{more} changed)" if names else ""
-    note(f"{now}  {what}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
+    note(f"{clock}  {written}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
 
 
-def _tell_json(turn: Turn) -> None:
-    said: dict[str, object] = {"changed": [str(path) for path in turn.changed], "seconds": round(turn.seconds, 4)}
+def _print_report_json(turn: WatchReport) -> None:
+    record: dict[str, object] = {"changed": [str(path) for path in turn.changed], "seconds": round(turn.seconds, 4)}
     if turn.report is None:
         fault = turn.fault or HalationError()
         error = {"kind": type(fault).__name__, "message": str(fault), "exit_code": fault.exit_code}
-        said["error"] = error
+        record["error"] = error
     else:
-        said["written"] = [str(path) for path in turn.report.written]
-        said["frames"] = [item.frame for item in turn.report.frames]
-        said["passes"] = turn.report.passes
-    print(json.dumps(said, ensure_ascii=False))
+        record["written"] = [str(path) for path in turn.report.written]
+        record["frames"] = [item.frame for item in turn.report.frames]
+        record["passes"] = turn.report.passes
+    print(json.dumps(record, ensure_ascii=False))
     sys.stdout.flush()

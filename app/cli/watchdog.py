@@ -109,7 +109,7 @@ def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: flo
 def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
     environment = {**os.environ, **watchdog.environment}
     with (
-        _ignored_interrupts(),
+        _ignore_interrupts(),
         subprocess.Popen(command, stdin=subprocess.PIPE if text else None, env=environment) as process,
     ):
         if process.stdin:
@@ -125,7 +125,7 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
 
 
 @contextmanager
-def _ignored_interrupts() -> Iterator[None]:
+def _ignore_interrupts() -> Iterator[None]:
     """An interrupt is for the other process, which hears it too, and ends as it should."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:

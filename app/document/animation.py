@@ -15,39 +15,39 @@ from .syntax import member, word
 
 def read_animation(raw: Any, file: str, path: str) -> Animation:
     """The entry of `animation` at JSON path `path`. Whether it makes sense is for `problems`. Raises DocumentError."""
-    found = convert(raw, records.AnimationRecord, file, path)
-    if (found.expression is None) == (found.keys is None):
+    record = convert(raw, records.AnimationRecord, file, path)
+    if (record.expression is None) == (record.keys is None):
         raise DocumentError(file, path, 'it needs either "keys" or an "expression"')
-    if found.expression is not None:
-        return Expression(found.expression)
+    if record.expression is not None:
+        return Expression(record.expression)
     where = member(path, "keys")
-    keys = tuple(_key(key, file, f"{where}[{place}]") for place, key in enumerate(found.keys or ()))
+    keys = tuple(_key(key, file, f"{where}[{place}]") for place, key in enumerate(record.keys or ()))
     frames = [key.frame for key in keys]
     if frames != sorted(set(frames)):
         raise DocumentError(file, where, "list the keys by frame, one for each")
-    return Keys(keys, found.outside)
+    return Keys(keys, record.outside)
 
 
-def written_animation(animation: Animation) -> Section:
+def describe_animation(animation: Animation) -> Section:
     """What `read_animation` reads."""
     if isinstance(animation, Expression):
         return {"expression": animation.text}
     outside = {"outside": animation.outside} if animation.outside != "hold" else {}
-    return {"keys": [_written_key(key) for key in animation.keys]} | outside
+    return {"keys": [_describe_key(key) for key in animation.keys]} | outside
 
 
 def _key(raw: Any, file: str, path: str) -> Key:
-    found = convert(raw, records.KeyRecord, file, path)
-    value = _plain(found.value)
+    record = convert(raw, records.KeyRecord, file, path)
+    value = _plain(record.value)
     if value is None:
-        said = f"expected a number, true, false or a list of numbers, got {word(found.value)}"
-        raise DocumentError(file, member(path, "value"), said)
-    wanted = 1 + (len(value) if isinstance(value, tuple) else 1)
+        fault = f"expected a number, true, false or a list of numbers, got {word(record.value)}"
+        raise DocumentError(file, member(path, "value"), fault)
+    length = 1 + (len(value) if isinstance(value, tuple) else 1)
     for side in ("left", "right"):
-        given = getattr(found, side)
-        if given and len(given) != wanted:
-            raise DocumentError(file, member(path, side), f"expected a list of {wanted} numbers, got {len(given)}")
-    return Key(found.frame, value, found.interpolation, found.left, found.right)
+        handle = getattr(record, side)
+        if handle and len(handle) != length:
+            raise DocumentError(file, member(path, side), f"expected a list of {length} numbers, got {len(handle)}")
+    return Key(record.frame, value, record.interpolation, record.left, record.right)
 
 
 def _plain(raw: object) -> Plain | None:
@@ -60,9 +60,9 @@ def _plain(raw: object) -> Plain | None:
     return numbers if numbers and len(numbers) == len(parts) else None
 
 
-def _written_key(key: Key) -> Section:
+def _describe_key(key: Key) -> Section:
     frame = int(key.frame) if key.frame == int(key.frame) else key.frame
-    found: Section = {"frame": frame, "value": key.value}
+    section: Section = {"frame": frame, "value": key.value}
     if key.interpolation != "smooth":
-        found["interpolation"] = key.interpolation
-    return found | {side: handle for side, handle in (("left", key.left), ("right", key.right)) if handle}
+        section["interpolation"] = key.interpolation
+    return section | {side: handle for side, handle in (("left", key.left), ("right", key.right)) if handle}

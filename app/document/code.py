@@ -18,12 +18,12 @@ def read_code(language: Language, lines: Sequence[str] | None, file: str, folder
     return Code(language, _text(path), file, _vertex(path) if language == "isf" else "")
 
 
-def written_code(code: Code) -> dict[str, object]:
+def describe_code(code: Code) -> dict[str, object]:
     """What a document says of it."""
     return {"file": code.file} if code.file else {"code": code.text.split("\n")}
 
 
-def reread(kind: type[CustomNode], folder: str) -> Code:
+def reread_code(kind: type[CustomNode], folder: str) -> Code:
     """The code of a node as its file has it now. Raises CodeFault."""
     code = kind.code
     return read_code(code.language, None, code.file, folder) if code.file else code

@@ -12,13 +12,13 @@ from .limits import MAX_BYTES, size_fault
 
 def read_text(path: Path) -> str:
     """The text of a graph file. Raises DocumentError; a file that is too large is not read."""
-    if said := outside(path):
-        raise DocumentError(str(path), "", said, rule="unreadable-graph")
+    if reason := outside(path):
+        raise DocumentError(str(path), "", reason, rule="unreadable-graph")
     try:
         with path.open("rb") as file:
             if fault := size_fault(max(os.fstat(file.fileno()).st_size, 1)):
                 raise DocumentError(str(path), "", fault, rule="unreadable-graph")
-            found = file.read(MAX_BYTES + 1)
+            content = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
         raise DocumentError(str(path), "", "there is no such file", rule="unreadable-graph") from None
     except IsADirectoryError:
@@ -26,7 +26,7 @@ def read_text(path: Path) -> str:
     except (OSError, ValueError) as error:
         raise DocumentError(str(path), "", f"it cannot be read ({_reason(error)})", rule="unreadable-graph") from None
     try:
-        return found.decode("utf-8-sig")
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         fault = f"the text is not UTF-8 (byte {error.start}); save it as UTF-8"
         raise DocumentError(str(path), "", fault, rule="unreadable-graph") from None

@@ -15,9 +15,9 @@ from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknow
 from ..graph.names import name_fault
 from ..graph.values import coerced, expected
 from ..resources.atomic_write import write_text_atomically
-from .animation import written_animation
+from .animation import describe_animation
 from .canonical import pretty
-from .code import written_code
+from .code import describe_code
 from .limits import size_fault
 from .migrations import FORMAT
 from .records import type_name
@@ -62,7 +62,7 @@ def _graph(graph: Graph) -> Section:
         "nodes": entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
         "links": {str(target): str(source) for target, source in graph.links.items()},
         "animation": entries(
-            "animation", {str(port): written_animation(item) for port, item in graph.animation.items()}
+            "animation", {str(port): describe_animation(item) for port, item in graph.animation.items()}
         ),
         "ui": graph.ui,
     }
@@ -77,7 +77,7 @@ def _settings(settings: Settings, kept: Mapping[str, Any]) -> Section:
         for field in fields(Settings)
         if (now := getattr(settings, field.name)) != getattr(plain, field.name)
     }
-    color = {**kept, **_filled({"config": settings.color.config, "working": settings.color.working})}
+    color = {**kept, **_fill({"config": settings.color.config, "working": settings.color.working})}
     return {**found, "color": color} if color else found
 
 
@@ -96,18 +96,18 @@ def _input(name: str, end: Input) -> Section:
         "missing": end.missing if end.missing != "error" else "",
         "color_space": end.color_space,
     }
-    return {"type": type_name(end.kind, end.width)} | _filled(found) | ({} if default is None else {"default": default})
+    return {"type": type_name(end.kind, end.width)} | _fill(found) | ({} if default is None else {"default": default})
 
 
 def _output(end: Output) -> Section:
-    return {"type": type_name(end.kind, end.width)} | _filled({"layer": end.layer, "view": end.view})
+    return {"type": type_name(end.kind, end.width)} | _fill({"layer": end.layer, "view": end.view})
 
 
 def _control(item: Control) -> Section:
-    return {"target": str(item.target)} | _filled({"label": item.label, "doc": item.doc})
+    return {"target": str(item.target)} | _fill({"label": item.label, "doc": item.doc})
 
 
-def _filled(texts: Mapping[str, str]) -> Section:
+def _fill(texts: Mapping[str, str]) -> Section:
     return {name: text for name, text in texts.items() if text}
 
 
@@ -125,7 +125,7 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
-    what = written_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
+    what = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.package:
         what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.package)
     return {"type": item.id} | what | muted | ({"values": values} if values else {})

@@ -17,21 +17,23 @@ STALE_ALLOW = Rule(
 RULES = (STALE_ALLOW,)
 
 
-def where(problem: Problem) -> str:
+def place_name(problem: Problem) -> str:
     """What `rule:node` calls the place of a problem: `glow/bloom`, `inputs.beauty`; "" for the graph as a whole."""
     end = problem.node.rpartition("/")[2] in (INPUTS, OUTPUTS, CONTROLS)
     return f"{problem.node}.{problem.socket}" if end and problem.socket else problem.node
 
 
-def allowed(graph: Graph, problem: Problem) -> str:
+def find_allowance(graph: Graph, problem: Problem) -> str:
     """The entry of `settings.allow` that says a warning is meant, or nothing."""
     if problem.severity == "error":
         return ""
-    names = (problem.rule.name, f"{problem.rule.name}:{where(problem)}")
+    names = (problem.rule.name, f"{problem.rule.name}:{place_name(problem)}")
     return next((name for name in names if name in graph.settings.allow), "")
 
 
-def stale(graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]) -> Iterator[Problem]:
+def find_stale_allowances(
+    graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]
+) -> Iterator[Problem]:
     """Entries that allow nothing; those of `unsure` rules depend on more than the file, so nothing is said of them."""
     spent, silent = set(used), set(unsure)
     for entry in graph.settings.allow:

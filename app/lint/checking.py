@@ -18,7 +18,7 @@ from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
 from . import allowing, compiled, surroundings, texts
 from .rules import CHECKS
-from .sheet import Sheet, bodies
+from .sheet import GraphFacts, bodies
 
 RULES: Mapping[str, Rule] = {
     rule.name: rule
@@ -49,7 +49,7 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Report:
+class CheckReport:
     """What was found in a file, by line."""
 
     file: str
@@ -62,11 +62,11 @@ class Report:
 
 
 @dataclass
-class Checker:
+class GraphChecker:
     """Checks files, without the rules that are `off`. What several files name is looked at once."""
 
     off: frozenset[str] = frozenset()
-    world: compiled.World = field(default_factory=compiled.World)
+    world: compiled.NotingProvider = field(default_factory=compiled.NotingProvider)
     around: surroundings.Surroundings = field(default_factory=surroundings.Surroundings)
 
     @cached_property
@@ -74,66 +74,72 @@ class Checker:
         """The installed node types."""
         return catalogue()
 
-    def file(self, path: Path) -> Report:
+    def check_file(self, path: Path) -> CheckReport:
         """A graph file. Nothing is raised: what cannot be read is found too."""
         try:
             text = read_text(path)
         except DocumentError as fault:
-            return self._report(str(path), "", None, self._unread(fault, ""))
-        return self.text(text, str(path), str(path.parent))
+            return self._report(str(path), "", None, self._document_problem(fault, ""))
+        return self.check_text(text, str(path), str(path.parent))
 
-    def text(self, text: str, file: str, folder: str) -> Report:
+    def check_text(self, text: str, file: str, folder: str) -> CheckReport:
         """The text of a graph. Relative paths in it start at `folder`."""
         try:
-            made = document.loads(text, file, folder, self.types)
+            whole_graph = document.loads(text, file, folder, self.types)
         except DocumentError as fault:
-            return self._report(file, text, None, self._unread(fault, file, text))
-        return self._report(file, text, made, self._found(made, text))
+            return self._report(file, text, None, self._document_problem(fault, file, text))
+        return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))
 
-    def _unread(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
+    def _document_problem(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
         problem, line = texts.unread(fault, text)
         if file and fault.file != file:  # it is in the file of a group
             problem = replace(problem, sentence=str(fault), at="")
         yield problem, line if not file or fault.file == file else 0, fault.exit_code
 
-    def _found(self, made: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
+    def _find_problems(self, whole_graph: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
         """Problems with the line where the JSON path does not say it, and the exit code of each."""
-        found = graph.problems(made, self.types)
-        for problem in found:
+        graph_problems = graph.problems(whole_graph, self.types)
+        for problem in graph_problems:
             yield problem, 0, GraphError.exit_code if problem.severity == "error" else 0
-        for problem, line in texts.problems(made, text, self.types):
+        for problem, line in texts.problems(whole_graph, text, self.types):
             yield problem, line, 0
-        if any(problem.severity == "error" for problem in found):
+        if any(problem.severity == "error" for problem in graph_problems):
             return
-        for body, inside, at in bodies(made):
-            sheet = Sheet(body)
+        for body, inside, at in bodies(whole_graph):
+            sheet = GraphFacts(body)
             for check in CHECKS:
                 for problem in check.find(sheet) if check.rule.name not in self.off else ():
                     node = f"{inside}{problem.node}" if problem.node else inside.removesuffix("/")
                     yield replace(problem, node=node, at=f"{at}{problem.at}" if problem.at else ""), 0, 0
-        for problem in self.around.problems(made):
+        for problem in self.around.problems(whole_graph):
             yield problem, 0, 0
-        for code, problem in compiled.problems(made, self.world):
+        for code, problem in compiled.problems(whole_graph, self.world):
             yield problem, 0, code
 
-    def _report(self, file: str, text: str, made: Graph | None, found: Iterator[tuple[Problem, int, int]]) -> Report:
-        kept, used = list[tuple[Problem, int, int]](), set[str]()
-        for item in found:
+    def _report(
+        self, file: str, text: str, whole_graph: Graph | None, problems: Iterator[tuple[Problem, int, int]]
+    ) -> CheckReport:
+        reported, used = list[tuple[Problem, int, int]](), set[str]()
+        for item in problems:
             if item[0].rule.name in self.off:
                 continue
-            if made is not None and (entry := allowing.allowed(made, item[0])):
+            if whole_graph is not None and (entry := allowing.find_allowance(whole_graph, item[0])):
                 used.add(entry)
             else:
-                kept.append(item)
-        if made is not None and made.settings.allow and allowing.STALE_ALLOW.name not in self.off:
-            whole = not any(problem.severity == "error" for problem, _, _ in kept)
+                reported.append(item)
+        if whole_graph is not None and whole_graph.settings.allow and allowing.STALE_ALLOW.name not in self.off:
+            whole = not any(problem.severity == "error" for problem, _, _ in reported)
             unsure = {*_OUTER, *self.off} if whole else RULES
-            kept += [(problem, 0, 0) for problem in allowing.stale(made, used, RULES, unsure)]
-        if not kept:
-            return Report(file, ())
+            reported += [
+                (problem, 0, 0) for problem in allowing.find_stale_allowances(whole_graph, used, RULES, unsure)
+            ]
+        if not reported:
+            return CheckReport(file, ())
         lines = Positions(text)
-        findings = [Finding(line or _line(lines, made, problem), problem, code) for problem, line, code in kept]
-        return Report(file, tuple(sorted(findings, key=_order)))
+        findings = [
+            Finding(line or _line(lines, whole_graph, problem), problem, code) for problem, line, code in reported
+        ]
+        return CheckReport(file, tuple(sorted(findings, key=_order)))
 
 
 def _order(finding: Finding) -> tuple[int, str, str, str]:
@@ -141,14 +147,14 @@ def _order(finding: Finding) -> tuple[int, str, str, str]:
     return finding.line, problem.severity, problem.rule.name, problem.sentence
 
 
-def _line(lines: Positions, made: Graph | None, problem: Problem) -> int:
+def _line(lines: Positions, whole_graph: Graph | None, problem: Problem) -> int:
     """The line of a problem: that of its JSON path, else of whatever its node and socket name."""
     if problem.at:
         return lines.line(problem.at, last=problem.rule is texts.DOUBLE_KEY)
     at, *rest = "", *problem.node.split("/")
     for name in rest[:-1]:
-        item = made.nodes.get(name) if made else None
-        made = item.graph if isinstance(item, Group) else None
+        item = whole_graph.nodes.get(name) if whole_graph else None
+        whole_graph = item.graph if isinstance(item, Group) else None
         if isinstance(item, Group) and item.path:
             return lines.line(f"{at}nodes.{name}.path")
         at = f"{at}nodes.{name}.graph."

@@ -63,12 +63,12 @@ T = TypeVar("T")
 
 
 @dataclass
-class World:
+class NotingProvider:
     """Files as the compiler asks for them. Each is looked at once, and one that cannot be read is noted."""
 
     faults: dict[str, str] = field(default_factory=dict[str, str])
     """Sentences about files, and the path that the graph has for each."""
-    _known: dict[Any, Any] = field(default_factory=dict[Any, Any])
+    _answers: dict[Any, Any] = field(default_factory=dict[Any, Any])
     _asked: dict[str, str] = field(default_factory=dict[str, str])
     """Paths as the graph has them, by the file of a frame."""
     size: tuple[int, int] = SIZE
@@ -101,62 +101,62 @@ class World:
             return find_sequence(path) is not None
 
         try:
-            return self._known_or("sequence", path, ask)
+            return self._answer("sequence", path, ask)
         except HalationError:
             return True
 
     def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
-        found = self._once(path, ("at", path, frame, missing), lambda: self.pictures.at(path, frame, missing))
-        shown = found or FrameFile(path)
-        self._asked[shown.path] = path
-        return shown
+        file = self._answer_or_note(path, ("at", path, frame, missing), lambda: self.pictures.at(path, frame, missing))
+        shown_file = file or FrameFile(path)
+        self._asked[shown_file.path] = path
+        return shown_file
 
     def probe(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture, or something instead."""
         how = (picture.kind, picture.width, picture.space, picture.color)
         key, path = (picture.path, picture.layer, *how), picture.path
-        found = None if picture.in_memory else self._once(path, key, lambda: self.pictures.probe(picture))
-        return found or PictureProbe(self.size, False, path)
+        probe = None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe(picture))
+        return probe or PictureProbe(self.size, False, path)
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
-        return self._known_or("recolor", change, lambda: self.pictures.recolor(change))
+        return self._answer("recolor", change, lambda: self.pictures.recolor(change))
 
     def working(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space."""
-        return self._known_or("working", color, lambda: self.pictures.working(color))
+        return self._answer("working", color, lambda: self.pictures.working(color))
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds."""
-        return self._known_or(path, tuple(sorted(named.items())), lambda: self.pictures.render(path, named))
+        return self._answer(path, tuple(sorted(named.items())), lambda: self.pictures.render(path, named))
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""
-        return self._known_or("mesh", scene, lambda: self.pictures.mesh(scene))
+        return self._answer("mesh", scene, lambda: self.pictures.mesh(scene))
 
-    def _once(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
+    def _answer_or_note(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
         """An answer, or None after noting why there is none."""
         try:
-            return self._known_or("once", key, ask)
+            return self._answer("once", key, ask)
         except InputError as fault:
             self.faults[str(fault)] = self._asked.get(path, path)
         return None
 
-    def _known_or(self, kind: str, key: object, ask: Callable[[], T]) -> T:
+    def _answer(self, kind: str, key: object, ask: Callable[[], T]) -> T:
         """An answer, the same as before; a refusal is given again too."""
-        if (kind, key) not in self._known:
+        if (kind, key) not in self._answers:
             try:
-                self._known[kind, key] = ask()
+                self._answers[kind, key] = ask()
             except HalationError as fault:
-                self._known[kind, key] = fault
-        found = self._known[kind, key]
-        if isinstance(found, HalationError):
-            raise found
-        return found
+                self._answers[kind, key] = fault
+        answer = self._answers[kind, key]
+        if isinstance(answer, HalationError):
+            raise answer
+        return answer
 
 
-def problems(graph: Graph, world: World) -> Iterator[tuple[int, Problem]]:
+def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem]]:
     """What there is to say of a graph that has no errors, each with the exit code that rendering would have."""
     free = {name: item for name, item in graph.inputs.items() if not item.file and item.default is None}
     read = {source.socket for source in graph.links.values() if source.node == INPUTS}
@@ -202,7 +202,9 @@ def _rule(fault: HalationError) -> Rule:
 
 def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, str]]) -> Problem:
     """The problem of a file, with whoever names it."""
-    path = path or next((known for known in sorted(places, key=len, reverse=True) if sentence.startswith(known)), "")
+    path = path or next(
+        (candidate for candidate in sorted(places, key=len, reverse=True) if sentence.startswith(candidate)), ""
+    )
     node, socket, at = places.get(path, ("", "", ""))
     if path and _is_pointer(Path(path)):
         words = f"{path}: this is a pointer of git LFS, not the file itself: run git lfs pull"
@@ -219,11 +221,11 @@ def _is_pointer(path: Path) -> bool:
 
 def _places(graph: Graph, inside: str = "", at: str = "", fixed: str = "") -> dict[str, tuple[str, str, str]]:
     """Who names a file first, by its path: node, socket and JSON path; `fixed` for what another file says."""
-    found: dict[str, tuple[str, str, str]] = {}
+    places: dict[str, tuple[str, str, str]] = {}
     for node, socket, where, path in named_paths(graph):
-        found.setdefault(str(PurePath(graph.folder, path)), (f"{inside}{node}", socket, fixed or f"{at}{where}"))
+        places.setdefault(str(PurePath(graph.folder, path)), (f"{inside}{node}", socket, fixed or f"{at}{where}"))
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
             there = fixed or (f"{at}nodes.{id}.path" if item.path else "")
-            found = {**_places(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.", there), **found}
-    return found
+            places = {**_places(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.", there), **places}
+    return places

@@ -15,32 +15,32 @@ from ..errors import DocumentError
 _KEY = re.compile(r'"halation"\s*:')
 
 
-def graphs(given: Iterable[Path]) -> Iterator[Path]:
+def find_graphs(paths: Iterable[Path]) -> Iterator[Path]:
     """Every file that is meant, once, in order.
 
     A folder stands for all graphs in it and below, hidden folders aside; a pattern for what it matches, `**` included.
     A name stands for itself, whether there is such a file or not.
     """
-    seen = set[str]()
-    for path in given:
-        for found in _one(path):
-            key = os.path.realpath(found)
-            if key not in seen:
-                seen.add(key)
-                yield found
+    real_paths = set[str]()
+    for path in paths:
+        for graph_path in _expand(path):
+            key = os.path.realpath(graph_path)
+            if key not in real_paths:
+                real_paths.add(key)
+                yield graph_path
 
 
-def _one(path: Path) -> Iterator[Path]:
+def _expand(path: Path) -> Iterator[Path]:
     if path.is_dir():
-        yield from _inside(path)
+        yield from _graphs_in_folder(path)
     elif path.exists() or not (matches := sorted(glob.glob(str(path), recursive=True))):  # noqa: PTH207
         yield path
     else:
         for match in matches:
-            yield from _inside(Path(match)) if Path(match).is_dir() else (Path(match),)
+            yield from _graphs_in_folder(Path(match)) if Path(match).is_dir() else (Path(match),)
 
 
-def _inside(folder: Path) -> Iterator[Path]:
+def _graphs_in_folder(folder: Path) -> Iterator[Path]:
     """The graphs in a folder: JSON files that say they are one."""
     for here, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))

@@ -9,40 +9,40 @@ from halation.nodes import Node, Trait
 
 from ..graph import Graph, Problem, problems
 from ..graph.problems import differ_in_nodes, rechecked
-from .allowing import allowed
+from .allowing import find_allowance
 from .rules import data, filtering, light
-from .sheet import Sheet, bodies, has_trait
+from .sheet import GraphFacts, bodies, has_trait
 
 _CHECKS = (*filtering.CHECKS, *light.CHECKS, *data.CHECKS)
 
 
-def remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem, ...]:
+def find_remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem, ...]:
     """The problems of a graph; of one that has no errors hints too, groups in its file included."""
-    found = problems(graph, types)
-    if any(problem.severity == "error" for problem in found):
-        return found
-    return (*found, *sorted(_hints(graph), key=lambda item: (item.node, item.socket, item.sentence)))
+    graph_problems = problems(graph, types)
+    if any(problem.severity == "error" for problem in graph_problems):
+        return graph_problems
+    return (*graph_problems, *sorted(_hints(graph), key=lambda item: (item.node, item.socket, item.sentence)))
 
 
-def again(
-    graph: Graph, before: Graph, found: tuple[Problem, ...], types: Mapping[str, type[Node]]
+def recheck_remarks(
+    graph: Graph, before: Graph, last_problems: tuple[Problem, ...], types: Mapping[str, type[Node]]
 ) -> tuple[Problem, ...]:
     """The same as `remarks(graph)`, given what that found in a graph of `before`; quick while a value is dragged."""
     if differ_in_nodes(graph, before) and _same_roles(graph, before):
-        now = rechecked(graph, before, found, types)
-        if now is found:
-            return found
-    return remarks(graph, types)
+        rechecked_problems = rechecked(graph, before, last_problems, types)
+        if rechecked_problems is last_problems:
+            return last_problems
+    return find_remarks(graph, types)
 
 
 def _hints(graph: Graph) -> Iterator[Problem]:
     for body, inside, _ in bodies(graph):
-        sheet = Sheet(body)
+        sheet = GraphFacts(body)
         for check in _CHECKS:
             for problem in check.find(sheet):
-                made = replace(problem, node=f"{inside}{problem.node}")
-                if not allowed(graph, made):
-                    yield made
+                hint = replace(problem, node=f"{inside}{problem.node}")
+                if not find_allowance(graph, hint):
+                    yield hint
 
 
 def _same_roles(graph: Graph, before: Graph) -> bool:

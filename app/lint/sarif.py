@@ -9,13 +9,13 @@ from typing import Any
 from urllib.parse import quote
 
 from ..graph.rules import Rule
-from .allowing import where
-from .checking import Finding, Report
+from .allowing import place_name
+from .checking import CheckReport, Finding
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
-def sarif(reports: Iterable[Report], rules: Mapping[str, Rule], root: Path, version: str) -> dict[str, Any]:
+def sarif(reports: Iterable[CheckReport], rules: Mapping[str, Rule], root: Path, version: str) -> dict[str, Any]:
     """A log of one run. Files are named from `root`, or whole where they lie outside of it."""
     places = {name: place for place, name in enumerate(rules)}
     results = [
@@ -42,7 +42,7 @@ def _result(finding: Finding, uri: str, index: int) -> dict[str, Any]:
     problem = finding.problem
     file = {"artifactLocation": {"uri": uri}, "region": {"startLine": finding.line}}
     location: dict[str, Any] = {"physicalLocation": file}
-    if place := where(problem):
+    if place := place_name(problem):
         location["logicalLocations"] = [{"fullyQualifiedName": place}]
     return {
         "ruleId": problem.rule.name,

@@ -16,7 +16,7 @@ from ..graph.rules import Rule
 
 
 @dataclass(frozen=True)
-class Sheet:
+class GraphFacts:
     """A graph, or the body of a group that is part of its file, that has no errors."""
 
     graph: Graph
@@ -91,7 +91,7 @@ class Check(NamedTuple):
     """A rule and what finds its problems in a graph."""
 
     rule: Rule
-    find: Callable[[Sheet], Iterator[Problem]]
+    find: Callable[[GraphFacts], Iterator[Problem]]
 
 
 def bodies(graph: Graph, inside: str = "", at: str = "") -> Iterator[tuple[Graph, str, str]]:

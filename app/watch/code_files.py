@@ -13,13 +13,13 @@ from ..graph.paths import full
 
 def code_files(graph: Graph) -> tuple[Path, ...]:
     """The files that code of the graph and of its groups is in, with the vertex shaders that may lie beside them."""
-    found: dict[Path, None] = {}
+    files: dict[Path, None] = {}
     for body, item in code_items(graph):
         if file := code_file(item, body.folder):
-            found[file] = None
+            files[file] = None
             if getattr(item, "id", getattr(item, "type", "")) == "isf":
-                found[file.with_suffix(".vs")] = None
-    return tuple(found)
+                files[file.with_suffix(".vs")] = None
+    return tuple(files)
 
 
 def code_items(graph: Graph, borrowed: bool = True) -> Iterator[tuple[Graph, Item]]:

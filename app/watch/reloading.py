@@ -67,7 +67,7 @@ class NodeFiles:
         except (Exception, SystemExit) as fault:
             for name, module in before.items():
                 _install(name, module)
-            return f"{self._told(fault)}; all nodes stay as they were"
+            return f"{self._describe_fault(fault)}; all nodes stay as they were"
         built_in_nodes.cache_clear()
         catalogue.cache_clear()
         dict(built_in_nodes())
@@ -79,22 +79,22 @@ class NodeFiles:
 
     def _read(self) -> dict[str, bytes]:
         """The text of every file by the name of its module. Raises OSError."""
-        found: dict[str, bytes] = {}
+        texts: dict[str, bytes] = {}
         for path in sorted(self.folder.rglob("*.py")):
             parts = path.relative_to(self.folder).with_suffix("").parts
-            found[".".join((nodes.__name__, *(part for part in parts if part != "__init__")))] = path.read_bytes()
-        return found
+            texts[".".join((nodes.__name__, *(part for part in parts if part != "__init__")))] = path.read_bytes()
+        return texts
 
-    def _told(self, fault: BaseException) -> str:
+    def _describe_fault(self, fault: BaseException) -> str:
         """Where in the files of nodes it went wrong, and what."""
-        said = fault.msg if isinstance(fault, SyntaxError) else str(fault) or type(fault).__name__
+        reason = fault.msg if isinstance(fault, SyntaxError) else str(fault) or type(fault).__name__
         places = [(Path(frame.filename), frame.lineno) for frame in traceback.extract_tb(fault.__traceback__)]
         if isinstance(fault, SyntaxError) and fault.filename:
             places.append((Path(fault.filename), fault.lineno))
         for path, line in reversed(places):
             if path.is_relative_to(self.folder) and path.parent not in (self.folder, self.folder / "_declare"):
-                return f"{path.relative_to(self.folder.parent).as_posix()}, line {line}: {said}"
-        return said
+                return f"{path.relative_to(self.folder.parent).as_posix()}, line {line}: {reason}"
+        return reason
 
 
 def _load(name: str, text: bytes) -> None:
@@ -118,13 +118,13 @@ def _install(name: str, module: ModuleType | None) -> None:
         setattr(sys.modules[package], short, module)
 
 
-def migrated(graph: Graph, types: Types | None = None) -> Graph:
+def migrate_graph(graph: Graph, types: Types | None = None) -> Graph:
     """The same graph made of these classes (default: `catalogue()`); the very same one if it is already.
 
     Values that no longer fit have their default. Nodes of a type that is gone become unknown ones, and come back.
     """
-    known = catalogue() if types is None else types
-    changed = {id: found for id, item in graph.nodes.items() if (found := _migrated(graph, id, item, known))}
+    types_by_id = catalogue() if types is None else types
+    changed = {id: found for id, item in graph.nodes.items() if (found := _migrate_node(graph, id, item, types_by_id))}
     if not changed:
         return graph
     extra = {key: keys for key, keys in graph.extra.items() if not any(_is_of(key, id) for id in changed)}
@@ -133,28 +133,28 @@ def migrated(graph: Graph, types: Types | None = None) -> Graph:
     return replace(graph, nodes={**graph.nodes, **{id: found.nodes[id] for id, found in changed.items()}}, extra=extra)
 
 
-def _migrated(graph: Graph, id: str, item: Item, known: Types) -> Graph | None:
+def _migrate_node(graph: Graph, id: str, item: Item, known: Types) -> Graph | None:
     """A graph of that node alone, or None if it stays as it is."""
-    mine = {key: keys for key, keys in graph.extra.items() if _is_of(key, id)}
+    own_keys = {key: keys for key, keys in graph.extra.items() if _is_of(key, id)}
     if isinstance(item, Group):
-        inner = migrated(item.graph, known)
-        return None if inner is item.graph else Graph({id: replace(item, graph=inner)}, extra=mine)
+        inner = migrate_graph(item.graph, known)
+        return None if inner is item.graph else Graph({id: replace(item, graph=inner)}, extra=own_keys)
     if isinstance(item, CustomNode):
         return None
-    now = known.get(item.type if isinstance(item, Unknown) else item.id)
-    if (now is None and isinstance(item, Unknown)) or type(item) is now:
+    current_class = known.get(item.type if isinstance(item, Unknown) else item.id)
+    if (current_class is None and isinstance(item, Unknown)) or type(item) is current_class:
         return None
     try:
-        tree = json.loads(document.dumps(Graph({id: item}, extra=mine)))
+        tree = json.loads(document.dumps(Graph({id: item}, extra=own_keys)))
     except GraphError:
         return None
     node: dict[str, Any] = tree["nodes"][id]
-    if now is not None and isinstance(item, Node):
-        node["version"] = min(item.version, now.version)
-    return _loaded(tree, id, graph.folder, known)
+    if current_class is not None and isinstance(item, Node):
+        node["version"] = min(item.version, current_class.version)
+    return _load_fitting(tree, id, graph.folder, known)
 
 
-def _loaded(tree: dict[str, Any], id: str, folder: str, known: Types) -> Graph | None:
+def _load_fitting(tree: dict[str, Any], id: str, folder: str, known: Types) -> Graph | None:
     """The graph that the tree says, without values that do not fit; None if it is beyond that."""
     values: Any = tree["nodes"][id].get("values")
     while True:

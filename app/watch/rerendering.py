@@ -1,4 +1,10 @@
-"""A graph rendered again whenever what it is made of changes: its file, groups, code, pictures, shaders, nodes."""
+"""Rendering a graph again whenever a file that it is made of changes.
+
+These are its own file, the files of its groups and code, its pictures, and the shaders and classes of nodes. What to
+watch depends on the graph, and the graph may change between reading it and watching its files. So `_load_watched`
+watches first, then reads, and repeats this until the list of files stays the same. A graph that cannot be read says
+nothing of its files; then every path in its text is watched, as one of them may be what is missing.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +21,17 @@ from ..graph import Graph
 from ..renderer.jobs.job import FrameReport, Progress, Report
 from .code_files import code_files
 from .reloading import NodeFiles, shader_folder
-from .sequence_files import all_files
-from .watching import Change, Watcher, groups_of, pictures_of
+from .sequence_files import list_sequence_files
+from .watching import FileChange, FileWatcher, find_group_files, find_pictures
 
-_LOOK = 0.05
-_CALM = 0.1
-"""Seconds without another change after which a burst of them is over."""
+_POLL_SECONDS = 0.05
+_CALM_SECONDS = 0.1
+"""Seconds without another change after which a burst of changes is over: programs often save several files at once."""
 
 
 @dataclass(frozen=True)
-class Turn:
-    """What came of rendering once: a report, or why there is none; and the files that had changed before, if any."""
+class WatchReport:
+    """One rendering: its report, or the fault that prevented it; and the files that had changed before, if any."""
 
     changed: tuple[Path, ...]
     seconds: float
@@ -34,15 +40,15 @@ class Turn:
 
 
 class _Outdated(Exception):
-    """Something changed while it was being rendered."""
+    """Raised to end a rendering during which a file changed."""
 
 
-class Rerendering:
-    """Turn after turn, for as long as somebody asks for the next one; each waits until something has changed.
+class ContinuousRenderer:
+    """An endless iterator of renderings; each waits until a file has changed.
 
-    `load` reads the graph, `bindings` are the files that fill its inputs, `render` renders it. What either raises of
-    `app.errors` is a turn without a report, and what the graph named last goes on being watched. A rendering that is
-    outdated before it has ended is begun again.
+    `load` reads the graph, `bindings` returns the files of its inputs, `render` renders it. If one of them raises an
+    error of `app.errors`, that is a rendering without a report, and the files that the graph named last stay watched. A
+    rendering during which a file changes is started again.
     """
 
     def __init__(
@@ -54,23 +60,23 @@ class Rerendering:
     ) -> None:
         self._path, self._bindings = path.absolute(), bindings
         self._load, self._render = load, render
-        self._watcher, self._nodes = Watcher(), NodeFiles()
+        self._watcher, self._nodes = FileWatcher(), NodeFiles()
         self._watched: tuple[tuple[Path, ...], ...] = ((), (), ())
-        self._news: dict[Path, Change] = {}
+        self._news: dict[Path, FileChange] = {}
 
-    def __iter__(self) -> Iterator[Turn]:
+    def __iter__(self) -> Iterator[WatchReport]:
         changed: tuple[Path, ...] = ()
         while True:
             started = time.perf_counter()
             try:
-                report, fault = self._render(self._loaded(), _Ends(self._look)), None
+                report, fault = self._render(self._load_watched(), _OutdatedCheck(self._has_news)), None
             except _Outdated:
-                changed = tuple(dict.fromkeys((*changed, *self._changes())))
+                changed = tuple(dict.fromkeys((*changed, *self._wait_for_changes())))
                 continue
             except HalationError as error:
                 report, fault = None, error
-            yield Turn(changed, time.perf_counter() - started, report, fault)
-            changed = self._changes()
+            yield WatchReport(changed, time.perf_counter() - started, report, fault)
+            changed = self._wait_for_changes()
 
     def close(self) -> None:
         """Stop watching."""
@@ -78,41 +84,41 @@ class Rerendering:
 
     # --- what is watched -----------------------------------------------------------------------------------------
 
-    def _loaded(self) -> Graph:
-        """The graph as it is now; what it is made of is watched before it is read."""
+    def _load_watched(self) -> Graph:
+        """Read the graph, with the watch on all its files started before they are read."""
         while True:
             self._watch()
             try:
                 graph = self._load()
                 bound = self._bindings(graph)
             except HalationError:
-                self._watched = (self._watched[0] + _named(self._path), *self._watched[1:])
+                self._watched = (self._watched[0] + _find_named_files(self._path), *self._watched[1:])
                 self._watch()
                 raise
-            pictures = all_files(pictures_of(graph, bound))
-            now = (groups_of(graph), pictures, code_files(graph))
-            if now == self._watched:
+            pictures = list_sequence_files(find_pictures(graph, bound))
+            files = (find_group_files(graph), pictures, code_files(graph))
+            if files == self._watched:
                 return graph
-            self._watched = now
+            self._watched = files
 
     def _watch(self) -> None:
         groups, pictures, code = self._watched
         self._watcher.watch(self._path, groups, pictures, [shader_folder()], [self._nodes.folder], code)
 
-    def _look(self) -> bool:
+    def _has_news(self) -> bool:
         """True if there is news."""
         self._news |= {change.path: change for change in self._watcher.poll()}
         return bool(self._news)
 
-    def _changes(self) -> tuple[Path, ...]:
+    def _wait_for_changes(self) -> tuple[Path, ...]:
         """Wait until something has changed, and then until nothing changes any more."""
-        while not self._look():
-            time.sleep(_LOOK)
+        while not self._has_news():
+            time.sleep(_POLL_SECONDS)
         count = 0
         while count != len(self._news):
             count = len(self._news)
-            time.sleep(_CALM)
-            self._look()
+            time.sleep(_CALM_SECONDS)
+            self._has_news()
         news, self._news = self._news, {}
         if any(change.kind == "shader" for change in news.values()):
             installed_library.cache_clear()
@@ -121,34 +127,34 @@ class Rerendering:
         return tuple(news)
 
     def _refuse(self, fault: str) -> None:
-        """Say in the next turn that a file of a node is broken; all nodes are as they were."""
+        """Report in the next rendering that a file of a node is broken; all node classes stay as they were."""
         load = self._load
 
-        def refusing() -> Graph:
+        def raise_fault() -> Graph:
             self._load = load
             raise GraphError(fault)
 
-        self._load = refusing
+        self._load = raise_fault
 
 
-class _Ends:
-    """Ends a rendering between two passes once it is outdated."""
+class _OutdatedCheck:
+    """Ends a rendering between two passes once a file has changed."""
 
     def __init__(self, is_outdated: Callable[[], bool]) -> None:
         self._is_outdated = is_outdated
 
-    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """A pass is through."""
         if self._is_outdated():
             raise _Outdated
 
-    def finished(self, report: FrameReport, done: int, total: int) -> None:
-        """The files of a frame are there, which is no reason to stop."""
+    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
+        """A finished frame is no reason to stop."""
 
 
-def _named(path: Path) -> tuple[Path, ...]:
-    """Files that a document names which cannot be loaded: one of them may be what is missing."""
-    found: dict[Path, None] = {}
+def _find_named_files(path: Path) -> tuple[Path, ...]:
+    """All files that a document which cannot be loaded may name, and that these name: one may be missing."""
+    files: dict[Path, None] = {}
     todo = [path]
     while todo:
         file = todo.pop()
@@ -157,12 +163,12 @@ def _named(path: Path) -> tuple[Path, ...]:
         except (OSError, ValueError, RecursionError):
             continue
         for text in _texts(tree):
-            other = Path(file.parent, text).absolute()
-            if other not in found:
-                found[other] = None
-                if other.suffix.casefold() == ".json":
-                    todo.append(other)
-    return tuple(found)
+            named = Path(file.parent, text).absolute()
+            if named not in files:
+                files[named] = None
+                if named.suffix.casefold() == ".json":
+                    todo.append(named)
+    return tuple(files)
 
 
 def _texts(tree: Any) -> Iterable[str]:

@@ -15,7 +15,7 @@ AFTER = 24
 """Frames after the last one that are waited for."""
 
 
-def standing(path: Path, frame: int = 1) -> Path:
+def representative_file(path: Path, frame: int = 1) -> Path:
     """The picture itself; of a sequence the one at that frame, or the nearest one. A path that is wrong stays."""
     try:
         return Path(find_frame_file(str(path), frame, "nearest").path)
@@ -23,30 +23,30 @@ def standing(path: Path, frame: int = 1) -> Path:
         return path
 
 
-def all_files(paths: Iterable[Path]) -> tuple[Path, ...]:
+def list_sequence_files(paths: Iterable[Path]) -> tuple[Path, ...]:
     """Every file that is read for these paths, those included that a sequence lacks or may get soon."""
-    found: list[Path] = []
+    files: list[Path] = []
     for path in paths:
         try:
             sequence = find_sequence(str(path))
         except HalationError:
             sequence = None
         if sequence is None or not sequence.frames:
-            found.append(path)
+            files.append(path)
             continue
         frames = range(sequence.frames[0], sequence.frames[-1] + AFTER + 1)[-MOST:]
-        known = sequence.names
-        found += [Path(sequence.path(frame) if frame in known else sequence.pattern.name(frame)) for frame in frames]
-    return tuple(dict.fromkeys(found))
+        names = sequence.names
+        files += [Path(sequence.path(frame) if frame in names else sequence.pattern.name(frame)) for frame in frames]
+    return tuple(dict.fromkeys(files))
 
 
-def patterns(paths: Sequence[Path]) -> tuple[tuple[Path, ...], dict[Path, Path]]:
+def suggest_patterns(paths: Sequence[Path]) -> tuple[tuple[Path, ...], dict[Path, Path]]:
     """Dropped files with several of one sequence made one, and the sequence that each of the others is a frame of."""
-    suggested = {path: found for path in paths if (found := suggest_pattern(str(path)))}
+    suggested = {path: pattern for path in paths if (pattern := suggest_pattern(str(path)))}
     counts = {found: [*suggested.values()].count(found) for found in suggested.values()}
-    made = tuple(
+    chosen = tuple(
         dict.fromkeys(
             Path(suggested[path]) if path in suggested and counts[suggested[path]] > 1 else path for path in paths
         )
     )
-    return made, {path: Path(suggested[path]) for path in made if path in suggested}
+    return chosen, {path: Path(suggested[path]) for path in chosen if path in suggested}

@@ -11,7 +11,7 @@ from ..resources.input_files import fingerprint
 LOOK_AGAIN = 1.0
 
 
-class Versions:
+class FileVersions:
     """What tells one version of a file from the next."""
 
     def __init__(self) -> None:
@@ -19,12 +19,12 @@ class Versions:
 
     def of(self, path: Path) -> tuple[str, str]:
         """The version, which changes when the file does, and why there is no such file, or ""."""
-        now = monotonic()
+        time_now = monotonic()
         at, version, fault = self._known.get(str(path), (-LOOK_AGAIN, "", ""))
-        if now - at >= LOOK_AGAIN:
+        if time_now - at >= LOOK_AGAIN:
             try:
                 version, fault = fingerprint(path), ""
             except HalationError as error:
                 version, fault = "", str(error)
-            self._known[str(path)] = (now, version, fault)
+            self._known[str(path)] = (time_now, version, fault)
         return version, fault

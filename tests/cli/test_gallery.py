@@ -60,9 +60,9 @@ def test_it_says_where_it_cannot_write(cli, shot):
 
 @pytest.mark.parametrize("id", catalogue())
 def test_every_node_has_all_that_it_needs(id):
-    graph = specimen.over(catalogue()[id], sample())
+    graph = specimen.show_on_sample(catalogue()[id], sample())
     assert [problem for problem in problems(graph) if problem.severity == "error"] == []
-    drawn = specimen.drawn(catalogue()[id])
+    drawn = specimen.drawable_outputs(catalogue()[id])
     assert (*graph.outputs,) == (drawn[:1] if issubclass(catalogue()[id], Source) else drawn)
     needed = {name for name, socket in catalogue()[id].inputs.items() if not socket.optional}
     assert needed <= {target.socket for target in graph.links if target.node == specimen.NODE}
@@ -114,8 +114,8 @@ def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> 
 def test_the_sheet_of_time_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every third row is made again and compared; the others stay black."""
     names, frames_of = described(IMAGES / "time.jpg"), gallery.frames_of
-    assert names == [*gallery.moving()] and (IMAGES / "time.jpg").stat().st_size < 900_000
-    chosen = [graph for name, graph in gallery.moving().items() if name in names[1::3]]
+    assert names == [*gallery.animated_presets()] and (IMAGES / "time.jpg").stat().st_size < 900_000
+    chosen = [graph for name, graph in gallery.animated_presets().items() if name in names[1::3]]
 
     def blank(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
         return dict.fromkeys(frames, np.zeros((144, 256, 3), np.float32))

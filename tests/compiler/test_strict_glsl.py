@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 from halation import document
-from halation.cli.specimen import drawn, planned
+from halation.cli.specimen import drawable_outputs, plan_node
 from halation.compiler import NULL, Plan, Request, Target, compile_graph
 from halation.inputs.provider import MediaProvider
 from halation.nodes import catalogue
@@ -29,8 +29,8 @@ TOGETHER = 100
 
 def plans(target: Target) -> Iterator[Plan]:
     for node in catalogue().values():
-        if drawn(node):
-            yield planned(node, (1920, 1080), target)
+        if drawable_outputs(node):
+            yield plan_node(node, (1920, 1080), target)
     pictures = MediaProvider()
     for path in paths():
         yield compile_graph(document.load(path), Request(), pictures, target=target)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
-from halation.document.diff_merge import ABSENT, applied, difference, facts, told
+from halation.document.diff_merge import ABSENT, apply_difference, compare_graphs, describe_difference, describe_graph
 from halation.document.diff_merge.parts import text_of
 from halation.graph import Expression, Graph, Group, Key, Keys, Output, Port, Settings, Unknown
 from halation.nodes import catalogue
@@ -28,20 +28,20 @@ def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
     for _ in range(rng.randint(0, 6)):
         after = edit_randomly(rng, after)
     after = parse_graph(dumps(after))
-    found = difference(before, after, layout=True)
-    assert dumps(parse_graph(text_of(applied(before, found)))) == dumps(after)
+    found = compare_graphs(before, after, layout=True)
+    assert dumps(parse_graph(text_of(apply_difference(before, found)))) == dumps(after)
     assert bool(found) == (dumps(before) != dumps(after))
-    logic = difference(before, after)
-    assert not difference(parse_graph(text_of(applied(before, logic))), after)
-    assert len(told(logic, before, after)) > 0 or not logic
-    assert (facts(before) == facts(after)) == (not logic)
+    logic = compare_graphs(before, after)
+    assert not compare_graphs(parse_graph(text_of(apply_difference(before, logic))), after)
+    assert len(describe_difference(logic, before, after)) > 0 or not logic
+    assert (describe_graph(before) == describe_graph(after)) == (not logic)
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 2**32))
 def test_a_graph_does_not_differ_from_itself(seed: int) -> None:
     graph = make_graph(seed)
-    assert not difference(graph, parse_graph(dumps(graph)), layout=True)
+    assert not compare_graphs(graph, parse_graph(dumps(graph)), layout=True)
 
 
 @settings(max_examples=40, deadline=None)
@@ -50,7 +50,7 @@ def test_renaming_is_told_from_removing_and_adding(seed: int) -> None:
     """Whatever else is in the graph, unless a twin stands beside the node."""
     rng, before = Random(seed), make_graph(seed)
     old = rng.choice([*before.nodes])
-    found = difference(before, before.rename(old, "fresh"))
+    found = compare_graphs(before, before.rename(old, "fresh"))
     assert [(one.old, one.new) for one in found.renamed] == [(old, "fresh")] and not found.changes
 
 
@@ -66,7 +66,7 @@ def chain(*names: str) -> Graph:
 
 
 def lines(before: Graph, after: Graph) -> list[str]:
-    return [f"{line.sign} {line.words}" for line in told(difference(before, after), before, after)]
+    return [f"{line.sign} {line.words}" for line in describe_difference(compare_graphs(before, after), before, after)]
 
 
 BASE = chain("blur:gaussian_blur", "light:exposure")
@@ -133,7 +133,7 @@ def test_code_is_compared_line_by_line() -> None:
         return Graph().add("wave", Unknown("later", {"code": code}))
 
     before, after = coded("one", "two", "three", "four"), coded("one", "two", "3", "four")
-    found = told(difference(before, after), before, after)
+    found = describe_difference(compare_graphs(before, after), before, after)
     assert [(line.words, line.below) for line in found] == [
         ("wave.code:", ("@@ -2,3 +2,3 @@", " two", "-three", "+3", " four"))
     ]
@@ -142,7 +142,7 @@ def test_code_is_compared_line_by_line() -> None:
 def test_twins_are_not_said_to_be_renamed() -> None:
     """Two equal nodes side by side became two others: which is which nobody can say."""
     twins = Graph().add("a", NODES["exposure"]()).add("b", NODES["exposure"]())
-    found = difference(twins, twins.rename("a", "c").rename("b", "d"))
+    found = compare_graphs(twins, twins.rename("a", "c").rename("b", "d"))
     assert not found.renamed
     assert {(change.at[-1], change.after is ABSENT) for change in found.changes} == {
         ("a", True),

@@ -10,10 +10,18 @@ from typing import Any
 import pytest
 from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
-from halation.document.diff_merge import At, Merged, Side, conflicts_of, difference, merged, resolved
+from halation.document.diff_merge import (
+    MergedGraph,
+    PartPath,
+    Side,
+    compare_graphs,
+    merge_graphs,
+    read_conflicts,
+    resolve_conflicts,
+)
 from halation.document.diff_merge.aligning import align_three
-from halation.document.diff_merge.lines import merged_lines
-from halation.document.diff_merge.parts import at_part, is_tree, parts_of, same
+from halation.document.diff_merge.lines import merge_lines
+from halation.document.diff_merge.parts import equals, get_part, is_tree, parts_of
 from halation.errors import UsageError
 from halation.graph import Graph, Port, problems, signature
 from halation.nodes import catalogue
@@ -38,8 +46,13 @@ def versions(seed: int, edits: int = 3) -> tuple[Graph, Graph, Graph]:
 @given(SEEDS)
 def test_the_laws_of_merging(seed: int) -> None:
     base, ours, theirs = versions(seed)
-    assert merged(base, ours, base) == merged(base, base, ours) == merged(base, ours, ours) == Merged(dumps(ours), ())
-    one, other = merged(base, ours, theirs), merged(base, theirs, ours)
+    assert (
+        merge_graphs(base, ours, base)
+        == merge_graphs(base, base, ours)
+        == merge_graphs(base, ours, ours)
+        == MergedGraph(dumps(ours), ())
+    )
+    one, other = merge_graphs(base, ours, theirs), merge_graphs(base, theirs, ours)
     assert {c.at for c in one.conflicts} == set() or other.conflicts
     for made in (one, other):
         graph = parse_graph(made.text)
@@ -55,21 +68,23 @@ def test_the_laws_of_merging(seed: int) -> None:
 def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
     """Every change is in the result, or in a conflict; and ours is always in place."""
     base, ours, theirs = align_three(*versions(seed, 5))
-    made = merged(base, ours, theirs)
+    made = merge_graphs(base, ours, theirs)
     parts, open = parts_of(parse_graph(made.text)), [conflict.at for conflict in made.conflicts]
 
-    def is_open(at: At) -> bool:
+    def is_open(at: PartPath) -> bool:
         return any(one[: len(at)] == at or at[: len(one)] == one for one in open)
 
-    for side, changes in ((ours, difference(base, ours).changes), (theirs, difference(base, theirs).changes)):
+    for side, changes in ((ours, compare_graphs(base, ours).changes), (theirs, compare_graphs(base, theirs).changes)):
         for change in changes:
-            found = at_part(parts, change.at)
-            there = (is_tree(found) and is_tree(change.after)) or same(found, change.after)
+            found = get_part(parts, change.at)
+            there = (is_tree(found) and is_tree(change.after)) or equals(found, change.after)
             assert there or is_open(change.at), change
-            assert side is theirs or not is_open(change.at) or same(found, at_part(parts_of(ours), change.at)), change
+            assert side is theirs or not is_open(change.at) or equals(found, get_part(parts_of(ours), change.at)), (
+                change
+            )
     for conflict in made.conflicts:
         assert [
-            same(at_part(parts_of(side), conflict.at), said)
+            equals(get_part(parts_of(side), conflict.at), said)
             for side, said in zip((base, ours, theirs), (conflict.base, conflict.ours, conflict.theirs), strict=True)
         ] == [True] * 3
 
@@ -95,7 +110,7 @@ def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> 
 
     ours, theirs = turned(base, ids[:half], "mine"), turned(base, ids[half:], "yours")
     both = turned(turned(base, ids[:half], "mine"), ids[half:], "yours")
-    assert merged(base, ours, theirs) == merged(base, theirs, ours) == Merged(dumps(both), ())
+    assert merge_graphs(base, ours, theirs) == merge_graphs(base, theirs, ours) == MergedGraph(dumps(both), ())
 
 
 @settings(max_examples=40, deadline=None)
@@ -103,17 +118,17 @@ def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> 
 def test_a_side_can_be_chosen(seed: int, side: Side) -> None:
     """And then nothing is open; what theirs changed is as theirs has it."""
     base, ours, theirs = align_three(*versions(seed, 6))
-    made = merged(base, ours, theirs)
+    made = merge_graphs(base, ours, theirs)
     document = json.loads(made.text)
     if not made.conflicts:
         with pytest.raises(UsageError):
-            resolved(document, {"": side})
+            resolve_conflicts(document, {"": side})
         return
-    done = parse_graph(json.dumps(resolved(document, {"": side})))
-    assert not conflicts_of(json.loads(dumps(done)))
+    done = parse_graph(json.dumps(resolve_conflicts(document, {"": side})))
+    assert not read_conflicts(json.loads(dumps(done)))
     for conflict in made.conflicts:
         wanted = {"ours": conflict.ours, "theirs": conflict.theirs, "base": conflict.base}[side]
-        assert same(at_part(parts_of(done), conflict.at), wanted)
+        assert equals(get_part(parts_of(done), conflict.at), wanted)
 
 
 def made(document: dict[str, Any], **changes: Any) -> Graph:
@@ -177,7 +192,7 @@ def key(frame: float, value: float) -> dict[str, float]:
 def test_what_two_people_may_do_at_once(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
     """The result is what one would have made of what the other left, and no one is asked."""
     sides = made(BASE), made(BASE, **ours), made(BASE, **theirs)
-    found, other = merged(*sides), merged(sides[0], sides[2], sides[1])
+    found, other = merge_graphs(*sides), merge_graphs(sides[0], sides[2], sides[1])
     assert found == other and not found.conflicts
     logic = [json.loads(text) for text in (found.text, dumps(made(BASE, **ours)), dumps(made(BASE, **theirs)))]
     for section in ("nodes", "links", "outputs"):
@@ -193,7 +208,7 @@ def test_what_two_people_may_do_at_once(ours: dict[str, Any], theirs: dict[str, 
 def test_keys_of_both_sides() -> None:
     ours = made(BASE, **{"animation/light.stops/keys": [key(1, 0.5), key(9, 1.0)]})
     theirs = made(BASE, **{"animation/light.stops/keys": [key(1, 0.0), key(4, 2.0), key(9, 1.0)]})
-    found = json.loads(merged(made(BASE), ours, theirs).text)
+    found = json.loads(merge_graphs(made(BASE), ours, theirs).text)
     assert found["animation"]["light.stops"]["keys"] == [key(1, 0.5), key(4, 2.0), key(9, 1.0)]
 
 
@@ -201,7 +216,7 @@ def test_a_renamed_node_takes_what_the_other_changed() -> None:
     renamed = made(BASE).rename("blur", "soft")
     theirs = made(BASE, **{"nodes/blur/values": {"sigma": 7.0}})
     for sides in ((renamed, theirs), (theirs, renamed)):
-        found = merged(made(BASE), *sides)
+        found = merge_graphs(made(BASE), *sides)
         assert not found.conflicts and parse_graph(found.text) == theirs.rename("blur", "soft")
 
 
@@ -243,24 +258,24 @@ LOOPING = {"nodes/c": {"type": "merge"}, "links/c.a": "inputs.beauty", "links/c.
 def test_true_conflicts(ours: dict[str, Any], theirs: dict[str, Any], paths: set[str]) -> None:
     """Ours stays in place, the graph loads, and every conflict is a problem on the node that it is about."""
     sides = made(BASE), made(BASE, **ours), made(BASE, **theirs)
-    found = merged(*sides)
+    found = merge_graphs(*sides)
     assert {conflict.path for conflict in found.conflicts} == paths
     graph, document = parse_graph(found.text), json.loads(found.text)
     named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
     assert {problem.sentence.partition(" was")[0] for problem in named} == paths
     assert {problem.severity for problem in named} == {"error"}
-    assert parse_graph(json.dumps(resolved(document, {"": "ours"}))).nodes.items() >= sides[1].nodes.items()
-    done = parse_graph(json.dumps(resolved(document, {"": "theirs"})))
+    assert parse_graph(json.dumps(resolve_conflicts(document, {"": "ours"}))).nodes.items() >= sides[1].nodes.items()
+    done = parse_graph(json.dumps(resolve_conflicts(document, {"": "theirs"})))
     assert done.nodes.items() >= sides[2].nodes.items() and done.links.items() >= sides[2].links.items()
 
 
 def test_links_that_only_together_make_a_loop() -> None:
     base = {**BASE, "nodes": {**BASE["nodes"], "a": {"type": "merge"}, "b": {"type": "merge"}}}
     ours, theirs = made(base, **{"links/a.a": "b.out"}), made(base, **{"links/b.a": "a.out"})
-    found = merged(made(base), ours, theirs)
+    found = merge_graphs(made(base), ours, theirs)
     assert [conflict.path for conflict in found.conflicts] == ["links.b.a"]
     parse_graph(found.text).order()
-    assert parse_graph(json.dumps(resolved(json.loads(found.text), {"links.b.a": "ours"}))) == ours
+    assert parse_graph(json.dumps(resolve_conflicts(json.loads(found.text), {"links.b.a": "ours"}))) == ours
 
 
 def test_code_goes_together_line_by_line() -> None:
@@ -268,9 +283,9 @@ def test_code_goes_together_line_by_line() -> None:
         return parse_graph(json.dumps({"halation": 1, "nodes": {"wave": {"type": "later", "code": code}}}))
 
     base = coded("a", "b", "c", "d", "e")
-    found = merged(base, coded("A", "b", "c", "d", "e"), coded("a", "b", "c", "d", "E", "f"))
+    found = merge_graphs(base, coded("A", "b", "c", "d", "e"), coded("a", "b", "c", "d", "E", "f"))
     assert json.loads(found.text)["nodes"]["wave"]["code"] == ["A", "b", "c", "d", "E", "f"] and not found.conflicts
-    found = merged(base, coded("a", "x", "c", "d", "e"), coded("a", "y", "c", "d", "e"))
+    found = merge_graphs(base, coded("a", "x", "c", "d", "e"), coded("a", "y", "c", "d", "e"))
     assert [conflict.path for conflict in found.conflicts] == ["nodes.wave.code"]
 
 
@@ -278,8 +293,8 @@ def test_code_goes_together_line_by_line() -> None:
 @given(*[st.lists(st.sampled_from("abcd"), max_size=8)] * 3)
 def test_the_laws_of_lines(base: list[str], ours: list[str], theirs: list[str]) -> None:
     """Laws of diff3: what is the same on two sides is taken from the third, and the sides are alike."""
-    assert merged_lines(base, ours, base) == merged_lines(base, base, ours) == merged_lines(base, ours, ours) == ours
-    assert merged_lines(base, ours, theirs) == merged_lines(base, theirs, ours)
+    assert merge_lines(base, ours, base) == merge_lines(base, base, ours) == merge_lines(base, ours, ours) == ours
+    assert merge_lines(base, ours, theirs) == merge_lines(base, theirs, ours)
 
 
 @pytest.mark.parametrize(
@@ -289,4 +304,4 @@ def test_a_damaged_marker_is_a_problem_and_not_a_crash(marker: Any) -> None:
     graph = made(BASE, conflicts=marker)
     named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
     assert len(named) == (1 if marker else 0)
-    assert json.loads(merged(graph, graph, made(BASE, conflicts=marker, later=1)).text)["conflicts"] == marker
+    assert json.loads(merge_graphs(graph, graph, made(BASE, conflicts=marker, later=1)).text)["conflicts"] == marker

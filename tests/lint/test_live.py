@@ -6,7 +6,7 @@ import dataclasses
 from random import Random
 
 from halation.graph import Port, Settings, problems, signature
-from halation.lint.live import again, remarks
+from halation.lint.live import find_remarks, recheck_remarks
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -21,7 +21,7 @@ STEPS = st.lists(st.sampled_from([TURN, MOVE, DIM, HALF, SOFT, TONE, ("bloom", {
 @given(STEPS, st.randoms(use_true_random=False))
 def test_nothing_is_forgotten_while_values_change(steps, rng: Random) -> None:
     graph = chain(*steps)
-    found = remarks(graph, NODES)
+    found = find_remarks(graph, NODES)
     for _ in range(6):
         before, id = graph, rng.choice([*graph.nodes])
         if rng.random() < 0.3:
@@ -31,23 +31,23 @@ def test_nothing_is_forgotten_while_values_change(steps, rng: Random) -> None:
             now = {"choice": lambda v=value: rng.choice(v.choices), "float": lambda v=value: max(v.minimum, 1.0)}
             plain = now.get(value.type, lambda v=value: tuple(rng.choice((0.5, 1.0)) for _ in range(v.length)))()
             graph = graph.put(Port(id, value.name), rng.choice((plain, value.default)))
-        found = again(graph, before, found, NODES)
-        assert found == remarks(graph, NODES)
+        found = recheck_remarks(graph, before, found, NODES)
+        assert found == find_remarks(graph, NODES)
 
 
 def test_hints_come_after_problems_and_not_in_a_graph_with_errors() -> None:
     graph = chain(TURN, DIM, MOVE)
-    assert [one.rule.name for one in remarks(graph, NODES)] == ["filtering-twice"]
+    assert [one.rule.name for one in find_remarks(graph, NODES)] == ["filtering-twice"]
     broken = graph.disconnect(Port("a", "image"))
-    assert remarks(broken, NODES) == problems(broken, NODES) != ()
+    assert find_remarks(broken, NODES) == problems(broken, NODES) != ()
     meant = dataclasses.replace(graph, settings=Settings(allow={"filtering-twice:c": "soft is the look"}))
-    assert remarks(meant, NODES) == ()
+    assert find_remarks(meant, NODES) == ()
 
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32))
 def test_any_graph_can_be_looked_at(seed) -> None:
     graph = random_graph(seed, 14)
-    for problem in remarks(graph, NODES):
+    for problem in find_remarks(graph, NODES):
         assert problem.severity == "warning"
         assert problem.socket in (*signature(graph.nodes[problem.node]).inputs, "")

@@ -7,7 +7,7 @@ from pathlib import Path
 from random import Random
 
 from halation.document import dumps
-from halation.lint.checking import RULES, Checker
+from halation.lint.checking import RULES, GraphChecker
 from halation.lint.sarif import sarif
 from halation.nodes import catalogue
 from hypothesis import given, settings
@@ -16,7 +16,7 @@ from lint_graphs import DIM, chain
 
 PRESETS = sorted((Path(__file__).parents[2] / "presets").glob("*.json"))
 TEXTS = [path.read_text("utf-8") for path in PRESETS]
-CHECKER = Checker()
+CHECKER = GraphChecker()
 ODD = [
     None,
     True,
@@ -52,7 +52,7 @@ def parts(tree: object) -> list[tuple[dict | list, str | int]]:
 
 
 def looked_at(text: str) -> None:
-    report = CHECKER.text(text, "a.json", str(PRESETS[0].parent))
+    report = CHECKER.check_text(text, "a.json", str(PRESETS[0].parent))
     last = text.count("\n") + 1
     for finding in report.findings:
         assert RULES[finding.problem.rule.name] is finding.problem.rule
@@ -88,12 +88,12 @@ def test_text_is_cut_or_spoiled(index, rng: Random) -> None:
 
 def test_nodes_of_older_versions_are_named() -> None:
     newer = type("Grade", (catalogue()["grade"],), {"version": 3, "__module__": catalogue()["grade"].__module__})
-    checker = Checker(frozenset({"unbound-input"}))
+    checker = GraphChecker(frozenset({"unbound-input"}))
     checker.types = {**catalogue(), "grade": newer}
     text = dumps(chain(DIM, DIM)).replace('"version": 1', '"version": 2', 1)
     found = [
         (one.problem.node, one.line)
-        for one in checker.text(text, "", "").findings
+        for one in checker.check_text(text, "", "").findings
         if one.problem.rule.name == "old-version"
     ]
     first = next(number for number, line in enumerate(text.splitlines(), 1) if '"a": {' in line)

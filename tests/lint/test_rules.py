@@ -12,9 +12,9 @@ from halation.document import dumps, load, loads
 from halation.errors import HalationError
 from halation.graph import Expression, Graph, Group, Input, Output, Port
 from halation.graph import rules as graph_rules
-from halation.lint.checking import RULES, Checker
+from halation.lint.checking import RULES, GraphChecker
 from halation.lint.rules import CHECKS
-from halation.lint.sheet import Sheet
+from halation.lint.sheet import GraphFacts
 from halation.nodes import Kind
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
@@ -26,7 +26,7 @@ PRESETS = sorted((ROOT / "presets").glob("*.json"))
 
 def found(graph: Graph) -> list[tuple[str, str]]:
     """Rule and node of what the rules about graphs say."""
-    sheet = Sheet(graph)
+    sheet = GraphFacts(graph)
     return sorted((one.rule.name, one.node) for check in CHECKS for one in check.find(sheet))
 
 
@@ -206,7 +206,7 @@ def test_paths(path, rule) -> None:
 
 @pytest.mark.parametrize("path", PRESETS, ids=[path.stem for path in PRESETS])
 def test_presets_are_clean(path) -> None:
-    assert [one.problem.sentence for one in Checker().file(path).findings] == []
+    assert [one.problem.sentence for one in GraphChecker().check_file(path).findings] == []
 
 
 def test_every_rule_can_be_looked_up_and_says_what_to_do() -> None:
@@ -237,13 +237,13 @@ def test_checking_refuses_what_compiling_refuses(tmp_path) -> None:
     bound = {"beauty": Picture("beauty", "", Kind.IMAGE, 4, in_memory=True)}
     with pytest.raises(HalationError) as caught:
         compile_graph(made, Request(bindings=bound), Nowhere())
-    report = Checker(frozenset({"unbound-input", "filtering-twice"})).text(text, "big.json", str(tmp_path))
+    report = GraphChecker(frozenset({"unbound-input", "filtering-twice"})).check_text(text, "big.json", str(tmp_path))
     assert [(one.problem.rule.name, one.code) for one in report.findings] == [("too-large", caught.value.exit_code)]
 
 
 def test_lines_of_a_preset_lead_to_the_node() -> None:
     path = ROOT / "presets" / "agx_look.json"
     text = path.read_text().replace('"type": "saturation"', '"type": "saturatoin"')
-    (one,) = Checker().text(text, "a.json", str(path.parent)).findings
+    (one,) = GraphChecker().check_text(text, "a.json", str(path.parent)).findings
     assert one.problem.rule.name == "unknown-type" and '"color": {' in text.splitlines()[one.line - 1]
     assert load(path).nodes["color"].id == "saturation"

@@ -13,7 +13,7 @@ from devices import open_renderer
 from exr_files import write_exr
 from halation import document, media
 from halation.authoring.preview.data_range import find_data_range
-from halation.cli.specimen import drawn, over
+from halation.cli.specimen import drawable_outputs, show_on_sample
 from halation.color.transforms import decode_srgb
 from halation.compiler import installed_library
 from halation.nodes import Kind, Node, Pointwise, built_in_nodes
@@ -33,7 +33,7 @@ LIMIT = 0.03
 AFAR = 0.02
 """Mean difference of light, 0..1, between averages over a sixteenth of the width."""
 
-NODES = tuple(node for node in built_in_nodes().values() if drawn(node))
+NODES = tuple(node for node in built_in_nodes().values() if drawable_outputs(node))
 
 
 def noted(node: type[Node], differs: str) -> frozenset[str]:
@@ -80,7 +80,7 @@ def another() -> Iterator[Renderer]:
 
 def rendered(engine: Renderer, node: type[Node], picture: Path, scale: float) -> dict[str, Array]:
     """All outputs of a node at its defaults, by way of a file."""
-    graph = document.loads(document.dumps(over(node, picture)))
+    graph = document.loads(document.dumps(show_on_sample(node, picture)))
     found = engine.render(graph, RenderRequest(scale=scale, frame=7))
     return {name: array.astype(np.float32) for name, array in found.items()}
 

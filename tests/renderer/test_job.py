@@ -93,10 +93,10 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
         written.append(path)
 
     class Ends:
-        def passed(self, *_):
+        def report_pass(self, *_):
             most_waiting.append(len(loaded) - len(written))
 
-        def finished(self, *_):
+        def report_frame(self, *_):
             pass
 
     engine.runner._load = loading
@@ -153,10 +153,10 @@ class Watcher:
     def __init__(self, engine: Renderer) -> None:
         self.textures, self.results, self.bytes = engine.runner.textures, list[int](), list[int]()
 
-    def passed(self, *_):
+    def report_pass(self, *_):
         pass
 
-    def finished(self, *_):
+    def report_frame(self, *_):
         self.results.append(len(self.textures._results))
         self.bytes.append(self.textures.allocated)
 

@@ -12,14 +12,14 @@ from typing import Annotated
 import pytest
 from halation.graph import Graph, Group, Port, Unknown
 from halation.nodes import Image, Pointwise, Slider, catalogue
-from halation.watch.reloading import migrated, shader_folder
+from halation.watch.reloading import migrate_graph, shader_folder
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[2]
 
 BEGIN = """
 from pathlib import Path
 from halation import document
-from halation.watch.reloading import NodeFiles, migrated
+from halation.watch.reloading import NodeFiles, migrate_graph
 from halation.graph import Graph, Unknown
 from halation.nodes import Node, catalogue
 
@@ -28,15 +28,16 @@ color = files.folder / "color"
 exposure = color / "exposure.py"
 text = exposure.read_text()
 graph = Graph().add("e", before["exposure"](stops=2.0)).add("s", before["saturation"](saturation=0.5))
-assert files.reload() == "" and catalogue() is before and migrated(graph) is graph
+assert files.reload() == "" and catalogue() is before and migrate_graph(graph) is graph
 """
 
 
 @pytest.fixture
 def script(tmp_path):
     """`script(code)` runs code with a copy of the project; what is installed is not seen."""
-    for top in ("app", "nodes", "shaders", "presets"):
-        shutil.copytree(ROOT / top, tmp_path / "halation" / top, ignore=shutil.ignore_patterns("__pycache__"))
+    package = tmp_path / "halation"
+    for top, folder in (("app", package), *((top, package / top) for top in ("nodes", "shaders", "presets"))):
+        shutil.copytree(ROOT / top, folder, ignore=shutil.ignore_patterns("__pycache__"))
 
     def run(code):
         path = f"{tmp_path}:{sysconfig.get_path('purelib')}:{sysconfig.get_path('platlib')}"
@@ -55,7 +56,7 @@ assert files.reload() == ""
 after = catalogue()
 assert after["exposure"] is not before["exposure"] and after["saturation"] is before["saturation"]
 assert after["exposure"].values["stops"].low == -30.0 and list(after) == list(before)
-new = migrated(graph)
+new = migrate_graph(graph)
 assert isinstance(new.nodes["e"], Node) and type(new.nodes["e"]) is after["exposure"]
 assert (new.nodes["e"].stops, new.nodes["e"].gain) == (2.0, 7.0) and new.nodes["s"] is graph.nodes["s"]
 assert document.loads(document.dumps(new)) == new
@@ -63,7 +64,7 @@ assert document.loads(document.dumps(new)) == new
 for number in (3, 4):
     exposure.write_text(text.replace("= 0.0", f"= {number}.0"))
     assert files.reload() == "" and catalogue()["exposure"]().stops == number
-assert migrated(new).nodes["e"].stops == 2.0
+assert migrate_graph(new).nodes["e"].stops == 2.0
 """)
 
 
@@ -99,14 +100,14 @@ exposure.unlink()
 old = Graph().add("g", Unknown("glowing", {"version": 1, "values": {"stops": 3.0, "odd": 1}}))
 assert files.reload() == ""
 assert catalogue()["glowing"].category == "mine" and "exposure" not in catalogue()
-alive = migrated(old)
+alive = migrate_graph(old)
 assert alive.nodes["g"].stops == 3.0 and alive.extra["nodes.g.values"] == {"odd": 1}
 assert document.dumps(alive) == document.dumps(old)
-gone = migrated(graph)
+gone = migrate_graph(graph)
 assert gone.nodes["e"].type == "exposure" and document.dumps(gone) == document.dumps(graph)
 exposure.write_text(text)
-assert files.reload() == "" and migrated(gone).nodes["e"].stops == 2.0
-assert migrated(gone) == migrated(graph)
+assert files.reload() == "" and migrate_graph(gone).nodes["e"].stops == 2.0
+assert migrate_graph(gone) == migrate_graph(graph)
 """)
 
 
@@ -150,7 +151,7 @@ TYPES = {**catalogue(), "exposure": Exposure, "saturation": Saturation}
 def test_values_that_no_longer_fit_have_their_default_and_links_stay():
     graph = Graph().add("a", catalogue()["exposure"](stops=0.25)).add("b", catalogue()["saturation"](saturation=0.5))
     graph = graph.connect(Port("a", "out"), Port("b", "image")).mute("a")
-    new = migrated(graph, TYPES)
+    new = migrate_graph(graph, TYPES)
     assert dict(new.nodes) == {"a": Exposure(stops=0.25), "b": Saturation()}
     assert new.links == graph.links and new.muted == graph.muted
 
@@ -158,7 +159,7 @@ def test_values_that_no_longer_fit_have_their_default_and_links_stay():
 def test_versions_and_what_is_kept_aside():
     graph = Graph(extra={"nodes.a": {"note": 1}, "nodes.a.values": {"amount": 0.5, "odd": 2}, "nodes.ab": {"other": 3}})
     graph = graph.add("a", catalogue()["exposure"](stops=4.0)).add("ab", catalogue()["saturation"]())
-    new = migrated(graph, TYPES)
+    new = migrate_graph(graph, TYPES)
     assert new.nodes["a"] == Exposure(amount=0.25)
     assert new.extra["nodes.a"] == {"note": 1} and new.extra["nodes.ab"] == {"other": 3}
 
@@ -166,11 +167,11 @@ def test_versions_and_what_is_kept_aside():
 def test_groups_are_followed_and_the_rest_is_the_same():
     inner = Graph().add("a", catalogue()["exposure"](stops=4.0)).add("same", catalogue()["grade"]())
     graph = Graph(folder="here").add("g", Group(inner, "body.json")).add("u", Unknown("odd", {"x": 1}))
-    new = migrated(graph, TYPES)
+    new = migrate_graph(graph, TYPES)
     group = new.nodes["g"]
     assert group.path == "body.json" and group.graph.nodes["a"] == Exposure(stops=4.0)
     assert group.graph.nodes["same"] is inner.nodes["same"] and new.nodes["u"] is graph.nodes["u"]
-    assert new.folder == "here" and migrated(new, TYPES) is new
+    assert new.folder == "here" and migrate_graph(new, TYPES) is new
 
 
 def test_the_folder_of_shaders():

@@ -15,7 +15,7 @@ from halation.errors import GraphError, RenderError
 from halation.graph import Graph, Input
 from halation.renderer.jobs.job import Report
 from halation.watch import rerendering
-from halation.watch.rerendering import Rerendering
+from halation.watch.rerendering import ContinuousRenderer
 
 FAULT = "nodes/blur/some.py, line 3: it is broken; all nodes stay as they were"
 DONE = Report((), 1, 0, 0, {})
@@ -35,10 +35,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def turning(folder: Path) -> Iterator:
-    made: list[Rerendering] = []
+    made: list[ContinuousRenderer] = []
 
     def turns(load=lambda: Graph(), render=lambda graph, progress: DONE):
-        made.append(Rerendering(folder / "graph.json", lambda graph: {}, load, render))
+        made.append(ContinuousRenderer(folder / "graph.json", lambda graph: {}, load, render))
         return iter(made[-1])
 
     yield turns
@@ -106,7 +106,7 @@ def test_a_rendering_that_is_outdated_begins_again(turning, folder: Path) -> Non
             (folder / "graph.json").write_text("1")
             end = time.monotonic() + 60.0
             while time.monotonic() < end:
-                progress.passed(1, 1, 2, None)
+                progress.report_pass(1, 1, 2, None)
                 time.sleep(0.01)
         return DONE
 

@@ -12,7 +12,7 @@ from halation import document
 from halation.graph import Graph, Group, Input, Port
 from halation.nodes import catalogue
 from halation.watch import watching
-from halation.watch.watching import Change, Watcher, pictures_of
+from halation.watch.watching import FileChange, FileWatcher, find_pictures
 
 
 @pytest.fixture(params=["told", "compared"])
@@ -24,8 +24,8 @@ def watcher(request, monkeypatch):
             raise OSError("OS file watch limit reached")
 
         monkeypatch.setattr(watching, "watch", refuse)
-        monkeypatch.setattr(watching, "_LOOK", 0.1)
-    made = Watcher()
+        monkeypatch.setattr(watching, "_POLL_SECONDS", 0.1)
+    made = FileWatcher()
     yield made
     made.close()
     assert bool(made.fault) == (request.param == "compared") or not made._watched.files + made._watched.folders
@@ -48,7 +48,7 @@ def quiet(watcher, path):
     mark.write_text("1")
     watcher.watch(path, groups=[mark])
     mark.write_text("22")
-    return news(watcher) == [Change("group", mark)]
+    return news(watcher) == [FileChange("group", mark)]
 
 
 @pytest.fixture
@@ -66,14 +66,14 @@ def test_replacing_writing_removing_and_making_again(watcher, path):
     watcher.watch(path)
     assert watcher.poll() == ()
     save(path, 1)  # a rename over it
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
     with path.open("a") as file:  # in place
         file.write("\n")
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
     path.unlink()
-    assert news(watcher) == [Change("graph", path, exists=False)]
+    assert news(watcher) == [FileChange("graph", path, exists=False)]
     save(path, 2)
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
 
 
 def test_our_own_saves_are_no_news(watcher, path):
@@ -86,9 +86,9 @@ def test_our_own_saves_are_no_news(watcher, path):
     save(path, 10)
     watcher.expect(path)
     save(path, 11)
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
     save(path, 10)  # what we once wrote, by somebody else
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
 
 
 def test_before_a_save_one_can_ask_whether_somebody_else_was_quicker(watcher, path):
@@ -120,16 +120,16 @@ def test_pictures_and_missing_folders(watcher, path, tmp_path):
     picture.write_bytes(b"1")
     watcher.watch(path, pictures=[picture, lost])
     picture.write_bytes(b"2")
-    assert news(watcher) == [Change("picture", picture)]
+    assert news(watcher) == [FileChange("picture", picture)]
     lost.parent.mkdir()
     lost.write_bytes(b"3")
-    assert news(watcher) == [Change("picture", lost)]
+    assert news(watcher) == [FileChange("picture", lost)]
     lost.unlink()
     lost.parent.rmdir()
-    assert news(watcher) == [Change("picture", lost, exists=False)]
+    assert news(watcher) == [FileChange("picture", lost, exists=False)]
     lost.parent.mkdir()
     lost.write_bytes(b"4")
-    assert news(watcher) == [Change("picture", lost)]
+    assert news(watcher) == [FileChange("picture", lost)]
 
 
 def test_folders_of_shaders_and_nodes(watcher, tmp_path):
@@ -141,13 +141,16 @@ def test_folders_of_shaders_and_nodes(watcher, tmp_path):
     until_listed(watcher)
     (shaders / "lib" / "a.glsl").write_text("2")
     (shaders / "lib" / "a.glsl~").write_text("2")
-    assert news(watcher) == [Change("shader", shaders / "lib" / "a.glsl")]
+    assert news(watcher) == [FileChange("shader", shaders / "lib" / "a.glsl")]
     (nodes / "new").mkdir()
     (nodes / "new" / "b.py").write_text("3")
     (nodes / "color" / "c.py").write_text("4")
-    assert news(watcher, 2) == [Change("node", nodes / "color" / "c.py"), Change("node", nodes / "new" / "b.py")]
+    assert news(watcher, 2) == [
+        FileChange("node", nodes / "color" / "c.py"),
+        FileChange("node", nodes / "new" / "b.py"),
+    ]
     (nodes / "color" / "c.py").unlink()
-    assert news(watcher) == [Change("node", nodes / "color" / "c.py", exists=False)]
+    assert news(watcher) == [FileChange("node", nodes / "color" / "c.py", exists=False)]
 
 
 def until_listed(watcher):
@@ -164,10 +167,10 @@ def test_what_is_no_longer_watched_is_no_news(watcher, path, tmp_path):
     watcher.watch(other)
     save(path, 1)
     save(other, 1)
-    assert news(watcher) == [Change("graph", other)]
+    assert news(watcher) == [FileChange("graph", other)]
     watcher.watch(path)
     save(path, 2)
-    assert news(watcher) == [Change("graph", path)]
+    assert news(watcher) == [FileChange("graph", path)]
 
 
 @pytest.mark.skipif(os.name == "nt", reason="links need a privilege there")
@@ -177,11 +180,11 @@ def test_links_are_followed(watcher, path, tmp_path):
     link.symlink_to(path)
     watcher.watch(link)
     save(path, 1)
-    assert news(watcher) == [Change("graph", link)]
+    assert news(watcher) == [FileChange("graph", link)]
 
 
 def test_closing_ends_the_thread(path):
-    made = Watcher()
+    made = FileWatcher()
     made.watch(path)
     made.close()
     assert not made._thread.is_alive() and made._thread not in threading.enumerate()
@@ -194,7 +197,7 @@ def test_the_pictures_of_a_graph(tmp_path):
     graph = graph.add("group", Group(inner)).add("empty", catalogue()["read_image"]())
     graph = graph.connect(Port("inputs", "beauty"), Port("group", "fed"))
     bindings = {"bound": str(tmp_path / "c.exr:Depth"), "number": 3.0}
-    assert {file.relative_to(tmp_path) for file in pictures_of(graph, bindings)} == {
+    assert {file.relative_to(tmp_path) for file in find_pictures(graph, bindings)} == {
         Path("a.exr"),
         Path("c.exr"),
         Path("lib/own.exr"),

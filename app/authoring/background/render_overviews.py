@@ -14,8 +14,8 @@ from ...render_layers.naming import Role
 from ...render_layers.overview import Overview, overview
 from ...render_layers.render import find_render
 from ...resources.input_files import fingerprint
-from ...watch.sequence_files import standing
-from ...watch.versions import Versions
+from ...watch.sequence_files import representative_file
+from ...watch.versions import FileVersions
 from .cache import BackgroundCache
 
 ROLES = (
@@ -58,11 +58,11 @@ class RenderOverviews:
             "renders", _read_overview, _KEPT
         )
         self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache("mattes", _ids, _KEPT_IDS, 1)
-        self._versions = Versions()
+        self._versions = FileVersions()
 
     def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> Overview | str | None:
         """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
-        path = standing(path)
+        path = representative_file(path)
         version, fault = self._versions.of(path)
         if fault:
             return fault
@@ -81,7 +81,7 @@ class RenderOverviews:
 
     def ids(self, path: Path, matte: Matte) -> IdMap | str | None:
         """What is where in the picture, a sentence if nobody knows, None while it is being read."""
-        path = standing(path)
+        path = representative_file(path)
         version, fault = self._versions.of(path)
         return fault or self._ids.get((str(path), version, matte.layers[0]))
 

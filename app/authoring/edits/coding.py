@@ -11,7 +11,7 @@ from halation.nodes import Node, Plain
 from msgspec import structs
 
 from ...custom_nodes import Code, CodeFault, CustomNode, Language, node_type
-from ...document.code import read_code, written_code
+from ...document.code import describe_code, read_code
 from ...graph import Graph, Group, Item, Unknown
 from ...graph.values import coerced, value_fault
 from ...watch.code_files import code_file, code_items
@@ -179,7 +179,7 @@ def _keep_valid_values(kind: type[Node], values: Mapping[str, Any]) -> dict[str,
 
 def _make_broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> BrokenCodeNode:
     message = f"{code.name}, {fault}" if fault.line else str(fault)
-    raw = {**written_code(code), **({"values": dict(values)} if values else {})}
+    raw = {**describe_code(code), **({"values": dict(values)} if values else {})}
     return BrokenCodeNode(code.language, raw, message, code)
 
 

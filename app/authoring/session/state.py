@@ -10,7 +10,7 @@ from halation.nodes import Node, catalogue
 
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Problem
-from ...lint.live import again, remarks
+from ...lint.live import find_remarks, recheck_remarks
 from ..edits import elements, folding, layout, routes
 from ..edits.elements import Place
 from ..state.history import History, HistoryStep, Snapshot
@@ -246,9 +246,9 @@ class State:
             name,
             (graph, self.types),
             lambda: (
-                again(graph, before, found, self.types)
+                recheck_remarks(graph, before, found, self.types)
                 if isinstance(before, Graph) and types is self.types
-                else remarks(graph, self.types)
+                else find_remarks(graph, self.types)
             ),
         )
 

@@ -12,7 +12,7 @@ from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
 from ...render_layers.render import is_render
-from ...watch.sequence_files import standing
+from ...watch.sequence_files import representative_file
 from ..edits import coding, deleting, elements, naming, paths, room, routes, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
@@ -235,7 +235,11 @@ class Wiring(State):
             return self._group(path)
         if Path(path).suffix.lower() in coding.ENDINGS:
             return coding.make_file_node(self.relative(path), self.root.folder)
-        type_id = "read_render" if "read_render" in self.types and is_render(standing(Path(path))) else "read_image"
+        type_id = (
+            "read_render"
+            if "read_render" in self.types and is_render(representative_file(Path(path)))
+            else "read_image"
+        )
         return self._new(type_id).with_values(path=self.relative(path))
 
     def _middle(self, target: Port) -> Place:

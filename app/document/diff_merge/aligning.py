@@ -1,4 +1,13 @@
-"""Nodes that have another id in another version and are the same in all else."""
+"""Finding nodes that were renamed: they have another id in the other version, and are the same in all else.
+
+Every node that only one version has is described by what its graph says of it (`_NodeDescription`). Its text is the
+document of a graph that holds only this node, under a fixed id. Its links name other nodes, whose ids may have changed
+too. So matching goes in rounds: at first, a neighbor that is not matched yet may be any node. Two nodes are matched if
+no other node on either side has the same description. Each match makes the descriptions of its neighbors more exact,
+and the next round can tell these apart. At the end every match is tested with the ids of all others filled in, and the
+ones that fail are dropped until all that is left is consistent. Twins that nothing tells apart stay unmatched: a
+deleted and a new node are a correct answer too, and a wrong match would not be.
+"""
 
 from __future__ import annotations
 
@@ -10,64 +19,68 @@ from ...graph import Graph, Group, Item, Port
 from ...graph.notes import moved_keys
 from ..writing import dumps
 
-Ids = Mapping[str, str]
+IdMapping = Mapping[str, str]
 """Old ids to new ones."""
 
 _ANY = "node"
 _ROUNDS = 32
-"""How far from nodes that are known others are looked for that can only be told by their neighbors."""
+"""How many links a match can travel along. A choice: a longer chain of renamed nodes without any value that tells them
+apart is not worth the time."""
 
 
 @dataclass(frozen=True)
-class Renamed:
-    """A node that was renamed; `group` are the ids of the groups that it is in, from the outside."""
+class NodeRename:
+    """A node with its old and new id; `group` are the ids of the groups that it is in, from the outside."""
 
     group: tuple[str, ...]
     old: str
     new: str
 
 
-def renames(before: Graph, after: Graph) -> Ids:
-    """The nodes that were certainly renamed: type, values and wiring are the same, and no other node could be meant."""
-    gone = {id: _Look(before, id) for id in before.nodes if id not in after.nodes}
-    come = {id: _Look(after, id) for id in after.nodes if id not in before.nodes}
+def find_renames(before: Graph, after: Graph) -> IdMapping:
+    """New ids by old ones, of nodes that were renamed: type, values and links are the same, and only one node fits."""
+    removed = {id: _NodeDescription(before, id) for id in before.nodes if id not in after.nodes}
+    added = {id: _NodeDescription(after, id) for id in after.nodes if id not in before.nodes}
     certain: dict[str, str] = {}
     for _ in range(_ROUNDS):
-        if not (found := _unique(gone, come, certain)):
+        if not (matches := _match_unique(removed, added, certain)):
             break
-        certain |= found
-    while wrong := [old for old, new in certain.items() if not gone[old].same(come[new], certain)]:
-        for old in wrong:
+        certain |= matches
+    while refuted := [old for old, new in certain.items() if not removed[old].same(added[new], certain)]:
+        for old in refuted:
             del certain[old]
     return certain
 
 
-def align(before: Graph, after: Graph, group: tuple[str, ...] = ()) -> tuple[Graph, tuple[Renamed, ...]]:
+def align_two(before: Graph, after: Graph, group: tuple[str, ...] = ()) -> tuple[Graph, tuple[NodeRename, ...]]:
     """`before` with the ids of `after`, groups included, and what was renamed."""
-    ids = renames(before, after)
-    before, found = rename_all(before, ids), [Renamed(group, old, new) for old, new in sorted(ids.items())]
+    ids = find_renames(before, after)
+    before, all_renames = rename_all(before, ids), [NodeRename(group, old, new) for old, new in sorted(ids.items())]
     inner: dict[str, Item] = {}
     for id, item in before.nodes.items():
-        other = after.nodes.get(id)
-        if isinstance(item, Group) and isinstance(other, Group):
-            graph, more = align(item.graph, other.graph, (*group, id))
-            found += more
+        counterpart = after.nodes.get(id)
+        if isinstance(item, Group) and isinstance(counterpart, Group):
+            graph, inner_renames = align_two(item.graph, counterpart.graph, (*group, id))
+            all_renames += inner_renames
             inner[id] = replace(item, graph=graph)
-    return with_items(before, inner), tuple(found)
+    return replace_items(before, inner), tuple(all_renames)
 
 
 def align_three(base: Graph, ours: Graph, theirs: Graph) -> tuple[Graph, Graph, Graph]:
-    """Three versions with the ids that either side gave to nodes of the base."""
-    mine, others = renames(base, ours), renames(base, theirs)
-    here = {old: new for old, new in mine.items() if old not in others and new not in theirs.nodes}
-    there = {old: new for old, new in others.items() if old not in mine and new not in ours.nodes}
-    both = {old: new for old, new in mine.items() if others.get(old) == new}
-    taken = [*here.values(), *there.values()]
-    clash = {new for new in taken if taken.count(new) > 1}
-    here = {old: new for old, new in here.items() if new not in clash}
-    there = {old: new for old, new in there.items() if new not in clash}
-    base, ours = rename_all(base, {**here, **there, **both}), rename_all(ours, there)
-    theirs = rename_all(theirs, here)
+    """Three versions with the same ids: a new id that one side gave to a node of the base is used in all of them.
+
+    Where both sides renamed the same node differently, or two nodes to the same id, the old ids stay.
+    """
+    our_renames, their_renames = find_renames(base, ours), find_renames(base, theirs)
+    only_ours = {old: new for old, new in our_renames.items() if old not in their_renames and new not in theirs.nodes}
+    only_theirs = {old: new for old, new in their_renames.items() if old not in our_renames and new not in ours.nodes}
+    both = {old: new for old, new in our_renames.items() if their_renames.get(old) == new}
+    new_ids = [*only_ours.values(), *only_theirs.values()]
+    clashing = {new for new in new_ids if new_ids.count(new) > 1}
+    only_ours = {old: new for old, new in only_ours.items() if new not in clashing}
+    only_theirs = {old: new for old, new in only_theirs.items() if new not in clashing}
+    base, ours = rename_all(base, {**only_ours, **only_theirs, **both}), rename_all(ours, only_theirs)
+    theirs = rename_all(theirs, only_ours)
     sides = (base, ours, theirs)
     inner: tuple[dict[str, Item], ...] = ({}, {}, {})
     for id in base.nodes:
@@ -76,28 +89,28 @@ def align_three(base: Graph, ours: Graph, theirs: Graph) -> tuple[Graph, Graph, 
         if len(groups) == len(sides):
             for made, item, graph in zip(inner, groups, align_three(*(item.graph for item in groups)), strict=True):
                 made[id] = replace(item, graph=graph)
-    base, ours, theirs = (with_items(side, made) for side, made in zip(sides, inner, strict=True))
+    base, ours, theirs = (replace_items(side, made) for side, made in zip(sides, inner, strict=True))
     return base, ours, theirs
 
 
-def rename_all(graph: Graph, ids: Ids) -> Graph:
-    """A graph with other ids; those that it does not have are left out."""
+def rename_all(graph: Graph, ids: IdMapping) -> Graph:
+    """A graph with other ids; an id that the graph does not have is ignored."""
     for old, new in ids.items():
         graph = graph.rename(old, new) if old in graph.nodes else graph
     return graph
 
 
-def with_items(graph: Graph, items: Mapping[str, Item]) -> Graph:
-    """A graph with other nodes in some places and all links as they were."""
+def replace_items(graph: Graph, items: Mapping[str, Item]) -> Graph:
+    """A graph with some nodes replaced; all links stay as they are."""
     return replace(graph, nodes={**graph.nodes, **items}) if items else graph
 
 
-class _Look:
+class _NodeDescription:
     """Everything that a graph says of one of its nodes, apart from its id."""
 
     def __init__(self, graph: Graph, id: str) -> None:
-        self.feeding = {(end.socket, start) for end, start in graph.links.items() if end.node == id}
-        self.fed = {(start.socket, end) for end, start in graph.links.items() if start.node == id}
+        self.links_in = {(end.socket, start) for end, start in graph.links.items() if end.node == id}
+        self.links_out = {(start.socket, end) for end, start in graph.links.items() if start.node == id}
         alone = Graph(
             {_ANY: graph.nodes[id]},
             controls={
@@ -108,37 +121,41 @@ class _Look:
             animation={Port(_ANY, port.socket): item for port, item in graph.animation.items() if port.node == id},
             muted=frozenset({_ANY} if id in graph.muted else ()),
             extra=moved_keys(
-                {path: keys for path, keys in graph.extra.items() if _inside(path, id)}, f"nodes.{id}", f"nodes.{_ANY}"
+                {path: keys for path, keys in graph.extra.items() if _is_part_of(path, id)},
+                f"nodes.{id}",
+                f"nodes.{_ANY}",
             ),
         )
         self.text = dumps(alone)
 
-    def same(self, other: _Look, ids: Ids) -> bool:
-        """True if the other is this one, where `ids` are the new names of all that have one."""
+    def same(self, other: _NodeDescription, ids: IdMapping) -> bool:
+        """True if both describe the same node; `ids` are new ids by old ones."""
         return self.key(ids, ()) == other.key({}, ())
 
-    def key(self, ids: Ids, open: Container[str]) -> tuple[object, ...]:
-        """What tells it from others; nodes in `open`, of which nothing is known yet, may be any."""
+    def key(self, ids: IdMapping, open: Container[str]) -> tuple[object, ...]:
+        """The text and links of the node, to be compared with those of others; a neighbor in `open` is left blank."""
 
         def ports(links: set[tuple[str, Port]]) -> tuple[tuple[str, Port], ...]:
-            return tuple(sorted((socket, _moved(port, ids, open)) for socket, port in links))
+            return tuple(sorted((socket, _rename_port(port, ids, open)) for socket, port in links))
 
-        return self.text, ports(self.feeding), ports(self.fed)
+        return self.text, ports(self.links_in), ports(self.links_out)
 
 
-def _unique(gone: Mapping[str, _Look], come: Mapping[str, _Look], certain: Ids) -> dict[str, str]:
-    """Pairs of which neither could go with another."""
-    open, free = gone.keys() - certain.keys(), come.keys() - set(certain.values())
-    olds = {old: gone[old].key(certain, open) for old in open}
-    news = {new: come[new].key({}, free) for new in free}
+def _match_unique(
+    removed: Mapping[str, _NodeDescription], added: Mapping[str, _NodeDescription], certain: IdMapping
+) -> dict[str, str]:
+    """New ids by old ones, of pairs that have the same description and share it with no other node."""
+    open, free = removed.keys() - certain.keys(), added.keys() - set(certain.values())
+    olds = {old: removed[old].key(certain, open) for old in open}
+    news = {new: added[new].key({}, free) for new in free}
     there, here = Counter(olds.values()), Counter(news.values())
-    found = {key: new for new, key in news.items() if here[key] == 1}
-    return {old: found[key] for old, key in olds.items() if there[key] == 1 and key in found}
+    unique_ids = {key: new for new, key in news.items() if here[key] == 1}
+    return {old: unique_ids[key] for old, key in olds.items() if there[key] == 1 and key in unique_ids}
 
 
-def _moved(port: Port, ids: Ids, open: Container[str]) -> Port:
+def _rename_port(port: Port, ids: IdMapping, open: Container[str]) -> Port:
     return Port("" if port.node in open else ids.get(port.node, port.node), port.socket)
 
 
-def _inside(path: str, id: str) -> bool:
+def _is_part_of(path: str, id: str) -> bool:
     return path == f"nodes.{id}" or path.startswith(f"nodes.{id}.")

@@ -1,9 +1,9 @@
-"""What a merge could not decide, as it stands in a document: what ours says is in place, the rest under one key.
+"""Conflicts of a merge, as they stand in a document: our version is in place, all three are under one key.
 
     "conflicts": [{"at": ["nodes", "bloom", "values", "sigma"], "base": 4.0, "ours": 8.0, "theirs": 2.0}]
 
-A side that has nothing there is left out. The document loads and can be edited; `problems` names every conflict until
-it is decided.
+A side that has no such part is left out. The document loads and can be edited; `problems` names every conflict until
+it is resolved.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Final, Literal, get_args
 
 from ...errors import UsageError
 from ...graph import did_you_mean
-from .parts import ABSENT, CONFLICTS, At, Tree, about, is_list, is_tree, path_of, plain
+from .parts import ABSENT, CONFLICTS, PartPath, Tree, conflict_key, is_list, is_tree, path_text, to_document
 
 Side = Literal["ours", "theirs", "base"]
 SIDES: Final = get_args(Side)
@@ -22,59 +22,63 @@ SIDES: Final = get_args(Side)
 
 @dataclass(frozen=True)
 class Conflict:
-    """A part that both sides changed, each in its way; ABSENT where a version has none."""
+    """A part that both sides changed differently; ABSENT where a version has none."""
 
-    at: At
+    at: PartPath
     base: Any
     ours: Any
     theirs: Any
 
     @property
     def path(self) -> str:
-        """What messages call it."""
-        return path_of(self.at)
+        """The path of the part, as messages write it."""
+        return path_text(self.at)
 
     def entry(self) -> Tree:
-        """What the document says of it."""
-        found = {side: plain(getattr(self, side)) for side in SIDES}
-        return {"at": list(self.at), **{side: part for side, part in found.items() if part is not ABSENT}}
+        """The conflict as the document holds it."""
+        sides = {side: to_document(getattr(self, side)) for side in SIDES}
+        return {"at": list(self.at), **{side: part for side, part in sides.items() if part is not ABSENT}}
 
 
-def with_conflicts(parts: Tree, found: Mapping[At, Conflict]) -> Tree:
-    """Parts of a document that say what is to be decided, besides what they said already."""
-    if not found:
+def add_conflicts(parts: Tree, conflicts: Mapping[PartPath, Conflict]) -> Tree:
+    """Parts of a document with these conflicts, besides those that it has already."""
+    if not conflicts:
         return parts
-    old = plain(parts.get(CONFLICTS, []))
-    new = {about(list(at)): conflict.entry() for at, conflict in found.items()}
-    kept = [item for item in old if not is_tree(item) or about(item.get("at")) not in new] if is_list(old) else [old]
-    return {**parts, CONFLICTS: [*kept, *new.values()]}
+    old_entries = to_document(parts.get(CONFLICTS, []))
+    new_entries = {conflict_key(list(at)): conflict.entry() for at, conflict in conflicts.items()}
+    other_entries = (
+        [item for item in old_entries if not is_tree(item) or conflict_key(item.get("at")) not in new_entries]
+        if is_list(old_entries)
+        else [old_entries]
+    )
+    return {**parts, CONFLICTS: [*other_entries, *new_entries.values()]}
 
 
-def conflicts_of(document: Tree) -> tuple[Conflict, ...]:
-    """What a document has to be decided. What is damaged is left out."""
-    found = document.get(CONFLICTS)
-    return tuple(_read(item) for item in found if _is_entry(item)) if is_list(found) else ()
+def read_conflicts(document: Tree) -> tuple[Conflict, ...]:
+    """The conflicts of a document. A damaged entry is left out."""
+    entries = document.get(CONFLICTS)
+    return tuple(_read(item) for item in entries if _is_entry(item)) if is_list(entries) else ()
 
 
-def resolved(document: Tree, choices: Mapping[str, Side]) -> Tree:
-    """A document where a side was chosen for the parts at or below these paths; the empty path is all of them.
+def resolve_conflicts(document: Tree, choices: Mapping[str, Side]) -> Tree:
+    """A document with the chosen side in place of the parts at or below these paths; the empty path is all of them.
 
-    `ours` leaves what is in place. Raises UsageError for a path at which nothing is to be decided.
+    `ours` leaves the part as it is. Raises UsageError for a path without a conflict.
     """
-    open = conflicts_of(document)
+    conflicts = read_conflicts(document)
     for path in choices:
-        if not any(_covers(path, conflict.path) for conflict in open):
-            paths = [conflict.path for conflict in open]
+        if not any(_covers(path, conflict.path) for conflict in conflicts):
+            paths = [conflict.path for conflict in conflicts]
             raise UsageError(f"'{path}' has no conflict{did_you_mean(path, paths)}" if path else "it has no conflicts")
-    left: list[Tree] = []
-    for conflict in open:
-        fitting = [path for path in choices if _covers(path, conflict.path)]
-        if not fitting:
-            left.append(conflict.entry())
-        elif (side := choices[max(fitting, key=len)]) != "ours":
-            document = _put(document, conflict.at, plain(getattr(conflict, side)))
+    unresolved: list[Tree] = []
+    for conflict in conflicts:
+        covering = [path for path in choices if _covers(path, conflict.path)]
+        if not covering:
+            unresolved.append(conflict.entry())
+        elif (side := choices[max(covering, key=len)]) != "ours":
+            document = _put_into_document(document, conflict.at, to_document(getattr(conflict, side)))
     rest = {key: part for key, part in document.items() if key != CONFLICTS}
-    return rest | ({CONFLICTS: left} if left else {})
+    return rest | ({CONFLICTS: unresolved} if unresolved else {})
 
 
 def _covers(path: str, other: str) -> bool:
@@ -86,23 +90,23 @@ def _is_entry(item: Any) -> bool:
 
 
 def _read(item: Tree) -> Conflict:
-    at: At = tuple(item["at"])
+    at: PartPath = tuple(item["at"])
     return Conflict(at, *(item.get(side, ABSENT) for side in ("base", "ours", "theirs")))
 
 
-def _put(item: Any, at: At, part: Any) -> Any:
-    """A document with another part there; a key of an animation is found by its frame."""
+def _put_into_document(item: Any, at: PartPath, part: Any) -> Any:
+    """A document with the part at a path replaced; a key of an animation is found by its frame."""
     if not at:
         return part
     key, rest = at[0], at[1:]
     if is_list(item) and not isinstance(key, str):
         keys = {one["frame"]: one for one in item if is_tree(one) and "frame" in one}
-        keys[key] = _put(keys.get(key, {}), rest, part)
+        keys[key] = _put_into_document(keys.get(key, {}), rest, part)
         return [keys[frame] for frame in sorted(keys) if keys[frame] is not ABSENT]
     inside = dict(_items(item))
-    made = _put(inside.get(str(key), [] if key == "keys" else {}), rest, part)
-    kept = {name: one for name, one in inside.items() if name != key}
-    return kept if made is ABSENT else {**kept, key: made}
+    changed = _put_into_document(inside.get(str(key), [] if key == "keys" else {}), rest, part)
+    unchanged = {name: one for name, one in inside.items() if name != key}
+    return unchanged if changed is ABSENT else {**unchanged, key: changed}
 
 
 def _items(item: Any) -> Iterator[tuple[Any, Any]]:

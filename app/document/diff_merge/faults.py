@@ -1,4 +1,4 @@
-"""What was right on the side that made it and is wrong in what a merge made."""
+"""Faults that a merge creates: what was correct on its own side is incorrect beside the changes of the other."""
 
 from __future__ import annotations
 
@@ -7,45 +7,45 @@ from itertools import pairwise
 
 from ...graph import Graph, Group, Port, signature
 from ...graph.walk import loops
-from .parts import At
+from .parts import PartPath
 
 
-def faults(made: Graph, ours: Graph, theirs: Graph, at: At = ()) -> Iterator[At]:
-    """Where links fit no more or became a loop through theirs, and where keys and controls are of values that are gone.
+def find_merge_faults(merge: Graph, ours: Graph, theirs: Graph, at: PartPath = ()) -> Iterator[PartPath]:
+    """Paths of links that no longer fit or are part of a loop, and of keys and controls whose value was deleted.
 
-    Groups are looked into.
+    Groups are searched too.
     """
-    for target, source in made.links.items():
+    for target, source in merge.links.items():
         sides = (side for side in (ours, theirs) if side.links.get(target) == source)
-        if made.link_fault(source, target) and not any(side.link_fault(source, target) for side in sides):
+        if merge.link_fault(source, target) and not any(side.link_fault(source, target) for side in sides):
             yield (*at, "links", str(target))
-    for target in _looping(made, ours):
+    for target in _links_in_loops(merge, ours):
         yield (*at, "links", str(target))
-    for port in made.animation:
-        if _is_gone(made, port) and not any(_is_gone(side, port) for side in (ours, theirs) if port in side.animation):
+    for port in merge.animation:
+        if _is_gone(merge, port) and not any(_is_gone(side, port) for side in (ours, theirs) if port in side.animation):
             yield (*at, "animation", str(port))
-    for name, control in made.controls.items():
+    for name, control in merge.controls.items():
         before = (side for side in (ours, theirs) if side.controls.get(name) == control)
-        if _is_gone(made, control.target) and not any(_is_gone(side, control.target) for side in before):
+        if _is_gone(merge, control.target) and not any(_is_gone(side, control.target) for side in before):
             yield (*at, "controls", name)
-    for id, item in made.nodes.items():
-        mine, other = ours.nodes.get(id), theirs.nodes.get(id)
-        if isinstance(item, Group) and isinstance(mine, Group) and isinstance(other, Group):
-            yield from faults(item.graph, mine.graph, other.graph, (*at, "nodes", id, "graph"))
+    for id, item in merge.nodes.items():
+        our_item, their_item = ours.nodes.get(id), theirs.nodes.get(id)
+        if isinstance(item, Group) and isinstance(our_item, Group) and isinstance(their_item, Group):
+            yield from find_merge_faults(item.graph, our_item.graph, their_item.graph, (*at, "nodes", id, "graph"))
 
 
 def _is_gone(graph: Graph, port: Port) -> bool:
-    """True for what is no value of a node of a known type."""
+    """True if a port is not a value of a node; a node of an unknown type may have any value."""
     item = graph.nodes.get(port.node)
     face = None if item is None else signature(item)
     return face is None or not (face.anything or port.socket in face.values)
 
 
-def _looping(made: Graph, ours: Graph) -> Iterator[Port]:
-    """Links in a loop that are not ours."""
-    steps = {id: sorted(made.feeding[id]) for id in sorted(made.nodes)}
+def _links_in_loops(merge: Graph, ours: Graph) -> Iterator[Port]:
+    """Links that are part of a loop and are not in our version."""
+    steps = {id: sorted(merge.feeding[id]) for id in sorted(merge.nodes)}
     for loop in loops(steps):
         around = set(pairwise(loop))
-        for target, source in made.links.items():
+        for target, source in merge.links.items():
             if (target.node, source.node) in around and ours.links.get(target) != source:
                 yield target

@@ -1,9 +1,9 @@
-"""Three versions of a graph made one: every part that only one side changed is taken from that side.
+"""The merge of three versions of a graph: every part that only one side changed is taken from that side.
 
-Parts go by name, so two people who add nodes, move them or turn different values never meet. They do where both change
-one part differently, or where one takes away what the other builds on: then all that is ours there stays in place, and
-what theirs says is noted as a conflict (see `conflicts.py`). Where both move the same thing on the canvas, ours stays
-without a word: layout is no logic.
+Parts have names, so two users who add nodes, move nodes or set different values do not interfere. They do where both
+change one part differently, or where one deletes what the other builds on: then our version stays in place, and theirs
+is noted as a conflict (see `conflicts`). Where both move the same node on the canvas, our place is taken and no
+conflict is noted: layout does not change the picture.
 """
 
 from __future__ import annotations
@@ -16,63 +16,66 @@ from ...graph import Graph
 from ..reading import loads
 from ..writing import dumps
 from .aligning import align_three
-from .conflicts import Conflict, with_conflicts
-from .faults import faults
-from .layout import without_strays
-from .lines import merged_lines
+from .conflicts import Conflict, add_conflicts
+from .faults import find_merge_faults
+from .layout import remove_stray_layout
+from .lines import merge_lines
 from .parts import (
     ABSENT,
     CONFLICTS,
-    At,
+    PartPath,
     Tree,
-    at_part,
+    equals,
+    get_part,
     is_list,
     is_tree,
     is_whole,
-    like,
-    local,
-    names_of,
+    keep_kind,
+    local_path,
     parts_of,
     put_part,
-    same,
+    sorted_keys,
     text_of,
 )
-from .references import LINKED, references, taken_away
+from .references import LINKED, find_contested, references
 
-Sides = tuple[Any, Any, Any]
+ThreeSides = tuple[Any, Any, Any]
 """A part in the base, in ours and in theirs."""
 
 
 @dataclass(frozen=True)
-class Merged:
-    """The canonical text of what both sides made, and what is to be decided."""
+class MergedGraph:
+    """The result of a merge: the canonical text of the graph, and the conflicts that are left to the user."""
 
     text: str
     conflicts: tuple[Conflict, ...]
 
 
-def merged(base: Graph, ours: Graph, theirs: Graph) -> Merged:
-    """What both sides made of the base, as it would be saved. Files of groups are not read.
+def merge_graphs(base: Graph, ours: Graph, theirs: Graph) -> MergedGraph:
+    """The graph with the changes of both sides to the base, as it would be saved. Files of groups are not read.
+
+    If the merged parts cannot be read as a graph at all, our version is the result, and every section in which the
+    sides differ is one conflict.
 
     Raises GraphError for what cannot be saved.
     """
     base, ours, theirs = align_three(base, ours, theirs)
     sides = (parts_of(base), parts_of(ours), parts_of(theirs))
-    work = _Merging()
-    parts = work.part((), sides)
+    merger = _PartMerger()
+    parts = merger.merge_part((), sides)
     try:
-        while wrong := [at for at in faults(_graph(parts), ours, theirs) if at not in work.found]:
-            for at in wrong:
-                parts = put_part(parts, at, work.undecided(at, tuple(at_part(side, at) for side in sides)))
-        text = dumps(_graph(with_conflicts(parts, work.found)))
-    except HalationError:  # parts that go together in no way that can be read
-        work = _Merging()
-        for name in names_of(iter(sides)):
-            one = tuple(side.get(name, ABSENT) for side in sides)
-            if not same(one[1], one[2]):
-                work.undecided((name,), one)
-        text = dumps(_graph(with_conflicts(sides[1], work.found)))
-    return Merged(text, tuple(work.found.values()))
+        while faulty := [at for at in find_merge_faults(_graph(parts), ours, theirs) if at not in merger.conflicts]:
+            for at in faulty:
+                parts = put_part(parts, at, merger.note_conflict(at, tuple(get_part(side, at) for side in sides)))
+        text = dumps(_graph(add_conflicts(parts, merger.conflicts)))
+    except HalationError:  # the merged parts are no valid graph
+        merger = _PartMerger()
+        for name in sorted_keys(iter(sides)):
+            versions = tuple(side.get(name, ABSENT) for side in sides)
+            if not equals(versions[1], versions[2]):
+                merger.note_conflict((name,), versions)
+        text = dumps(_graph(add_conflicts(sides[1], merger.conflicts)))
+    return MergedGraph(text, tuple(merger.conflicts.values()))
 
 
 def _graph(parts: Tree) -> Graph:
@@ -80,79 +83,81 @@ def _graph(parts: Tree) -> Graph:
 
 
 @dataclass
-class _Merging:
-    """One merge. `held` is what the sides fight over in the graph at hand: see `taken_away`."""
+class _PartMerger:
+    """Merges part by part, and notes conflicts. `contested` are elements of the graph at hand: see `find_contested`."""
 
-    found: dict[At, Conflict] = field(default_factory=dict[At, Conflict])
-    held: frozenset[str] = frozenset()
+    conflicts: dict[PartPath, Conflict] = field(default_factory=dict[PartPath, Conflict])
+    contested: frozenset[str] = frozenset()
 
-    def part(self, at: At, sides: Sides) -> Any:
-        """What becomes of a part."""
+    def merge_part(self, at: PartPath, sides: ThreeSides) -> Any:
+        """The merged version of a part: the first rule that fits decides."""
         base, ours, theirs = sides
-        here = local(at)
-        if same(ours, theirs):
+        here = local_path(at)
+        if equals(ours, theirs):
             return ours
-        if len(here) == 1 and here[0] in LINKED and self.held:
-            return self.inside(at, sides)
-        if len(here) == 2 and self.is_held(here, sides):
-            return self.undecided(at, sides)
-        if same(theirs, base) or same(ours, base):
-            return ours if same(theirs, base) else theirs
+        if len(here) == 1 and here[0] in LINKED and self.contested:
+            return self.merge_entries(at, sides)
+        if len(here) == 2 and self.is_contested(here, sides):
+            return self.note_conflict(at, sides)
+        if equals(theirs, base) or equals(ours, base):
+            return ours if equals(theirs, base) else theirs
         if here[:1] == ("ui",):
-            return self.ui(at, sides)
+            return self.merge_layout(at, sides)
         if here[:1] == (CONFLICTS,) and len(here) > 1:
             return theirs if ours is ABSENT else ours
         if is_whole(at, *sides):
-            return self.decided(at, sides)
+            return self.merge_whole(at, sides)
         if not here:
-            return self.body(at, sides)
-        made = self.inside(at, sides)
-        keyless = here[0] == "animation" and len(here) == 2 and "keys" in made and not made["keys"]
-        return self.undecided(at, sides) if keyless else made
+            return self.merge_body(at, sides)
+        merge = self.merge_entries(at, sides)
+        keyless = here[0] == "animation" and len(here) == 2 and "keys" in merge and not merge["keys"]
+        return self.note_conflict(at, sides) if keyless else merge
 
-    def body(self, at: At, sides: Sides) -> Any:
-        """What becomes of a graph, or of that of a group."""
-        outer, self.held = self.held, taken_away(*(part if is_tree(part) else {} for part in sides))
-        made = self.inside(at, sides)
-        self.held = outer
-        return without_strays(made, sides[0])
+    def merge_body(self, at: PartPath, sides: ThreeSides) -> Any:
+        """The merged version of a graph, or of the graph in a group."""
+        outer, self.contested = self.contested, find_contested(*(part if is_tree(part) else {} for part in sides))
+        merge = self.merge_entries(at, sides)
+        self.contested = outer
+        return remove_stray_layout(merge, sides[0])
 
-    def inside(self, at: At, sides: Sides) -> Any:
-        """The same part by part. What has no parts left is absent where a side has it so."""
+    def merge_entries(self, at: PartPath, sides: ThreeSides) -> Any:
+        """The merged version of an object, entry by entry. An empty one is absent if it is absent on a side."""
         trees = tuple(part if is_tree(part) else {} for part in sides)
-        made: Tree = {}
-        for key in names_of(iter(trees)):
+        merge: Tree = {}
+        for key in sorted_keys(iter(trees)):
             base, ours, theirs = (tree.get(key, ABSENT) for tree in trees)
-            part = self.part((*at, key), (base, ours, theirs))
+            part = self.merge_part((*at, key), (base, ours, theirs))
             if part is not ABSENT:
-                made[key] = part
-        return ABSENT if not made and ABSENT in sides else like(made, trees[1] or trees[2])
+                merge[key] = part
+        return ABSENT if not merge and ABSENT in sides else keep_kind(merge, trees[1] or trees[2])
 
-    def is_held(self, here: At, sides: Sides) -> bool:
-        """True for an entry that is, or builds on, what the sides fight over."""
+    def is_contested(self, here: PartPath, sides: ThreeSides) -> bool:
+        """True for an entry that is a contested element, or builds on one."""
         section, name = str(here[0]), str(here[1])
         built = (references(section, name, part) for part in sides) if section in LINKED else ()
-        return any(self.held & one for one in built)
+        return any(self.contested & one for one in built)
 
-    def decided(self, at: At, sides: Sides) -> Any:
-        """A part that both changed: code may go together line by line."""
-        here, (base, ours, theirs) = local(at), sides
+    def merge_whole(self, at: PartPath, sides: ThreeSides) -> Any:
+        """The merged version of a part that both changed and that has no entries: code is merged line by line."""
+        here, (base, ours, theirs) = local_path(at), sides
         is_code = len(here) == 3 and here[0] == "nodes" and here[2] == "code"
         if is_code and is_list(base) and is_list(ours) and is_list(theirs):
-            lines = merged_lines(base, ours, theirs)
-            return self.undecided(at, sides) if lines is None else lines
-        return self.undecided(at, sides)
+            lines = merge_lines(base, ours, theirs)
+            return self.note_conflict(at, sides) if lines is None else lines
+        return self.note_conflict(at, sides)
 
-    def ui(self, at: At, sides: Sides) -> Any:
-        """What becomes of the layout; only words may need a decision."""
-        if all(is_tree(part) or part is ABSENT for part in sides) and not (len(local(at)) == 3 and ABSENT in sides[1:]):
-            return self.inside(at, sides)
-        words = local(at)[1:2] in (("comments",), ("frames",)) and all(isinstance(part, str) for part in sides[1:])
+    def merge_layout(self, at: PartPath, sides: ThreeSides) -> Any:
+        """The merged version of the layout; only texts of comments and frames can be conflicts."""
+        if all(is_tree(part) or part is ABSENT for part in sides) and not (
+            len(local_path(at)) == 3 and ABSENT in sides[1:]
+        ):
+            return self.merge_entries(at, sides)
+        words = local_path(at)[1:2] in (("comments",), ("frames",)) and all(isinstance(part, str) for part in sides[1:])
         if words:
-            return self.undecided(at, sides)
+            return self.note_conflict(at, sides)
         return sides[2] if sides[1] is ABSENT else sides[1]
 
-    def undecided(self, at: At, sides: Sides) -> Any:
-        """Ours stays, and a conflict is noted."""
-        self.found[at] = Conflict(at, *sides)
+    def note_conflict(self, at: PartPath, sides: ThreeSides) -> Any:
+        """Note a conflict; our version stays in place."""
+        self.conflicts[at] = Conflict(at, *sides)
         return sides[1]

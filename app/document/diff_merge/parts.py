@@ -1,7 +1,7 @@
-"""The parts of a document by name: what can differ and be merged on its own.
+"""The parts of a document by name: each can differ, and be merged, on its own.
 
-A part is addressed by the keys that lead to it. Keys of an animation count by their frame, not by their place in the
-list, and the conflicts of an unfinished merge by the part that they are about.
+A part is addressed by the keys that lead to it. A key of an animation is addressed by its frame, not by its place in
+the list; a conflict of an unfinished merge by the part that it is about.
 """
 
 from __future__ import annotations
@@ -16,29 +16,29 @@ from ..canonical import pretty
 from ..migrations import FORMAT
 from ..writing import dumps
 
-At = tuple[str | float, ...]
+PartPath = tuple[str | float, ...]
 """Where a part is: ("nodes", "bloom", "values", "sigma"), or ("animation", "bloom.sigma", "keys", 12)."""
 
 Tree = dict[Any, Any]
 
 CONFLICTS = "conflicts"
-"""The key of a document whose merge left something to be decided."""
+"""The key of a document that holds the conflicts of an unfinished merge."""
 
 _SECTIONS: Final = ("settings", "inputs", "outputs", "controls", "nodes", "links", "animation", CONFLICTS)
 _BODIES: Final = ("graph", "path", "code", "file")
 
 
-class Absent(Enum):
-    """What stands for a part that is not there; null may be."""
+class AbsentPart(Enum):
+    """Stands for a part that does not exist; None stands for the null of JSON."""
 
     ABSENT = "absent"
 
 
-ABSENT: Final = Absent.ABSENT
+ABSENT: Final = AbsentPart.ABSENT
 
 
-class _Listed(dict[Any, Any]):
-    """What a document writes as a list, by what tells its entries apart."""
+class _KeyedList(dict[Any, Any]):
+    """A list of a document as an object, by what identifies its entries."""
 
 
 def is_tree(item: Any) -> TypeGuard[Tree]:
@@ -53,39 +53,39 @@ def is_list(item: Any) -> TypeGuard[list[Any]]:
 
 def parts_of(graph: Graph) -> Tree:
     """A graph as it would be saved, by parts. Raises GraphError for what cannot be saved."""
-    return _by_name(json.loads(dumps(graph)))
+    return _split_body(json.loads(dumps(graph)))
 
 
 def text_of(parts: Tree) -> str:
     """The document that has these parts."""
-    return pretty({"halation": FORMAT, **plain(parts)})
+    return pretty({"halation": FORMAT, **to_document(parts)})
 
 
-def like(parts: Tree, before: Tree) -> Tree:
-    """The same kind of object as another with other entries."""
-    return _Listed(parts) if isinstance(before, _Listed) else parts
+def keep_kind(parts: Tree, before: Tree) -> Tree:
+    """Entries as the same kind of object as another: a keyed list stays one."""
+    return _KeyedList(parts) if isinstance(before, _KeyedList) else parts
 
 
-def plain(part: Any) -> Any:
-    """A part as a document has it: lists are lists again."""
-    if isinstance(part, _Listed):
-        return [plain(part[key]) for key in sorted(part)]
+def to_document(part: Any) -> Any:
+    """A part as a document writes it: keyed lists are lists again."""
+    if isinstance(part, _KeyedList):
+        return [to_document(part[key]) for key in sorted(part)]
     if is_tree(part):
-        return {key: plain(inner) for key, inner in part.items()}
+        return {key: to_document(inner) for key, inner in part.items()}
     return part
 
 
-def same(one: Any, other: Any) -> bool:
-    """Equality as JSON sees it: 1 is 1.0, and not true."""
-    if is_tree(one) and is_tree(other):
-        return one.keys() == other.keys() and all(same(part, other[key]) for key, part in one.items())
-    if is_list(one) and is_list(other):
-        return len(one) == len(other) and all(map(same, one, other))
-    return isinstance(one, bool) == isinstance(other, bool) and one == other
+def equals(first: Any, second: Any) -> bool:
+    """True if two parts are equal in JSON: 1 equals 1.0, and does not equal true."""
+    if is_tree(first) and is_tree(second):
+        return first.keys() == second.keys() and all(equals(part, second[key]) for key, part in first.items())
+    if is_list(first) and is_list(second):
+        return len(first) == len(second) and all(map(equals, first, second))
+    return isinstance(first, bool) == isinstance(second, bool) and first == second
 
 
-def at_part(parts: Any, at: At) -> Any:
-    """The part there, or ABSENT."""
+def get_part(parts: Any, at: PartPath) -> Any:
+    """The part at a path, or ABSENT."""
     for key in at:
         if not is_tree(parts) or key not in parts:
             return ABSENT
@@ -93,26 +93,26 @@ def at_part(parts: Any, at: At) -> Any:
     return parts
 
 
-def put_part(parts: Tree, at: At, part: Any) -> Tree:
-    """The same parts with another one there; ABSENT removes it."""
+def put_part(parts: Tree, at: PartPath, part: Any) -> Tree:
+    """The parts with the one at a path replaced; ABSENT removes it."""
     key, rest = at[0], at[1:]
     if rest:
         inner = parts.get(key)
-        part = put_part(inner if is_tree(inner) else _Listed() if key == "keys" else {}, rest, part)
-    kept = {name: item for name, item in parts.items() if name != key}
-    return like(kept if part is ABSENT else kept | {key: part}, parts)
+        part = put_part(inner if is_tree(inner) else _KeyedList() if key == "keys" else {}, rest, part)
+    others = {name: item for name, item in parts.items() if name != key}
+    return keep_kind(others if part is ABSENT else others | {key: part}, parts)
 
 
-def local(at: At) -> At:
+def local_path(at: PartPath) -> PartPath:
     """The address inside of the innermost group."""
     while len(at) >= 3 and at[0] == "nodes" and at[2] == "graph":
         at = at[3:]
     return at
 
 
-def is_section(at: At) -> bool:
-    """True for an object that is nothing by itself: to have none is the same as to have an empty one."""
-    here = local(at)
+def is_section(at: PartPath) -> bool:
+    """True for an object that means the same if it is empty and if it is absent."""
+    here = local_path(at)
     return (
         not here
         or (len(here) == 1 and here[0] in _SECTIONS)
@@ -120,38 +120,38 @@ def is_section(at: At) -> bool:
     )
 
 
-def is_container(at: At) -> bool:
-    """True for an object whose entries go together with those of another version that began it on its own."""
-    here = local(at)
+def is_container(at: PartPath) -> bool:
+    """True for an object that can be merged entry by entry even if both sides added it."""
+    here = local_path(at)
     return len(here) <= 1 or here[0] == "ui" or is_section(at)
 
 
-def is_whole(at: At, *versions: Any) -> bool:
-    """True where versions differ so much in kind that their parts do not go together."""
-    here, found = local(at), [item for item in versions if item is not ABSENT]
-    if not all(map(is_tree, found)):
+def is_whole(at: PartPath, *versions: Any) -> bool:
+    """True if versions of a part are of different kinds, so that their entries cannot be compared one by one."""
+    here, present = local_path(at), [item for item in versions if item is not ABSENT]
+    if not all(map(is_tree, present)):
         return True
     if is_container(at):
         return False
-    if len(found) < len(versions):
+    if len(present) < len(versions):
         return True
     if len(here) == 2 and here[0] == "nodes":
-        return len({_kind(item) for item in found}) > 1
-    return len(here) == 2 and here[0] == "animation" and len({"keys" in item for item in found}) > 1
+        return len({_kind(item) for item in present}) > 1
+    return len(here) == 2 and here[0] == "animation" and len({"keys" in item for item in present}) > 1
 
 
-def names_of(versions: Iterator[Any]) -> list[Any]:
+def sorted_keys(versions: Iterator[Any]) -> list[Any]:
     """The keys of several objects, each once, in order."""
     return sorted({key for item in versions if is_tree(item) for key in item})
 
 
-def path_of(at: At) -> str:
+def path_text(at: PartPath) -> str:
     """The address as messages write it: `nodes.bloom.values.sigma`."""
     return ".".join(map(str, at))
 
 
-def about(at: Any) -> str:
-    """What tells a conflict from others."""
+def conflict_key(at: Any) -> str:
+    """The key that identifies a conflict: the path that it is about."""
     return json.dumps(at)
 
 
@@ -160,20 +160,20 @@ def _kind(node: Tree) -> tuple[str, ...]:
     return (str(node.get("type")), str(node.get("version")), *(key for key in _BODIES if key in node))
 
 
-def _by_name(body: Tree) -> Tree:
-    found = {key: part for key, part in body.items() if key != "halation"}
-    if is_tree(animation := found.get("animation")):
-        found["animation"] = {target: _by_frame(item) for target, item in animation.items()}
-    if is_tree(nodes := found.get("nodes")):
-        found["nodes"] = {id: _inside(node) for id, node in nodes.items()}
-    if is_list(open := found.get(CONFLICTS)) and all(is_tree(item) and "at" in item for item in open):
-        found[CONFLICTS] = _Listed({about(item["at"]): item for item in open})
-    return found
+def _split_body(body: Tree) -> Tree:
+    parts = {key: part for key, part in body.items() if key != "halation"}
+    if is_tree(animation := parts.get("animation")):
+        parts["animation"] = {target: _split_animation(item) for target, item in animation.items()}
+    if is_tree(nodes := parts.get("nodes")):
+        parts["nodes"] = {id: _split_group(node) for id, node in nodes.items()}
+    if is_list(open := parts.get(CONFLICTS)) and all(is_tree(item) and "at" in item for item in open):
+        parts[CONFLICTS] = _KeyedList({conflict_key(item["at"]): item for item in open})
+    return parts
 
 
-def _inside(node: Tree) -> Tree:
-    return {**node, "graph": _by_name(node["graph"])} if node["type"] == "group" and "graph" in node else node
+def _split_group(node: Tree) -> Tree:
+    return {**node, "graph": _split_body(node["graph"])} if node["type"] == "group" and "graph" in node else node
 
 
-def _by_frame(item: Tree) -> Tree:
-    return {**item, "keys": _Listed({key["frame"]: key for key in item["keys"]})} if "keys" in item else item
+def _split_animation(item: Tree) -> Tree:
+    return {**item, "keys": _KeyedList({key["frame"]: key for key in item["keys"]})} if "keys" in item else item

@@ -1,4 +1,4 @@
-"""What the entries of a graph build on: nodes by id, the ends of the graph as `inputs.beauty`."""
+"""Which elements the entries of a graph build on: nodes by id, and ends such as `inputs.beauty`."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from ...graph import INPUTS, OUTPUTS, Expression
-from .parts import ABSENT, Tree, is_tree, names_of, same
+from .parts import ABSENT, Tree, equals, is_tree, sorted_keys
 
 LINKED: Final = ("nodes", INPUTS, OUTPUTS, "links", "animation", "controls")
-"""Sections whose entries stand for something, or build on it."""
+"""Sections whose entries are elements, or build on some."""
 
 
 def references(section: str, name: str, entry: Any) -> frozenset[str]:
-    """What an entry of a section is, or builds on; nothing if it is ABSENT."""
+    """The elements that an entry of a section is, or builds on; none if it is ABSENT."""
     if entry is ABSENT:
         return frozenset()
     if section == "nodes":
@@ -29,41 +29,43 @@ def references(section: str, name: str, entry: Any) -> frozenset[str]:
     return frozenset({_owner(name), *map(_owner, named)})
 
 
-def taken_away(base: Tree, ours: Tree, theirs: Tree) -> frozenset[str]:
-    """What one side removed while the other changed it or built on it, and what both added, each in its way."""
-    before, mine, others = (frozenset(things_of(body)) for body in (base, ours, theirs))
-    fought = {thing for thing in before & mine - others if thing in _touched(base, ours)}
-    fought |= {thing for thing in before & others - mine if thing in _touched(base, theirs)}
-    twice = mine & others - before
-    return frozenset(fought | {thing for thing in twice if not same(_thing(ours, thing), _thing(theirs, thing))})
+def find_contested(base: Tree, ours: Tree, theirs: Tree) -> frozenset[str]:
+    """Elements that one side deleted while the other changed or used them, and that both added differently."""
+    before, our_elements, their_elements = (frozenset(element_names(body)) for body in (base, ours, theirs))
+    contested = {thing for thing in before & our_elements - their_elements if thing in _find_touched(base, ours)}
+    contested |= {thing for thing in before & their_elements - our_elements if thing in _find_touched(base, theirs)}
+    added_twice = our_elements & their_elements - before
+    return frozenset(
+        contested | {thing for thing in added_twice if not equals(_element(ours, thing), _element(theirs, thing))}
+    )
 
 
-def _touched(base: Tree, side: Tree) -> frozenset[str]:
-    """What changed entries of a side are or build on."""
-    found: set[str] = set()
+def _find_touched(base: Tree, side: Tree) -> frozenset[str]:
+    """The elements that changed entries of a side are, or build on."""
+    touched: set[str] = set()
     for section in LINKED:
         before, after = base.get(section, {}), side.get(section, {})
-        for name in names_of(iter((after,))):
-            if not same(before.get(name, ABSENT), after[name]):
-                found |= references(section, name, after[name])
-    return frozenset(found)
+        for name in sorted_keys(iter((after,))):
+            if not equals(before.get(name, ABSENT), after[name]):
+                touched |= references(section, name, after[name])
+    return frozenset(touched)
 
 
-def things_of(body: Tree) -> Iterator[str]:
-    """The nodes of a graph, and its ends."""
+def element_names(body: Tree) -> Iterator[str]:
+    """The elements of a graph: its nodes and its ends."""
     yield from body.get("nodes", {})
     for section in (INPUTS, OUTPUTS):
         yield from (f"{section}.{name}" for name in body.get(section, {}))
 
 
-def _thing(body: Tree, thing: str) -> Any:
-    section, dot, name = thing.partition(".")
+def _element(body: Tree, element: str) -> Any:
+    section, dot, name = element.partition(".")
     entries = body.get(section if dot else "nodes", {})
-    return entries.get(name if dot else thing, ABSENT) if is_tree(entries) else ABSENT
+    return entries.get(name if dot else element, ABSENT) if is_tree(entries) else ABSENT
 
 
 def _owner(port: Any) -> str:
-    """The node of a port; an end of the graph is a thing of its own."""
+    """The element of a port: its node, or an end of the graph."""
     text = str(port)
     node = text.partition(".")[0]
     return text if node in (INPUTS, OUTPUTS) else node

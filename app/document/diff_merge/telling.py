@@ -1,4 +1,4 @@
-"""A difference in words: one line for everything that changed."""
+"""A difference in words: one line for each change."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from difflib import unified_diff
 from typing import Any, Final, Literal
 
 from ...graph import Graph
-from .difference import Difference, difference
-from .parts import ABSENT, CONFLICTS, At, Tree, is_list, is_tree, local, names_of, path_of, same
-from .wording import animation_text, end_text, item_text, key_text, pair, text, value_at
+from .difference import GraphDifference, compare_graphs
+from .parts import ABSENT, CONFLICTS, PartPath, Tree, equals, is_list, is_tree, local_path, path_text, sorted_keys
+from .wording import animation_text, change_text, end_text, item_text, key_text, value_at, value_text
 
 Sign = Literal["+", "-", "~"]
 _ORDER: Final = ("nodes", "links", "animation", "inputs", "outputs", "controls", "settings")
@@ -18,7 +18,7 @@ _WORD: Final = {"inputs": "input", "outputs": "output", "controls": "control"}
 
 
 @dataclass(frozen=True)
-class Line:
+class DifferenceLine:
     """Something that was added, removed or changed; `below` are the lines of code that did."""
 
     sign: Sign
@@ -26,173 +26,182 @@ class Line:
     below: tuple[str, ...] = ()
 
 
-def told(wanted: Difference, before: Graph, after: Graph) -> tuple[Line, ...]:
-    """What a difference of two graphs says, renamed nodes first, then by section, node and value."""
-    found = [Line("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}") for one in wanted.renamed]
-    gone = {change.at for change in wanted.changes if change.after is ABSENT}
+def describe_difference(changes: GraphDifference, before: Graph, after: Graph) -> tuple[DifferenceLine, ...]:
+    """The lines that describe a difference: renamed nodes first, then by section, node and value."""
+    lines = [
+        DifferenceLine("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}")
+        for one in changes.renamed
+    ]
+    removed = {change.at for change in changes.changes if change.after is ABSENT}
     for change in sorted(
-        wanted.changes, key=lambda change: _ORDER.index(change.at[0]) if change.at[0] in _ORDER else len(_ORDER)
+        changes.changes, key=lambda change: _ORDER.index(change.at[0]) if change.at[0] in _ORDER else len(_ORDER)
     ):
-        if change.at not in gone or not _goes_with(change.at, gone):
-            found += _Telling(change.at, (after, before)).lines(change.before, change.after)
-    return tuple(found)
+        if change.at not in removed or not _goes_with(change.at, removed):
+            lines += _PartDescription(change.at, (after, before)).describe_change(change.before, change.after)
+    return tuple(lines)
 
 
-def facts(graph: Graph) -> tuple[str, ...]:
-    """A graph without its layout, as lines of one fact each, so that those who compare lines compare facts."""
-    found: list[str] = []
-    for change in difference(Graph(), graph).changes:
-        for line in _Telling(change.at, (graph, graph), exact=True).whole(change.after):
-            found += [line.words, *(f"    {one}" for one in line.below)]
-    return tuple(found)
+def describe_graph(graph: Graph) -> tuple[str, ...]:
+    """The lines that describe a graph without its layout: one fact a line, for tools that compare lines."""
+    lines: list[str] = []
+    for change in compare_graphs(Graph(), graph).changes:
+        for line in _PartDescription(change.at, (graph, graph), exact=True).describe_whole(change.after):
+            lines += [line.words, *(f"    {one}" for one in line.below)]
+    return tuple(lines)
 
 
 @dataclass(frozen=True)
-class _Telling:
-    """The words for a part; `graphs` know its unit."""
+class _PartDescription:
+    """Describes one part; its unit and default are looked up in `graphs`."""
 
-    at: At
+    at: PartPath
     graphs: tuple[Graph, ...]
     exact: bool = False
 
     @property
     def name(self) -> str:
-        """What people call the part: ids of groups with slashes between, then `node.value` or the like."""
-        groups = [str(self.at[place]) for place in range(1, len(self.at) - len(local(self.at)), 3)]
-        here = local(self.at)
+        """The name of the part for users: ids of groups with slashes between, then `node.value` or the like."""
+        groups = [str(self.at[place]) for place in range(1, len(self.at) - len(local_path(self.at)), 3)]
+        here = local_path(self.at)
         if here[:1] in (("nodes",), ("links",), ("animation",)):
             here = here[1:]
             here = (here[0], *here[2:]) if here[1:2] == ("values",) else here
-        return "/".join([*groups, path_of(here)])
+        return "/".join([*groups, path_text(here)])
 
     @property
     def value(self) -> Any:
-        """What is declared of it."""
+        """The declaration of the value, if the part is one."""
         return next((value for graph in self.graphs if (value := value_at(graph, self.at))), None)
 
-    def lines(self, before: Any, after: Any) -> Iterator[Line]:
-        """What changed."""
-        here = local(self.at)
+    def describe_change(self, before: Any, after: Any) -> Iterator[DifferenceLine]:
+        """The lines for a change of the part."""
+        here = local_path(self.at)
         if len(here) == 2 and here[0] == "nodes" and is_tree(before) and is_tree(after):
-            yield from self._replaced(before, after)
+            yield from self._describe_replaced(before, after)
         elif len(here) == 3 and here[0] == "nodes" and here[2] == "muted":
-            yield Line("~", f"node {self._up().name} {'is muted' if after is True else 'works again'}")
+            yield DifferenceLine("~", f"node {self._parent().name} {'is muted' if after is True else 'works again'}")
         elif is_list(before) and is_list(after) and here[0] == "nodes" and here[2:] == ("code",):
-            yield Line("~", f"{self.name}:", _code(before, after))
+            yield DifferenceLine("~", f"{self.name}:", _code(before, after))
         elif here[0] == "links" and isinstance(before, str) and isinstance(after, str):
-            yield Line("~", f"link {self.name}: {before} -> {after}")
+            yield DifferenceLine("~", f"link {self.name}: {before} -> {after}")
         elif here[0] == "animation" and is_tree(before) and is_tree(after) and len(here) == 2:
-            one, other = (animation_text(item, self.value) for item in (before, after))
-            yield Line("~", f"animation of {self.name}: {one} -> {other}")
+            text_before, text_after = (animation_text(item, self.value) for item in (before, after))
+            yield DifferenceLine("~", f"animation of {self.name}: {text_before} -> {text_after}")
         elif here[0] == "animation" and len(here) == 5:
-            what = "" if here[4] == "value" else f" {here[4]}"
-            yield Line("~", f"{self._up().name} at {here[3]:g}{what}: {pair(before, after, self.value)}")
-        elif ABSENT in (before, after) and (said := self._entry(after if before is ABSENT else before)):
-            yield Line("-" if after is ABSENT else "+", said)
+            aspect = "" if here[4] == "value" else f" {here[4]}"
+            yield DifferenceLine(
+                "~", f"{self._parent().name} at {here[3]:g}{aspect}: {change_text(before, after, self.value)}"
+            )
+        elif ABSENT in (before, after) and (sentence := self._entry(after if before is ABSENT else before)):
+            yield DifferenceLine("-" if after is ABSENT else "+", sentence)
         else:
-            yield Line("~", f"{self._kind()}{self.name}: {pair(before, after, self.value)}")
+            yield DifferenceLine("~", f"{self._kind()}{self.name}: {change_text(before, after, self.value)}")
 
-    def whole(self, part: Any) -> Iterator[Line]:
-        """Everything that there is to say of a part that is there."""
-        here = local(self.at)
+    def describe_whole(self, part: Any) -> Iterator[DifferenceLine]:
+        """The lines for a part that exists."""
+        here = local_path(self.at)
         if len(here) != 2 or here[0] != "nodes":
-            yield Line("+", self._entry(part) or f"{self._kind()}{self.name}: {text(part, self.value, self.exact)}")
+            yield DifferenceLine(
+                "+", self._entry(part) or f"{self._kind()}{self.name}: {value_text(part, self.value, self.exact)}"
+            )
             return
-        yield Line("+", f"node {self.name}: {item_text(part)}")
-        yield from self._parts(part, lambda inner, item: inner.whole(item))
+        yield DifferenceLine("+", f"node {self.name}: {item_text(part)}")
+        yield from self._describe_parts(part, lambda inner, item: inner.describe_whole(item))
 
-    def _parts(self, node: Tree, each: Callable[[_Telling, Any], Iterator[Line]]) -> Iterator[Line]:
-        """The same for all that a node holds."""
+    def _describe_parts(
+        self, node: Tree, each: Callable[[_PartDescription, Any], Iterator[DifferenceLine]]
+    ) -> Iterator[DifferenceLine]:
+        """The lines for each part of a node."""
         for key, part in sorted(node.items()):
             if key == "values":
                 for name, plain in sorted(part.items()):
-                    yield from each(self._down("values", name), plain)
+                    yield from each(self._child("values", name), plain)
             elif key == "graph" and is_tree(part):
                 for section in (name for name in part if name != "ui"):
                     for name, entry in sorted(part[section].items()) if is_tree(part[section]) else ():
-                        yield from each(self._down("graph", section, name), entry)
+                        yield from each(self._child("graph", section, name), entry)
             elif key == "code" and is_list(part):
-                yield Line("+", f"{self._down(key).name}:", tuple(map(str, part)))
+                yield DifferenceLine("+", f"{self._child(key).name}:", tuple(map(str, part)))
             elif key not in ("type", "version", "muted", "path"):
-                yield from each(self._down(key), part)
+                yield from each(self._child(key), part)
 
-    def _replaced(self, before: Tree, after: Tree) -> Iterator[Line]:
-        """A node of another type, or with another sort of body."""
-        one, other = item_text(before), item_text(after)
-        if one != other:
-            yield Line("~", f"node {self.name}: {one} -> {other}")
-        for key in names_of(iter((before, after))):
+    def _describe_replaced(self, before: Tree, after: Tree) -> Iterator[DifferenceLine]:
+        """The lines for a node whose type or kind of body changed."""
+        text_before, text_after = item_text(before), item_text(after)
+        if text_before != text_after:
+            yield DifferenceLine("~", f"node {self.name}: {text_before} -> {text_after}")
+        for key in sorted_keys(iter((before, after))):
             old, new = before.get(key, ABSENT), after.get(key, ABSENT)
-            if key in ("type", "muted", "path", "graph") or same(old, new):
+            if key in ("type", "muted", "path", "graph") or equals(old, new):
                 continue
             if key == "values":
                 values = [part if is_tree(part) else {} for part in (old, new)]
-                for name in names_of(iter(values)):
+                for name in sorted_keys(iter(values)):
                     pairs = [part.get(name, ABSENT) for part in values]
-                    if not same(*pairs):
-                        yield from self._down("values", name)._set(*pairs)
+                    if not equals(*pairs):
+                        yield from self._child("values", name)._describe_value(*pairs)
             else:
-                yield from self._down(key).lines(old, new)
+                yield from self._child(key).describe_change(old, new)
 
-    def _set(self, before: Any, after: Any) -> Iterator[Line]:
+    def _describe_value(self, before: Any, after: Any) -> Iterator[DifferenceLine]:
         """A value of a node whose type changed: each end has its own unit and default."""
         new, old = (value_at(graph, self.at) for graph in self.graphs)
-        yield Line("~", f"{self.name}: {text(before, old)} -> {text(after, new)}")
+        yield DifferenceLine("~", f"{self.name}: {value_text(before, old)} -> {value_text(after, new)}")
 
     def _entry(self, part: Any) -> str:
-        """What was added or removed, if it stands for itself; a value that is set does not."""
-        here = local(self.at)
+        """The sentence for a part that was added or removed; "" for a part of another one, such as a value."""
+        here = local_path(self.at)
         if here[0] == "links" and len(here) == 2:
             return f"link {self.name} <- {part}"
         if here[0] == "animation":
             if len(here) == 2 and is_tree(part):
                 return f"animation of {self.name}: {animation_text(part, self.value, self.exact)}"
             if len(here) == 4 and is_tree(part):
-                return f"key of {self._up().name} at {here[3]:g}: {key_text(part, self.value, self.exact)}"
+                return f"key of {self._parent().name} at {here[3]:g}: {key_text(part, self.value, self.exact)}"
             return ""
         if not is_tree(part) or len(here) != 2:
             return ""
         if here[0] == CONFLICTS:
-            return f"conflict: {path_of(tuple(part['at']))}"
+            return f"conflict: {path_text(tuple(part['at']))}"
         if here[0] == "nodes":
             set_values = part.get("values")
             values = (
                 [
-                    f"{name} {text(plain, self._down('values', name).value)}"
+                    f"{name} {value_text(plain, self._child('values', name).value)}"
                     for name, plain in sorted(set_values.items())
                 ]
                 if is_tree(set_values)
                 else []
             )
             return f"node {self.name}: {', '.join([item_text(part), *values])}"
-        return f"{_WORD[str(here[0])]} {self._named()}: {end_text(part, self.exact)}" if here[0] in _WORD else ""
+        return f"{_WORD[str(here[0])]} {self._end_name()}: {end_text(part, self.exact)}" if here[0] in _WORD else ""
 
-    def _named(self) -> str:
-        section, name = (str(part) for part in local(self.at)[:2])
+    def _end_name(self) -> str:
+        section, name = (str(part) for part in local_path(self.at)[:2])
         return self.name.replace(f"{section}.{name}", name)
 
     def _kind(self) -> str:
-        here = local(self.at)
+        here = local_path(self.at)
         if here[0] == "animation":
             return ""
         return "layout " if here[0] == "ui" else ""
 
-    def _down(self, *keys: str) -> _Telling:
-        return _Telling((*self.at, *keys), self.graphs, self.exact)
+    def _child(self, *keys: str) -> _PartDescription:
+        return _PartDescription((*self.at, *keys), self.graphs, self.exact)
 
-    def _up(self) -> _Telling:
-        """The part that holds this one; what holds a key is the animation."""
-        here = local(self.at)
+    def _parent(self) -> _PartDescription:
+        """The part that holds this one; that of a key is the animation."""
+        here = local_path(self.at)
         beyond = len(here) - 2 if here[0] == "animation" else 1
-        return _Telling(self.at[:-beyond], self.graphs)
+        return _PartDescription(self.at[:-beyond], self.graphs)
 
 
-def _goes_with(at: At, gone: set[At]) -> bool:
-    """True for a link to, or keys of, a node that is gone too."""
-    here = local(at)
+def _goes_with(at: PartPath, removed: set[PartPath]) -> bool:
+    """True for a link to a deleted node, or keys of one: the line of the node covers them."""
+    here = local_path(at)
     if len(here) != 2 or here[0] not in ("links", "animation"):
         return False
-    return (*at[:-2], "nodes", str(here[1]).partition(".")[0]) in gone
+    return (*at[:-2], "nodes", str(here[1]).partition(".")[0]) in removed
 
 
 def _code(before: list[Any], after: list[Any]) -> tuple[str, ...]:

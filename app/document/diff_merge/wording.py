@@ -1,4 +1,4 @@
-"""Parts of a document as a person writes them: numbers with their units, keys with their frames."""
+"""Parts of a document as texts for users: numbers with their units, keys with their frames."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import Any, Final
 from halation.nodes import Value
 
 from ...graph import Graph, Group, signature
-from .parts import ABSENT, At, Tree, is_list, is_tree, plain
+from .parts import ABSENT, PartPath, Tree, is_list, is_tree, to_document
 
 _PLAIN: Final = ("ratio", "count")
-"""Units that a number needs not be followed by."""
+"""Units that are not written after a number."""
 
 _LONG = 8
-"""Numbers of a list that are still written out."""
+"""The longest list of numbers that is written out: what fits into a line of a terminal, a choice."""
 
 _WIDE = 60
-"""Columns that anything else may take."""
+"""Columns that any other text may take, a choice for terminals of 80 columns or more."""
 
 
 def item_text(node: Tree) -> str:
@@ -33,7 +33,11 @@ def item_text(node: Tree) -> str:
 
 def end_text(end: Tree, exact: bool = False) -> str:
     """An input, output or control: its type or target, and what else is set."""
-    rest = [f"{name} {text(part, None, exact)}" for name, part in sorted(end.items()) if name not in ("type", "target")]
+    rest = [
+        f"{name} {value_text(part, None, exact)}"
+        for name, part in sorted(end.items())
+        if name not in ("type", "target")
+    ]
     return ", ".join([str(end.get("type") or end.get("target")), *rest])
 
 
@@ -43,41 +47,45 @@ def animation_text(item: Tree, value: Value | None, exact: bool = False) -> str:
         return f"= {item['expression']}"
     keys = [f"{key_text(key, value, exact)} at {frame:g}" for frame, key in sorted(item.get("keys", {}).items())]
     outside = [f"outside {item['outside']}"] if "outside" in item else []
-    return _cut(", ".join([*keys, *outside]), exact)
+    return _shorten(", ".join([*keys, *outside]), exact)
 
 
 def key_text(key: Tree, value: Value | None, exact: bool = False) -> str:
     """The value of a key and how it goes on."""
     way = key.get("interpolation", "smooth")
-    handles = [f" {side} {text(key[side], None, exact)}" for side in ("left", "right") if side in key]
-    return text(key.get("value"), value, exact) + ("" if way == "smooth" else f" {way}") + "".join(handles)
+    handles = [f" {side} {value_text(key[side], None, exact)}" for side in ("left", "right") if side in key]
+    return value_text(key.get("value"), value, exact) + ("" if way == "smooth" else f" {way}") + "".join(handles)
 
 
-def pair(before: Any, after: Any, value: Value | None = None, exact: bool = False) -> str:
+def change_text(before: Any, after: Any, value: Value | None = None, exact: bool = False) -> str:
     """`old -> new`, with as many digits as it takes to see the difference."""
-    one, other = text(before, value, exact), text(after, value, exact)
-    return f"{one} -> {other}" if one != other or exact else pair(before, after, value, True)
+    text_before, text_after = value_text(before, value, exact), value_text(after, value, exact)
+    return (
+        f"{text_before} -> {text_after}"
+        if text_before != text_after or exact
+        else change_text(before, after, value, True)
+    )
 
 
-def text(part: Any, value: Value | None = None, exact: bool = False) -> str:
+def value_text(part: Any, value: Value | None = None, exact: bool = False) -> str:
     """A value with its unit; one that is absent is the default."""
     if part is ABSENT:
-        return "none" if value is None else f"{text(value.default, value, exact)} (default)"
+        return "none" if value is None else f"{value_text(value.default, value, exact)} (default)"
     unit = f" {value.unit}" if value and value.unit and value.unit not in _PLAIN else ""
     if isinstance(part, bool) or part is None:
         return json.dumps(part)
     if isinstance(part, int | float):
         return (repr(part).removesuffix(".0") if exact else f"{part:.6g}") + unit
     if isinstance(part, tuple):
-        return text(list(part), value, exact)  # pyright: ignore[reportUnknownArgumentType]
+        return value_text(list(part), value, exact)  # pyright: ignore[reportUnknownArgumentType]
     if is_list(part) and all(isinstance(one, int | float) and not isinstance(one, bool) for one in part):
         if len(part) > _LONG and not exact:
             return f"{len(part)} numbers"
-        return f"({', '.join(text(one, None, exact) for one in part)}){unit}"
-    return _cut(json.dumps(plain(part), ensure_ascii=False), exact)
+        return f"({', '.join(value_text(one, None, exact) for one in part)}){unit}"
+    return _shorten(json.dumps(to_document(part), ensure_ascii=False), exact)
 
 
-def value_at(graph: Graph, at: At) -> Value | None:
+def value_at(graph: Graph, at: PartPath) -> Value | None:
     """What is declared of the value that an address leads to, through groups; None for what is no value."""
     while len(at) > 3 and at[0] == "nodes" and at[2] == "graph":
         item = graph.nodes.get(str(at[1]))
@@ -94,5 +102,5 @@ def value_at(graph: Graph, at: At) -> Value | None:
     return None if item is None else signature(item).values.get(name)
 
 
-def _cut(words: str, whole: bool = False) -> str:
+def _shorten(words: str, whole: bool = False) -> str:
     return words if whole or len(words) <= _WIDE else f"{words[: _WIDE - 1]}…"

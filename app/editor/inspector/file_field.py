@@ -13,7 +13,7 @@ from imgui_bundle import imgui
 from ...errors import HalationError
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
-from ...watch.sequence_files import standing
+from ...watch.sequence_files import representative_file
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
 from ..shared.coloring import settings_in_use
@@ -157,7 +157,7 @@ class FileField:
 
     def _file(self, rows: Rows, value: str) -> Path:
         """The file; of a sequence one that is there."""
-        return standing(self._full(rows, value), rows.context.session.frames[0])
+        return representative_file(self._full(rows, value), rows.context.session.frames[0])
 
     def _full(self, rows: Rows, value: str) -> Path:
         return Path(rows.context.session.graph.folder, value)

@@ -10,7 +10,7 @@ from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...document.animation import read_animation, written_animation
+from ...document.animation import describe_animation, read_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
 from ..fields.fields import Fields
@@ -248,7 +248,7 @@ class Keying:
 def as_text(session: Session, port: Port) -> str:
     """The animation of a value for the clipboard."""
     animation = session.animation(port)
-    return json.dumps({"animation": None if animation is None else written_animation(animation)})
+    return json.dumps({"animation": None if animation is None else describe_animation(animation)})
 
 
 def paste(session: Session, ports: Ports, text: str) -> None:

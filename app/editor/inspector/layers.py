@@ -15,7 +15,7 @@ from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, read_info, read_layer
 from ...media.color_spaces import find_layer_spaces
-from ...watch.versions import Versions
+from ...watch.versions import FileVersions
 
 WIDTH, HEIGHT = 96, 54
 _KEPT = 300
@@ -36,7 +36,7 @@ class Layers:
         self._spaces: BackgroundCache[SpaceKey, Mapping[str, FileSpace] | str] = BackgroundCache(
             "spaces", _spaces, _KEPT
         )
-        self._versions = Versions()
+        self._versions = FileVersions()
 
     def header(self, path: Path) -> ImageInfo | str | None:
         """The header, a sentence if there is none, None while it is being read."""

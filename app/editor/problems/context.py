@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
-    from ...watch.watching import Watcher
+    from ...watch.watching import FileWatcher
     from ..shared.protocols import ElementView, SystemText
 
 
@@ -25,7 +25,7 @@ class ProblemsContext(PanelContext):
     canvas: ElementView
     clipboard: SystemText
     recovery: RecoveryFile
-    watcher: Watcher
+    watcher: FileWatcher
     store: PreferenceStore
     faults: dict[str, str]
     """Panels that failed, with the traceback."""

@@ -9,7 +9,7 @@ from ...authoring.edits.coding import ENDINGS
 from ...errors import HalationError
 from ...media.sequences import find_sequence
 from ...renderer.provenance.recipe import has_recipe
-from ...watch.sequence_files import patterns
+from ...watch.sequence_files import suggest_patterns
 from ..shared.dialogs import Question
 from ..workflows.documents import DocumentWorkflow
 from .editor import Editor
@@ -53,7 +53,7 @@ def _ask(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
 def _read(editor: Editor, paths: Sequence[Path]) -> None:
     """Make nodes of files."""
     codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
-    files, frames = patterns([path for path in paths if path not in codes])
+    files, frames = suggest_patterns([path for path in paths if path not in codes])
     files = (*codes, *files)
     at = editor.canvas.pointer
     editor.dialogs.open.discard("start")

@@ -10,7 +10,7 @@ from ...authoring.background.shader_files import ShaderFiles
 from ...authoring.log import Log
 from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.render_queue.queue import RenderQueue
-from ...watch.watching import Watcher
+from ...watch.watching import FileWatcher
 from ..canvas.view import CanvasView
 from ..code.state import CodeState
 from ..curves.state import CurvesState
@@ -49,7 +49,7 @@ class Editor:
     interface: Interface
     log: Log = field(default_factory=Log)
     exports: RenderQueue = field(default_factory=RenderQueue)
-    watcher: Watcher = field(default_factory=Watcher)
+    watcher: FileWatcher = field(default_factory=FileWatcher)
     renders: RenderOverviews = field(default_factory=RenderOverviews)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
     coloring: ColorFallback = field(default_factory=ColorFallback)

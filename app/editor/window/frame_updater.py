@@ -10,9 +10,9 @@ from halation.nodes import plugins
 from ...compiler import installed_library
 from ...graph import Port
 from ...watch.code_files import code_files
-from ...watch.reloading import NodeFiles, migrated, shader_folder
-from ...watch.sequence_files import all_files
-from ...watch.watching import Change, groups_of, pictures_of
+from ...watch.reloading import NodeFiles, migrate_graph, shader_folder
+from ...watch.sequence_files import list_sequence_files
+from ...watch.watching import FileChange, find_group_files, find_pictures
 from ..viewer.wanted import find_visible_region, list_wanted_ports
 
 if TYPE_CHECKING:
@@ -101,15 +101,15 @@ class FrameUpdater:
         self._watched = reads
         editor.watcher.watch(
             session.path,
-            groups_of(session.root),
-            all_files(pictures_of(session.root, session.bindings)),
+            find_group_files(session.root),
+            list_sequence_files(find_pictures(session.root, session.bindings)),
             [shader_folder()],
             [self._nodes.folder],
             code_files(session.root),
         )
         session.note_code_files()
 
-    def _take_change(self, change: Change) -> None:
+    def _take_change(self, change: FileChange) -> None:
         """Read a file again after another program wrote it."""
         editor = self._editor
         match change.kind:
@@ -131,5 +131,5 @@ class FrameUpdater:
                 if fault := self._nodes.reload():
                     editor.log.add(fault, "error")
                 else:
-                    editor.session.migrate(migrated)
+                    editor.session.migrate(migrate_graph)
                     editor.log.add(f"node {change.path.name} was loaded again")

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ...authoring.log import Log
     from ...authoring.session import Session
     from ...custom_nodes import Code
-    from ...watch.watching import Watcher
+    from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
     from ..shared.window_commands import WindowCommands
 
@@ -34,7 +34,7 @@ class CodeFiles:
     """Reads and writes files with the code of nodes, and asks where both sides have changed."""
 
     session: Session
-    watcher: Watcher
+    watcher: FileWatcher
     dialogs: Dialogs
     log: Log
     editor: CodeEditor

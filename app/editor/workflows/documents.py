@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveredWork, RecoveryFile
     from ...authoring.render_queue.queue import RenderQueue
     from ...authoring.session import Session
-    from ...watch.watching import Watcher
+    from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
     from ..shared.window_commands import WindowCommands
@@ -33,7 +33,7 @@ class DocumentWorkflow:
 
     session: Session
     store: PreferenceStore
-    watcher: Watcher
+    watcher: FileWatcher
     recovery: RecoveryFile
     exports: RenderQueue
     canvas: ElementView

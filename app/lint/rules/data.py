@@ -9,7 +9,7 @@ from halation.nodes import Kind, Trait
 
 from ...graph import INPUTS, Port, Problem
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet, has_trait, layer_read
+from ..sheet import Check, GraphFacts, has_trait, layer_read
 
 DATA_AS_COLOR = Rule(
     "data-as-color",
@@ -27,7 +27,7 @@ _DATA = re.compile(
 """Names of layers that are never color, such as `Depth`, `ViewLayer.Normal` and `CryptoObject00`."""
 
 
-def find(sheet: Sheet) -> Iterator[Problem]:
+def find(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that need color, linked to a layer of data."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
@@ -37,7 +37,7 @@ def find(sheet: Sheet) -> Iterator[Problem]:
             yield Problem(id, name, sentence, DATA_AS_COLOR, f"links.{id}.{name}")
 
 
-def _data(sheet: Sheet, source: Port) -> str:
+def _data(sheet: GraphFacts, source: Port) -> str:
     """The layer of data that leaves at a port, or "" for what may be color."""
     if source.node == INPUTS:
         end = sheet.graph.inputs[source.socket]

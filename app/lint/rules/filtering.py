@@ -11,7 +11,7 @@ from halation.nodes import Pointwise, Trait
 from ...custom_nodes import CustomNode
 from ...graph import Port, Problem
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet, has_trait
+from ..sheet import Check, GraphFacts, has_trait
 
 if TYPE_CHECKING:
     from halation.nodes.distort.resize import Resize
@@ -28,7 +28,7 @@ _PLACES = frozenset({"pixel", "extent"})
 """What a shader says whose result depends on where a pixel is."""
 
 
-def find(sheet: Sheet) -> Iterator[Problem]:
+def find(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that filter a picture which another node has just filtered."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
@@ -39,7 +39,7 @@ def find(sheet: Sheet) -> Iterator[Problem]:
                 yield Problem(id, next(iter(item.inputs)), sentence, FILTERING_TWICE, f"nodes.{id}")
 
 
-def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
+def _filtered(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
     """The node that filtered the picture of `id`, and of nothing else, with what is between; "" if there is none."""
     between: list[str] = []
     port = sheet.first(id)
@@ -54,14 +54,14 @@ def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
     return "", []
 
 
-def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
+def _picture(sheet: GraphFacts, id: str, item: Pointwise) -> str:
     """The one input that is linked of a node that does the same to every pixel, so that it may as well come later."""
     fed = [name for name in (*item.inputs, *item.values) if Port(id, name) in sheet.graph.links]
     alike = len(fed) == len(item.outputs) == 1 and fed[0] in item.inputs and not isinstance(item, CustomNode)
     return fed[0] if alike and not sheet.library.uses(item.shader, _PLACES, id) else ""
 
 
-def _remedy(sheet: Sheet, before: str, between: list[str], id: str) -> str:
+def _remedy(sheet: GraphFacts, before: str, between: list[str], id: str) -> str:
     """What to do instead of filtering twice, or "" where both nodes are needed."""
     from halation.nodes.blur.gaussian_blur import GaussianBlur
     from halation.nodes.distort.resize import Resize

@@ -10,7 +10,7 @@ from halation.nodes import Kind, Trait
 from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet, has_trait, layered_path
+from ..sheet import Check, GraphFacts, has_trait, layered_path
 
 DISPLAY_LIGHT = Rule(
     "display-light",
@@ -30,7 +30,7 @@ _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 """Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
 
 
-def display_light(sheet: Sheet) -> Iterator[Problem]:
+def display_light(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that work with light, behind a tone map. The first of each chain is named."""
     maker: dict[Port, str] = {}
     for id in sheet.graph.order():
@@ -51,7 +51,7 @@ def display_light(sheet: Sheet) -> Iterator[Problem]:
             maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
 
 
-def clipped_light(sheet: Sheet) -> Iterator[Problem]:
+def clipped_light(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that need light above white, right behind a file that has none."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
@@ -63,13 +63,13 @@ def clipped_light(sheet: Sheet) -> Iterator[Problem]:
                 yield Problem(id, name, sentence, CLIPPED_LIGHT, f"links.{id}.{name}")
 
 
-def _pictures(sheet: Sheet, id: str) -> list[Port | None]:
+def _pictures(sheet: GraphFacts, id: str) -> list[Port | None]:
     """What feeds the inputs of a node that take an image."""
     inputs = signature(sheet.graph.nodes[id]).inputs
     return [sheet.source(Port(id, name)) for name, socket in inputs.items() if socket.kind is Kind.IMAGE]
 
 
-def _shown(sheet: Sheet, id: str) -> list[str]:
+def _shown(sheet: GraphFacts, id: str) -> list[str]:
     """Outputs of a node that are for a display, by what it is."""
     item = sheet.graph.nodes[id]
     if isinstance(item, Group):
@@ -77,7 +77,7 @@ def _shown(sheet: Sheet, id: str) -> list[str]:
     return [next(iter(item.outputs))] if has_trait(item, Trait.MAKES_DISPLAY_LIGHT) else []
 
 
-def _file(sheet: Sheet, source: Port) -> str:
+def _file(sheet: GraphFacts, source: Port) -> str:
     """The file that a port shows, if any."""
     if source.node == INPUTS:
         return sheet.graph.inputs[source.socket].file

@@ -9,7 +9,7 @@ from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Graph, Group, Problem, signature
 from ...graph.color import BUILT_IN
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet
+from ..sheet import Check, GraphFacts
 
 ABSOLUTE_PATH = Rule(
     "absolute-path",
@@ -50,7 +50,7 @@ def is_absolute(path: str) -> bool:
     return PurePosixPath(path).is_absolute() or bool(PureWindowsPath(path).drive)
 
 
-def absolute_path(sheet: Sheet) -> Iterator[Problem]:
+def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
     """Paths from the root."""
     for node, socket, at, path in named_paths(sheet.graph):
         if is_absolute(path):
@@ -58,7 +58,7 @@ def absolute_path(sheet: Sheet) -> Iterator[Problem]:
             yield Problem(node, socket, sentence, ABSOLUTE_PATH, at)
 
 
-def backslash_path(sheet: Sheet) -> Iterator[Problem]:
+def backslash_path(sheet: GraphFacts) -> Iterator[Problem]:
     """Paths of Windows."""
     for node, socket, at, path in named_paths(sheet.graph):
         if "\\" in path and not is_absolute(path):

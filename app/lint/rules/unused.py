@@ -8,7 +8,7 @@ from typing import Any, cast
 from ...graph import INPUTS, OUTPUTS, Expression, Problem
 from ...graph.evaluate_at_frame import named
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet
+from ..sheet import Check, GraphFacts
 
 UNUSED_BRANCH = Rule(
     "unused-branch",
@@ -30,7 +30,7 @@ STALE_LAYOUT = Rule(
 )
 
 
-def unused_branch(sheet: Sheet) -> Iterator[Problem]:
+def unused_branch(sheet: GraphFacts) -> Iterator[Problem]:
     """The ends of branches that lead nowhere."""
     graph = sheet.graph
     if not graph.outputs:
@@ -46,7 +46,7 @@ def unused_branch(sheet: Sheet) -> Iterator[Problem]:
             yield Problem(id, "", sentence, UNUSED_BRANCH, f"nodes.{id}")
 
 
-def unused_input(sheet: Sheet) -> Iterator[Problem]:
+def unused_input(sheet: GraphFacts) -> Iterator[Problem]:
     """Inputs that feed nothing."""
     read = {source.socket for source in sheet.graph.links.values() if source.node == INPUTS}
     for name in sheet.graph.inputs:
@@ -55,7 +55,7 @@ def unused_input(sheet: Sheet) -> Iterator[Problem]:
             yield Problem(INPUTS, name, sentence, UNUSED_INPUT, f"inputs.{name}")
 
 
-def stale_layout(sheet: Sheet) -> Iterator[Problem]:
+def stale_layout(sheet: GraphFacts) -> Iterator[Problem]:
     """Places of nodes that are gone."""
     graph, places = sheet.graph, sheet.graph.ui.get("nodes")
     ends = {INPUTS: graph.inputs, OUTPUTS: graph.outputs}
@@ -66,7 +66,7 @@ def stale_layout(sheet: Sheet) -> Iterator[Problem]:
             yield Problem("", "", sentence, STALE_LAYOUT, f"ui.nodes.{name}")
 
 
-def _wanted(sheet: Sheet) -> set[str]:
+def _wanted(sheet: GraphFacts) -> set[str]:
     """Nodes that expressions read values of, and those that a viewer shows."""
     graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
     found = {

@@ -53,11 +53,11 @@ class FrameReport(Struct, frozen=True):
 class Progress(Protocol):
     """Hears how far a job is."""
 
-    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """A pass of a frame, or of one that leads up to it, is done; it computed these nodes."""
         ...
 
-    def finished(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
         """The files of a frame are there; so many of all frames are done."""
         ...
 
@@ -241,7 +241,7 @@ class _Job:
                 for done, one in enumerate(run, 1):
                     passes += 1
                     if self._progress is not None:
-                        self._progress.passed(task.frame, done, run.total, one.nodes)
+                        self._progress.report_pass(task.frame, done, run.total, one.nodes)
         self.seconds["render"] += time.perf_counter() - started
         return kept, passes
 
@@ -308,4 +308,4 @@ class _Job:
     def _finished(self, report: FrameReport) -> None:
         self._reports.append(report)
         if self._progress is not None:
-            self._progress.finished(report, len(self._reports), len(self._frames))
+            self._progress.report_frame(report, len(self._reports), len(self._frames))
