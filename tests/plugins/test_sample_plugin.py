@@ -76,7 +76,7 @@ from halation.editor.shared import entries
 from halation.nodes import catalogue
 every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths())
 for query in ("soft glow", "acme glow", "acme dream"):
-    print(entries.found(every, query)[0].entries[0].title)
+    print(entries.arrange_entries(every, query)[0].entries[0].title)
 session = Session()
 print(session.add_node("acme_glow.soft_glow"))
 print(session.add_group(next(path for path in preset_paths() if path.stem == "acme_dream")))
