@@ -108,7 +108,9 @@ def test_a_broken_line_is_marked_and_the_picture_stays(gui, path) -> None:
             fault = page(ui).fault
             assert fault.line == 1 and sentence in fault.sentence
             assert isinstance(ui.session.graph.nodes["code"], Unknown) == ("uniform" in line)
-            assert any(one.where == "code" and "line 1" in one.sentence for one in list_problems(ui.editor))
+            assert any(
+                one.where == "code" and "line 1" in one.sentence for one in list_problems(ui.window._contexts.problems)
+            )
 
             before = ui.session.root
             ui.ctx.key_press(chord("Shift+UpArrow"))

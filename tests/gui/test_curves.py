@@ -279,7 +279,7 @@ def test_many_curves_are_drawn_and_moved(gui, mode: str) -> None:
         ui.editor.curves.mode = mode
         ui.ctx.window_focus("//Animation")
         for _ in range(10):
-            ui.editor.curves.view = ui.editor.curves.view.panned(0.3, 0.0)
+            ui.editor.curves.view = ui.editor.curves.view.pan(0.3, 0.0)
             ui.wait(1)
         assert not ui.editor.faults
 

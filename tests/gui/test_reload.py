@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from gui_driver import drive
 from halation import document
-from halation.editor.problems.findings import findings
+from halation.editor.problems.findings import list_problems
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, Node, catalogue
 
@@ -37,7 +37,7 @@ def brightness(ui):
     return ui.ask(lambda: float(ui.editor.probe.pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
 
 def problems(ui):
-    return [one.sentence for one in findings(ui.editor)]
+    return [one.sentence for one in list_problems(ui.window._contexts.problems)]
 """
 
 

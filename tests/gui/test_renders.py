@@ -26,7 +26,7 @@ def drop(ui, path: Path = SAMPLE) -> str:
 def known(ui) -> None:
     """Wait until all files have been looked at, and all pictures are there."""
     ui.wait(3)
-    ui.until(lambda: not ui.editor.renders.busy)
+    ui.until(lambda: not ui.editor.renders.is_busy)
     ui.settled()
 
 

@@ -92,7 +92,7 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.click("render resume instead")
         ui.click("render")
         ended(ui, 2)
-        assert ui.editor.exports.all[1].kept == 8
+        assert ui.editor.exports.all[1].reused == 8
         ui.click("notes 0")
         assert "export notes 0" in ui.editor.places
         ui.shot("queue_ended.png")
@@ -143,10 +143,10 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 60
         ui.wait(4)
         ui.shot("queue_cancelled.png")
-        at = sorted(exports.all, key=lambda one: -one.ended).index(first)
+        at = sorted(exports.all, key=lambda one: -one.ended_at).index(first)
         ui.click(f"again {at}")
         ended(ui, 3)
-        assert exports.all[0].state == "done" and exports.all[0].kept >= 1
+        assert exports.all[0].state == "done" and exports.all[0].reused >= 1
         assert len(list(long_shot.parent.glob("a.*.png"))) == 60
 
     gui(body, long_shot)
@@ -159,7 +159,7 @@ def test_a_failed_render_says_why_and_is_tried_again(gui, shot: Path) -> None:
         ui.type(str(shot.parent / "later" / "s.####.png"))
         ui.click("render")
         ended(ui)
-        assert "export fault 0" in ui.editor.places and "no such folder" in ui.editor.exports.all[0].sentence
+        assert "export fault 0" in ui.editor.places and "no such folder" in ui.editor.exports.all[0].failure
         ui.shot("queue_failed.png")
         (shot.parent / "later").mkdir()
         ui.click("again 0")

@@ -65,7 +65,7 @@ def test_pictures_of_the_editor(gui, theme: str) -> None:
         (beauty,) = ui.session.graph.inputs
         ui.session.view(Port("outputs", "image"))
         ui.session.view(Port("inputs", beauty), "B")
-        ui.editor.viewer.comparing("wipe")
+        ui.editor.viewer.toggle_comparison("wipe")
         ui.session.select(["halo"])
         ui.settled()
         ui.editor.canvas.fit()

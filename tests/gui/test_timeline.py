@@ -275,7 +275,7 @@ def test_missing_frames_are_marked(gui, tmp_path) -> None:
 
     def body(ui) -> None:
         start(ui, graph_of(path, "exposure"))
-        ui.until(lambda: ui.window._panels["Timeline"]._ruler.missing.found == ((5, 6),))
+        ui.until(lambda: ui.window._panels["Timeline"]._ruler.missing.gaps == ((5, 6),))
         session = ui.session
         session.seek(5)
         ui.settled()
@@ -340,7 +340,7 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
         node = ui.session.active
         assert ui.session.value(Port(node, "path")) == path and ui.session.frames == (1, 12)
         ui.settled()
-        ui.until(lambda: not ui.editor.renders.busy)
+        ui.until(lambda: not ui.editor.renders.is_busy)
         ui.wait(5)
         ui.shot("sequence.png")
         ui.session.undo()

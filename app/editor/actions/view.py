@@ -27,8 +27,8 @@ def _theme(context: ViewSettingsContext) -> None:
 
 def _scale(step: float) -> Act:
     def scale(context: ViewSettingsContext) -> None:
-        now = context.store.current.ui_scale or 1.0
-        context.store.change(ui_scale=min(max(round(now + step, 2), 0.75), 3.0))
+        current_scale = context.store.current.ui_scale or 1.0
+        context.store.change(ui_scale=min(max(round(current_scale + step, 2), 0.75), 3.0))
 
     return scale
 

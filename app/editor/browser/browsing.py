@@ -100,11 +100,11 @@ def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:
     own = path.absolute().parent if path else None
     last = context.store.folder(browse.purpose)
     start = own if browse.saving and browse.purpose == "graph" and own else Path(last) if last else own or Path.home()
-    recent = tuple(dict.fromkeys(Path(one.path).parent for one in context.store.current.recent))[:4]
+    recent = tuple(dict.fromkeys(Path(recent_file.path).parent for recent_file in context.store.current.recent))[:4]
     used = tuple(Path(folder) for folder in context.store.current.folders.values())
-    made = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
-    made.listing.show(start)
-    return made
+    browsing = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
+    browsing.listing.show(start)
+    return browsing
 
 
 def endings(browse: Browse) -> frozenset[str]:

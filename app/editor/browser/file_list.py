@@ -33,7 +33,7 @@ class FileTable:
         self._context = context
         self.reveal = False
 
-    def draw(self, now: Browsing) -> bool:
+    def draw(self, browsing: Browsing) -> bool:
         """True if an item was double-clicked."""
         flags = int(imgui.TableFlags_.sortable) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.row_bg)
         if not imgui.begin_table("table", 3, flags):
@@ -44,30 +44,30 @@ class FileTable:
         imgui.table_setup_column("Size", fixed, 84 * scale)
         imgui.table_setup_column("Changed", fixed, 136 * scale)
         imgui.table_headers_row()
-        _sort(now)
-        items, done = now.items, False
+        _sort(browsing)
+        items, double_clicked = browsing.items, False
         clipper = imgui.ListClipper()
         clipper.begin(len(items))
         if self.reveal:
-            clipper.include_item_by_index(now.chosen)
+            clipper.include_item_by_index(browsing.chosen)
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 imgui.table_next_row()
-                done = self._row(now, index, items[index]) or done
+                double_clicked = self._draw_row(browsing, index, items[index]) or double_clicked
         clipper.end()
         imgui.end_table()
-        return done
+        return double_clicked
 
-    def _row(self, now: Browsing, index: int, item: Item) -> bool:
+    def _draw_row(self, browsing: Browsing, index: int, item: Item) -> bool:
         imgui.table_next_column()
         icon = icons.ICON_FA_FOLDER if item.is_folder else _icon(item.name)
         flags = int(imgui.SelectableFlags_.span_all_columns) | int(imgui.SelectableFlags_.allow_double_click)
         room = imgui.get_content_region_avail().x - 26 * ui_scale()
-        chosen = index == now.chosen
-        done = False
+        chosen = index == browsing.chosen
+        double_clicked = False
         if imgui.selectable(f"{icon}  {cut_middle(item.name, room)}##{index}", chosen, flags)[0]:
-            now.choose(index)
-            done = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+            browsing.choose(index)
+            double_clicked = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
         record(self._context, f"file {item.name}")
         if chosen and self.reveal:
             imgui.internal.scroll_to_item()
@@ -76,7 +76,7 @@ class FileTable:
         draw_dim(self._context, "" if item.is_folder else size_text(item.size))
         imgui.table_next_column()
         draw_dim(self._context, time_text(item.time))
-        return done
+        return double_clicked
 
 
 class FileGrid:
@@ -95,31 +95,31 @@ class FileGrid:
             self._pictures.close()
         self._textures.clear()
 
-    def draw(self, now: Browsing) -> bool:
+    def draw(self, browsing: Browsing) -> bool:
         """True if an item was double-clicked."""
         if self._pictures is None:
             self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
-        scale, items, done = ui_scale(), now.items, False
+        scale, items, double_clicked = ui_scale(), browsing.items, False
         self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
         imgui.begin_child("grid")
         clipper = imgui.ListClipper()
         clipper.begin(-(-len(items) // self.columns), _CELL[1] * scale)
         if self.reveal:
-            clipper.include_item_by_index(now.chosen // self.columns)
+            clipper.include_item_by_index(browsing.chosen // self.columns)
         start = imgui.get_cursor_pos() + ImVec2(4 * scale, 4 * scale)
         while clipper.step():
             for row in range(clipper.display_start, clipper.display_end):
                 for index in range(row * self.columns, min((row + 1) * self.columns, len(items))):
                     corner = ((index % self.columns) * _CELL[0], row * _CELL[1])
                     imgui.set_cursor_pos(ImVec2(start.x + corner[0] * scale, start.y + corner[1] * scale))
-                    done = self._cell(now, index, items[index], self._pictures) or done
+                    double_clicked = self._draw_cell(browsing, index, items[index], self._pictures) or double_clicked
         clipper.end()
         imgui.end_child()
-        return done
+        return double_clicked
 
-    def _cell(self, now: Browsing, index: int, item: Item, pictures: FileThumbnails) -> bool:
+    def _draw_cell(self, browsing: Browsing, index: int, item: Item, pictures: FileThumbnails) -> bool:
         scale, palette = ui_scale(), self._context.palette
-        chosen = index == now.chosen
+        chosen = index == browsing.chosen
         size = ImVec2((_CELL[0] - 6) * scale, (_CELL[1] - 6) * scale)
         imgui.push_id(index)
         flags = int(imgui.SelectableFlags_.allow_double_click)
@@ -132,28 +132,28 @@ class FileGrid:
                 imgui.internal.scroll_to_item()
                 self.reveal = False
         low = imgui.get_item_rect_min()
-        self._picture(now.folder / item.name, item, low, pictures)
+        self._draw_picture(browsing.folder / item.name, item, low, pictures)
         lines = imgui.get_window_draw_list()
         name = cut_middle(item.name, _PICTURE[0] * scale)
         left = low.x + (size.x - imgui.calc_text_size(name).x) / 2
         lines.add_text(ImVec2(left, low.y + (_PICTURE[1] + 10) * scale), u32(palette.text), name)
         imgui.pop_id()
         if clicked:
-            now.choose(index)
+            browsing.choose(index)
         return clicked and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
 
-    def _picture(self, path: Path, item: Item, low: ImVec2, pictures: FileThumbnails) -> None:
+    def _draw_picture(self, path: Path, item: Item, low: ImVec2, pictures: FileThumbnails) -> None:
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         left, top = low.x + 5 * scale, low.y + 5 * scale
         width, height = _PICTURE[0] * scale, _PICTURE[1] * scale
-        found = None if item.is_folder else pictures.get(path, item.time)
-        if found is not None and not isinstance(found, str):
-            across, down = fit_picture(found, width, height)
+        pixels = None if item.is_folder else pictures.get(path, item.time)
+        if pixels is not None and not isinstance(pixels, str):
+            across, down = fit_picture(pixels, width, height)
             corner = ImVec2(left + (width - across) / 2, top + (height - down) / 2)
-            texture = self._textures.get((path, item.time), lambda: found)
+            texture = self._textures.get((path, item.time), lambda: pixels)
             lines.add_image(texture, corner, ImVec2(corner.x + across, corner.y + down))
             return
-        broken = isinstance(found, str)
+        broken = isinstance(pixels, str)
         icon = icons.ICON_FA_FOLDER if item.is_folder else icons.ICON_FA_BAN if broken else icons.ICON_FA_IMAGE
         size = 34 * scale
         color = palette.error if broken else palette.dim
@@ -161,16 +161,16 @@ class FileGrid:
         corner = ImVec2(left + (width - size) / 2, top + (height - size) / 2)
         lines.add_text(font, size, corner, u32(color, 0.7), icon)
         if broken and imgui.is_item_hovered():
-            imgui.set_tooltip(str(found))
+            imgui.set_tooltip(str(pixels))
 
 
-def _sort(now: Browsing) -> None:
+def _sort(browsing: Browsing) -> None:
     """Take over what a click on a header asked for."""
     specs = imgui.table_get_sort_specs()
     if specs is not None and specs.specs_dirty and specs.specs_count:
         first = specs.get_specs(0)
-        now.order = _ORDERS[first.column_index]
-        now.down = first.get_sort_direction() == imgui.SortDirection.descending
+        browsing.order = _ORDERS[first.column_index]
+        browsing.down = first.get_sort_direction() == imgui.SortDirection.descending
         specs.specs_dirty = False
 
 

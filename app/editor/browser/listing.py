@@ -32,10 +32,10 @@ def read_folder(folder: Path) -> tuple[Item, ...]:
     """Everything in a folder; what cannot be looked at is left out. Raises InputError if the folder cannot be read."""
     try:
         with os.scandir(folder) as entries:
-            found = [_item(entry) for entry in entries]
+            items = [_item(entry) for entry in entries]
     except OSError as error:
         raise InputError(f"{folder}: {_reason(error)}") from None
-    return tuple(item for item in found if item)
+    return tuple(item for item in items if item)
 
 
 def arrange_items(
@@ -51,7 +51,7 @@ def arrange_items(
 
     With a `query` the best matches come first instead.
     """
-    wanted = [
+    listed = [
         item
         for item in items
         if (hidden or not item.hidden) and (item.is_folder or not endings or extension_of(item.name) in endings)
@@ -61,11 +61,11 @@ def arrange_items(
         "size": lambda item: (item.size, _natural(item.name)),
         "time": lambda item: (item.time, _natural(item.name)),
     }
-    wanted.sort(key=keys[order], reverse=down)
-    wanted.sort(key=lambda item: not item.is_folder)
+    listed.sort(key=keys[order], reverse=down)
+    listed.sort(key=lambda item: not item.is_folder)
     if not query:
-        return tuple(wanted)
-    return tuple(wanted[one.index] for one in match(query, tuple(item.name for item in wanted)))
+        return tuple(listed)
+    return tuple(listed[found_match.index] for found_match in match(query, tuple(item.name for item in listed)))
 
 
 class Listing:
@@ -76,15 +76,15 @@ class Listing:
         self.items: tuple[Item, ...] = ()
         self.fault = ""
         self._reader: _FolderReader | None = None
-        self._asked: tuple[object, ...] = ()
+        self._arguments: tuple[object, ...] = ()
         self._shown: tuple[Item, ...] = ()
 
     def arrange(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
         """The items `arranged`; asking the same again costs nothing."""
-        asked = (endings, query, order, down, hidden)
-        if not self._asked or self._asked[0] is not self.items or self._asked[1:] != asked:
+        arguments = (endings, query, order, down, hidden)
+        if not self._arguments or self._arguments[0] is not self.items or self._arguments[1:] != arguments:
             self._shown = arrange_items(self.items, endings, query=query, order=order, down=down, hidden=hidden)
-            self._asked = (self.items, *asked)
+            self._arguments = (self.items, *arguments)
         return self._shown
 
     @property
@@ -163,10 +163,12 @@ def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
 
 
 def _reason(error: OSError) -> str:
-    known = {
+    sentences = {
         PermissionError: "it may not be read or written; ask its owner, or choose another folder",
         FileNotFoundError: "there is no such folder",
         NotADirectoryError: "this is a file, not a folder",
         FileExistsError: "there is something of that name already",
     }
-    return next((sentence for kind, sentence in known.items() if isinstance(error, kind)), error.strerror or str(error))
+    return next(
+        (sentence for kind, sentence in sentences.items() if isinstance(error, kind)), error.strerror or str(error)
+    )

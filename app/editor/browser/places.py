@@ -26,11 +26,11 @@ class Place:
 
 def places(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> tuple[Place, ...]:
     """The document's folder, home, folders of recent files and of last use, drives; each once, only what is there."""
-    found: dict[Path, Place] = {}
+    by_path: dict[Path, Place] = {}
     for place in _candidates(document, recent, used):
-        if place.path not in found and os.path.isdir(place.path):  # noqa: PTH112 - False for what no system allows
-            found[place.path] = place
-    return tuple(sorted(found.values(), key=lambda place: place.kind == "drive"))
+        if place.path not in by_path and os.path.isdir(place.path):  # noqa: PTH112 - False for what no system allows
+            by_path[place.path] = place
+    return tuple(sorted(by_path.values(), key=lambda place: place.kind == "drive"))
 
 
 def _candidates(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> Iterator[Place]:

@@ -43,16 +43,16 @@ def rank_commands(
 ) -> tuple[tuple[Command, Match], ...]:
     """The commands that match, best first; without a query those used last, then those that can be done now."""
     labels = tuple(command.label for command in offered)
-    found = [(offered[one.index], one) for one in match(query, labels)]
+    matches = [(offered[one.index], one) for one in match(query, labels)]
     if query.strip():
 
         def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:
             return bool(pair[0].reason), -pair[1].score - pair[0].weight, pair[1].index
 
-        return tuple(sorted(found, key=worth))
+        return tuple(sorted(matches, key=worth))
     order = {id: place for place, id in enumerate(reversed(tuple(recent)))}
     last = len(order)
-    return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
+    return tuple(sorted(matches, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
 
 
 def explain_disabled(context: PaletteContext, action: Action) -> str:

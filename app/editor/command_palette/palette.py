@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
-from ..shared.fuzzy import Match, runs
+from ..shared.fuzzy import Match, split_matched
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import display_shortcut
@@ -39,30 +39,30 @@ class CommandPalette:
             return
         if not self._open:
             self._open, self._query, self._chosen, self._offered = True, "", 0, list_commands(self._context)
-        found = rank_commands(self._query, self._offered, self._recent)
+        matches = rank_commands(self._query, self._offered, self._recent)
         close = backdrop(self._context, "palette", 0.3)
-        done: Command | None = None
+        chosen: Command | None = None
         with dialog(self._context, "Command palette", (620, 0), top=0.18):
-            self._field()
-            moved = self._steer(len(found))
+            self._draw_field()
+            moved = self._move_by_arrows(len(matches))
             entered = any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
-            if entered and found:
-                done = found[self._chosen][0]
-            done = self._list(found, moved) or done
+            if entered and matches:
+                chosen = matches[self._chosen][0]
+            chosen = self._draw_list(matches, moved) or chosen
             close = close or escape_pressed()
-        if done is not None and not done.reason:
-            self._do(done)
-        if close or (done is not None and not done.reason):
+        if chosen is not None and not chosen.reason:
+            self._run(chosen)
+        if close or (chosen is not None and not chosen.reason):
             self._context.dialogs.open.discard("palette")
 
-    def _do(self, command: Command) -> None:
+    def _run(self, command: Command) -> None:
         if command.id in self._recent:
             self._recent.remove(command.id)
         self._recent.append(command.id)
         self._context.dialogs.open.discard("palette")
         self._context.log.attempt(command.run)
 
-    def _field(self) -> None:
+    def _draw_field(self) -> None:
         if not imgui.is_any_item_active():
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1)
@@ -73,38 +73,38 @@ class CommandPalette:
         if changed:
             self._chosen = 0
 
-    def _steer(self, count: int) -> bool:
+    def _move_by_arrows(self, count: int) -> bool:
         step = imgui.is_key_pressed(imgui.Key.down_arrow) - imgui.is_key_pressed(imgui.Key.up_arrow)
         step += _ROWS * (imgui.is_key_pressed(imgui.Key.page_down) - imgui.is_key_pressed(imgui.Key.page_up))
         self._chosen = min(max(self._chosen + step, 0), max(count - 1, 0))
         return step != 0
 
-    def _list(self, found: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
-        if not found:
+    def _draw_list(self, matches: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
+        if not matches:
             draw_dim(self._context, "Nothing is called that.")
             return None
         height = imgui.get_text_line_height() + 8 * ui_scale()
-        done: Command | None = None
-        imgui.begin_child("commands", ImVec2(0, height * min(len(found), _ROWS)), 0, int(imgui.WindowFlags_.no_nav))
+        chosen: Command | None = None
+        imgui.begin_child("commands", ImVec2(0, height * min(len(matches), _ROWS)), 0, int(imgui.WindowFlags_.no_nav))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(0, 0))
         clipper = imgui.ListClipper()
-        clipper.begin(len(found), height)
+        clipper.begin(len(matches), height)
         clipper.include_item_by_index(self._chosen)
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
-                command, one = found[index]
-                if self._row(index, command, one, height):
-                    done = command
+                command, letters = matches[index]
+                if self._draw_row(index, command, letters, height):
+                    chosen = command
                 if moved and index == self._chosen:
                     imgui.internal.scroll_to_item()
         clipper.end()
         imgui.pop_style_var()
         imgui.end_child()
-        doc = found[self._chosen][0].doc if self._chosen < len(found) else ""
+        doc = matches[self._chosen][0].doc if self._chosen < len(matches) else ""
         draw_dim(self._context, doc or " ")
-        return done
+        return chosen
 
-    def _row(self, index: int, command: Command, one: Match, height: float) -> bool:
+    def _draw_row(self, index: int, command: Command, letters: Match, height: float) -> bool:
         palette, scale = self._context.palette, ui_scale()
         start = imgui.get_cursor_pos()
         edge = start.x + imgui.get_content_region_avail().x
@@ -116,7 +116,7 @@ class CommandPalette:
         line = start.y + (height - imgui.get_text_line_height()) / 2
         imgui.set_cursor_pos(ImVec2(start.x + 6 * scale, line))
         color = palette.dim if command.reason else palette.text
-        for piece, matched in runs(command.label, one.positions):
+        for piece, matched in split_matched(command.label, letters.positions):
             with font(self._context, "bold" if matched else "text"):
                 imgui.text_colored(vec4(palette.accent if matched and not command.reason else color), piece)
             imgui.same_line(0, 0)

@@ -191,12 +191,12 @@ def fitted(context: CurvesContext, samples: Samples) -> View:
             if isinstance(keys := graph.animation[port], Keys)
             and (found := heights(keys, channel, lambda key, frames=frames: key.frame in frames))
         ]
-        return state.view.fitted(extent(spots), _around(tops))
+        return state.view.fit(extent(spots), _around(tops))
     first, last = session.frames
     every = [frame for row in rows if row.keys for frame in row.keys.frames]
     ends = min([first, *every]), max([last, *every])
     tops = [found for row in rows for found in _heights(graph, session.settings, row, state.hidden, samples, ends)]
-    return state.view.fitted(ends, _around(tops) or (0.0, 1.0))
+    return state.view.fit(ends, _around(tops) or (0.0, 1.0))
 
 
 def bounds(context: CurvesContext) -> Callable[[Port], tuple[float, float]]:

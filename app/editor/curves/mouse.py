@@ -293,9 +293,9 @@ class CurvesMouse:
             if io.key_shift:
                 state.scroll -= turned * _NOTCH * frame.scale
             else:
-                state.view = state.view.zoomed(frame_at, value, factor, 1.0)
+                state.view = state.view.zoom(frame_at, value, factor, 1.0)
         else:
-            state.view = state.view.zoomed(
+            state.view = state.view.zoom(
                 frame_at, value, 1.0 if io.key_shift else factor, 1.0 if io.key_ctrl else factor
             )
 

@@ -36,7 +36,7 @@ class AboutDialog:
                 imgui.text_unformatted("Halation")
             draw_wrapped(self._context.palette.dim, metadata.metadata("halation")["Summary"])
             imgui.dummy((0, 6 * ui_scale()))
-            lines = _versions()
+            lines = list_versions()
             if imgui.begin_table("versions", 2):
                 imgui.table_setup_column("name", imgui.TableColumnFlags_.width_fixed.value, 130 * ui_scale())
                 imgui.table_setup_column("version", imgui.TableColumnFlags_.width_stretch.value)
@@ -56,7 +56,7 @@ class AboutDialog:
             self._context.dialogs.open.discard("about")
 
 
-def _versions() -> list[tuple[str, str]]:
+def list_versions() -> list[tuple[str, str]]:
     return [
         ("Halation", metadata.version("halation")),
         ("Python", platform.python_version()),

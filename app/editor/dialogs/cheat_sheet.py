@@ -39,13 +39,16 @@ class CheatSheet:
             with font(self._context, "bold", 20.0):
                 imgui.text_unformatted("Shortcuts")
             blocks = [
-                *((title, _lines(self._context, actions)) for title, actions in group_actions(self._context.actions)),
+                *(
+                    (title, _list_lines(self._context, actions))
+                    for title, actions in group_actions(self._context.actions)
+                ),
                 ("Mouse", MOUSE),
             ]
             room = imgui.get_content_region_avail().x
             count = max(int(room / (310 * ui_scale())), 1)
-            made = balance_columns(tuple(len(lines) + 2 for _, lines in blocks), count)
-            _sheet(self._context, blocks, made)
+            columns = balance_columns(tuple(len(lines) + 2 for _, lines in blocks), count)
+            _draw_columns(self._context, blocks, columns)
             if imgui.button("Change shortcuts"):
                 self._context.dialogs.open.add("preferences")
                 close = True
@@ -56,29 +59,29 @@ class CheatSheet:
             self._context.dialogs.open.discard("shortcuts")
 
 
-def _sheet(context: DialogContext, blocks: Blocks, made: Sequence[Sequence[int]]) -> None:
+def _draw_columns(context: DialogContext, blocks: Blocks, columns: Sequence[Sequence[int]]) -> None:
     """The columns; they scroll where they are longer than the window."""
     line = imgui.get_text_line_height_with_spacing()
-    longest = max(sum(len(blocks[index][1]) + 2 for index in indices) for indices in made) * line
+    longest = max(sum(len(blocks[index][1]) + 2 for index in indices) for indices in columns) * line
     height = min(longest, imgui.get_main_viewport().size.y - 130 * ui_scale())
     flags = int(imgui.TableFlags_.sizing_stretch_same)
-    if imgui.begin_child("columns", ImVec2(0, height)) and imgui.begin_table("sheet", len(made), flags):
-        for indices in made:
+    if imgui.begin_child("columns", ImVec2(0, height)) and imgui.begin_table("sheet", len(columns), flags):
+        for indices in columns:
             imgui.table_next_column()
             for index in indices:
-                _block(context, *blocks[index])
+                _draw_block(context, *blocks[index])
         imgui.end_table()
     imgui.end_child()
 
 
-def _lines(context: DialogContext, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
+def _list_lines(context: DialogContext, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
     lines = (
         (display_shortcut(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions
     )
     return condense_rows(lines)
 
 
-def _block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+def _draw_block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
     scale = ui_scale()
     imgui.dummy(ImVec2(0, 4 * scale))
     imgui.text_colored(vec4(context.palette.accent), title)

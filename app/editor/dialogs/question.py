@@ -36,7 +36,7 @@ class QuestionDialog:
             imgui.dummy((0, 2 * ui_scale()))
             imgui.text_wrapped(question.sentence)
             imgui.dummy((0, 8 * ui_scale()))
-            chosen = _buttons(self._context, question)
+            chosen = _draw_buttons(self._context, question)
             if escape_pressed():
                 chosen = len(question.answers) - 1
             elif imgui.is_key_pressed(imgui.Key.enter, False) and not imgui.is_window_appearing():
@@ -46,7 +46,7 @@ class QuestionDialog:
             self._context.log.attempt(question.answers[chosen][1])
 
 
-def _buttons(context: DialogContext, question: Question) -> int | None:
+def _draw_buttons(context: DialogContext, question: Question) -> int | None:
     """Side by side from the right, or one above the other where they do not fit; the index of the one clicked."""
     style = imgui.get_style()
     labels = [answer for answer, _ in question.answers]

@@ -40,12 +40,12 @@ class HistoryPanel:
             clipper.include_item_by_index(history.position)
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
-                self._row(index, labels[index])
+                self._draw_row(index, labels[index])
                 if moved and index == history.position:
                     imgui.set_scroll_here_y(0.5)
         clipper.end()
 
-    def _row(self, index: int, label: str) -> None:
+    def _draw_row(self, index: int, label: str) -> None:
         palette, position = self._context.palette, self._context.session.history.position
         current, undone = index == position, index > position
         color = mix(palette.dim, palette.panel, 0.35) if undone else palette.text
@@ -55,10 +55,10 @@ class HistoryPanel:
             self._context.log.attempt(lambda: self._context.session.go_to(index))
         imgui.pop_style_color()
         record(self._context, f"history {index}")
-        _mark(self._context, palette.accent if current else color, first=index == 0)
+        _draw_mark(self._context, palette.accent if current else color, first=index == 0)
 
 
-def _mark(context: HistoryContext, color: RGB, first: bool) -> None:
+def _draw_mark(context: HistoryContext, color: RGB, first: bool) -> None:
     """A dot left of the last item, joined with the one above."""
     low, high, scale = imgui.get_item_rect_min(), imgui.get_item_rect_max(), ui_scale()
     x, y, lines = low.x - 10 * scale, (low.y + high.y) / 2, imgui.get_window_draw_list()

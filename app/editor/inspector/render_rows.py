@@ -93,10 +93,10 @@ class RenderRows:
             said = use.fault or use.reason
             rows.field_note(said, rows.palette.error if use.fault else rows.palette.warning if use.open else None)
             if use.rule and not has_choice:
-                rows.field_note(rule_words(use.rule, told=False))
+                rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
             chosen = getattr(item, value.name) != FOUND
-            words = f"chosen by hand; found: {use.rule.words}" if chosen else rule_words(use.rule, told=True)
+            words = f"chosen by hand; found: {use.rule.words}" if chosen else rule_words(use.rule, kind_shown=True)
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)
 

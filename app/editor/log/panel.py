@@ -35,23 +35,23 @@ class LogPanel:
         entries = [
             entry for entry in self._context.log.entries if _ORDER.index(entry.level) >= _ORDER.index(self._least)
         ]
-        self._toolbar(entries)
+        self._draw_toolbar(entries)
         if not entries:
-            what = "was said yet" if self._least == "info" else "of this kind happened"
+            predicate = "was said yet" if self._least == "info" else "of this kind happened"
             sentence = "Messages stay here until they are cleared."
-            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {what}", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {predicate}", sentence)
             return
         if imgui.begin_child("entries"):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
             for index, entry in enumerate(entries):
                 imgui.push_id(index)
-                _row(self._context, index, entry)
+                _draw_row(self._context, index, entry)
                 imgui.pop_id()
             if at_end:
                 imgui.set_scroll_here_y(1.0)
         imgui.end_child()
 
-    def _toolbar(self, entries: list[LogEntry]) -> None:
+    def _draw_toolbar(self, entries: list[LogEntry]) -> None:
         for level, label in _LEVELS:
             palette = self._context.palette
             chosen = level == self._least
@@ -66,12 +66,12 @@ class LogPanel:
         if quiet_button(self._context, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
             self._context.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
-        some = bool(self._context.log.entries)
-        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
+        has_entries = bool(self._context.log.entries)
+        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=has_entries):
             self._context.log.entries.clear()
 
 
-def _row(context: LogContext, index: int, entry: LogEntry) -> None:
+def _draw_row(context: LogContext, index: int, entry: LogEntry) -> None:
     scale = ui_scale()
     with font(context, "mono", 14.0):
         draw_dim(context, strftime("%H:%M:%S", localtime(entry.at)))

@@ -39,9 +39,9 @@ class Toasts:
         view, scale = imgui.get_main_viewport(), ui_scale()
         right, bottom = view.pos.x + view.size.x - 12 * scale, view.pos.y + view.size.y - _BELOW * scale
         for index, entry in enumerate(reversed(entries)):
-            bottom -= self._draw_one(entry, index, ImVec2(right, bottom)) + _GAP * scale
+            bottom -= self._draw_toast(entry, index, ImVec2(right, bottom)) + _GAP * scale
 
-    def _draw_one(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
+    def _draw_toast(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
         """Draw with the lower right corner there; the height."""
         scale = ui_scale()
         left = TOAST_SECONDS - (time() - entry.at)

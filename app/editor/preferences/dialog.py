@@ -48,10 +48,10 @@ class PreferencesDialog:
         close = backdrop(self._context, "preferences") and not listening
         with dialog(self._context, "Preferences", (720, 500)):
             height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing() - 6 * ui_scale()
-            self._pages(height)
+            self._draw_pages(height)
             imgui.same_line(0, 16 * ui_scale())
             imgui.begin_child("page", ImVec2(0, height), _FLAT)
-            pages = (self._interface, self._shortcuts.draw, self._system)
+            pages = (self._draw_interface, self._shortcuts.draw, self._draw_system)
             pages[_PAGES.index(self._page)]()
             imgui.end_child()
             close = close_button(self._context, "close preferences") or close
@@ -59,7 +59,7 @@ class PreferencesDialog:
         if close:
             self._context.dialogs.open.discard("preferences")
 
-    def _pages(self, height: float) -> None:
+    def _draw_pages(self, height: float) -> None:
         imgui.begin_child("pages", ImVec2(130 * ui_scale(), height), _FLAT)
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted("Preferences")
@@ -71,45 +71,45 @@ class PreferencesDialog:
             record(self._context, f"page {page}")
         imgui.end_child()
 
-    def _interface(self) -> None:
-        now = self._context.store.current
+    def _draw_interface(self) -> None:
+        preferences = self._context.store.current
         _draw_heading(self._context, "Appearance")
         label("Theme", _LABELS)
         for theme in ("dark", "light"):
-            if imgui.radio_button(theme.capitalize(), now.theme == theme):
+            if imgui.radio_button(theme.capitalize(), preferences.theme == theme):
                 _change(self._context, theme=theme)
             record(self._context, f"theme {theme}")
             imgui.same_line()
         imgui.new_line()
         label("Scale", _LABELS)
         names = {_scale(scale): scale for scale in _SCALES}
-        if chosen := combo(self._context, "ui scale", _scale(now.ui_scale), tuple(names), 160 * ui_scale()):
+        if chosen := combo(self._context, "ui scale", _scale(preferences.ui_scale), tuple(names), 160 * ui_scale()):
             _change(self._context, ui_scale=names[chosen])
-        if now.ui_scale not in _SCALES or not MIN_SCALE <= (now.ui_scale or 1.0) <= MAX_SCALE:
+        if preferences.ui_scale not in _SCALES or not MIN_SCALE <= (preferences.ui_scale or 1.0) <= MAX_SCALE:
             imgui.same_line()
             draw_dim(self._context, "own")
         _draw_heading(self._context, "Graph")
-        _switch(self._context, "thumbnails", "Thumbnails on nodes")
-        _switch(self._context, "timings", "Time and memory of each node")
-        _switch(self._context, "minimap", "Overview in the corner")
+        _draw_switch(self._context, "thumbnails", "Thumbnails on nodes")
+        _draw_switch(self._context, "timings", "Time and memory of each node")
+        _draw_switch(self._context, "minimap", "Overview in the corner")
         _draw_heading(self._context, "Viewer")
-        _switch(self._context, "proxy_while_dragging", "Coarser pictures while a value is dragged")
+        _draw_switch(self._context, "proxy_while_dragging", "Coarser pictures while a value is dragged")
 
-    def _system(self) -> None:
+    def _draw_system(self) -> None:
         _draw_heading(self._context, "Recovery")
         label("Autosave every", _LABELS)
-        self._number("autosave", "%.1f s", 0.5, 10.0)
+        self._draw_number("autosave", "%.1f s", 0.5, 10.0)
         draw_wrapped(
             self._context.palette.dim, "Unsaved work is kept apart from your files and offered again after a crash."
         )
         _draw_heading(self._context, "Memory")
         label("For pictures", _LABELS)
-        self._number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
+        self._draw_number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         draw_wrapped(
             self._context.palette.dim, "On the graphics card. More keeps more results; it holds from the next start on."
         )
         _draw_heading(self._context, "Shaders")
-        self._folders()
+        self._draw_folders()
         _draw_heading(self._context, "Files")
         folder = str(self._context.store.file.parent)
         draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are kept in {folder}")
@@ -118,25 +118,25 @@ class PreferencesDialog:
         imgui.same_line()
         default = Preferences()
         if imgui.button("Reset all preferences"):
-            kept = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders")
-            _change(self._context, **{name: value for name, value in vars(default).items() if name not in kept})
+            lists = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders")
+            _change(self._context, **{name: value for name, value in vars(default).items() if name not in lists})
         record(self._context, "reset preferences")
 
-    def _folders(self) -> None:
+    def _draw_folders(self) -> None:
         """Where shaders in the Interactive Shader Format are looked for."""
-        now = self._context.store.current.isf_folders
+        folders = self._context.store.current.isf_folders
         draw_wrapped(
             self._context.palette.dim,
             "Folders with .fs files in the Interactive Shader Format; what is in them can be "
             f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.",
         )
-        for index, folder in enumerate(now):
+        for index, folder in enumerate(folders):
             if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
-                _change(self._context, isf_folders=tuple(one for one in now if one != folder))
+                _change(self._context, isf_folders=tuple(one for one in folders if one != folder))
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            gone = "" if os.path.isdir(folder) else "  (there is no such folder)"  # noqa: PTH112
-            imgui.text_unformatted(f"{folder}{gone}")
+            note = "" if os.path.isdir(folder) else "  (there is no such folder)"  # noqa: PTH112
+            imgui.text_unformatted(f"{folder}{note}")
         imgui.set_next_item_width(320 * ui_scale())
         entered, self._folder = imgui.input_text_with_hint(
             "##isf folder", "path of a folder", self._folder, int(imgui.InputTextFlags_.enter_returns_true)
@@ -146,11 +146,11 @@ class PreferencesDialog:
         typed = self._folder.strip().strip('"')
         if (imgui.button("Add") or entered) and typed:
             whole = str(Path(typed).expanduser().absolute())
-            _change(self._context, isf_folders=tuple(dict.fromkeys((*now, whole))))
+            _change(self._context, isf_folders=tuple(dict.fromkeys((*folders, whole))))
             self._folder = ""
         record(self._context, "button add isf")
 
-    def _number(
+    def _draw_number(
         self,
         name: str,
         text: str,
@@ -183,7 +183,7 @@ def _draw_heading(context: PreferencesContext, title: str) -> None:
         imgui.text_colored(vec4(context.palette.accent), title)
 
 
-def _switch(context: PreferencesContext, name: str, title: str) -> None:
+def _draw_switch(context: PreferencesContext, name: str, title: str) -> None:
     changed, value = imgui.checkbox(title, getattr(context.store.current, name))
     record(context, f"preference {name}")
     if changed:

@@ -18,8 +18,8 @@ def assign_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
 
 def take_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut that others have: they have none then."""
-    for other in context.actions.conflicts(id, keys):
-        assign_shortcut(context, other.id, "")
+    for conflict in context.actions.conflicts(id, keys):
+        assign_shortcut(context, conflict.id, "")
     assign_shortcut(context, id, keys)
 
 

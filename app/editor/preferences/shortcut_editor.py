@@ -51,18 +51,18 @@ class ShortcutEditor:
         if imgui.begin_child("list"):
             for title, actions in group_actions(self._context.actions, every=True):
                 labels = tuple(action.label for action in actions)
-                kept = sorted(one.index for one in match(self._query, labels))
-                if kept:
+                matches = sorted(one.index for one in match(self._query, labels))
+                if matches:
                     imgui.separator_text(title)
-                for index in kept:
-                    self._row(actions[index])
+                for index in matches:
+                    self._draw_row(actions[index])
         imgui.end_child()
 
     def stop(self) -> None:
         """Listen no more."""
         self._waiting, self._offered = "", None
 
-    def _row(self, action: Action) -> None:
+    def _draw_row(self, action: Action) -> None:
         scale, palette = ui_scale(), self._context.palette
         left = imgui.get_cursor_pos_x()
         room = imgui.get_content_region_avail().x
@@ -114,8 +114,8 @@ class ShortcutEditor:
             draw_dim(self._context, "Click a shortcut to change it.")
             return
         id, keys = self._offered
-        others = " and ".join(f"'{other.label}'" for other in self._context.actions.conflicts(id, keys))
-        draw_wrapped(self._context.palette.warning, f"{display_shortcut(keys)} is the shortcut of {others}.")
+        labels = " and ".join(f"'{conflict.label}'" for conflict in self._context.actions.conflicts(id, keys))
+        draw_wrapped(self._context.palette.warning, f"{display_shortcut(keys)} is the shortcut of {labels}.")
         if imgui.button("Take it over"):
             self._offered = None
             self._context.log.attempt(lambda: take_shortcut(self._context, id, keys))

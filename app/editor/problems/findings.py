@@ -24,8 +24,8 @@ class ListedProblem:
 
 def list_problems(context: ProblemsContext) -> tuple[ListedProblem, ...]:
     """Problems of the graph, of its pictures, of the services and of panels; worst first, each once."""
-    found = dict.fromkeys(_collect(context))
-    return tuple(sorted(found, key=lambda finding: finding.level != "error"))
+    problems = dict.fromkeys(_collect(context))
+    return tuple(sorted(problems, key=lambda finding: finding.level != "error"))
 
 
 def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
@@ -34,17 +34,17 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
     for node, problems in context.session.problems.items():
         for problem in problems:
             yield ListedProblem(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
-    known = {"/".join(filter(None, (inside, node))) for node in context.session.problems}
+    faulty_nodes = {"/".join(filter(None, (inside, node))) for node in context.session.problems}
     for where, sentence in context.preview.faults.items():
-        if where not in known:
+        if where not in faulty_nodes:
             yield ListedProblem("error", where, sentence)
-    for sentence in _services(context):
+    for sentence in service_faults(context):
         yield ListedProblem("warning", "", sentence)
     for name, detail in context.faults.items():
         yield ListedProblem("error", "", f"the panel {name} failed; the document is safe", detail)
 
 
-def _services(context: ProblemsContext) -> Iterable[str]:
+def service_faults(context: ProblemsContext) -> Iterable[str]:
     return filter(None, (context.recovery.fault, context.watcher.fault, *context.store.faults))
 
 

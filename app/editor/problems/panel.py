@@ -29,25 +29,25 @@ class ProblemsPanel:
 
     def draw(self) -> None:
         """Draw into the current window."""
-        found = list_problems(self._context)
-        if not found:
+        problems = list_problems(self._context)
+        if not problems:
             draw_empty_panel(
                 self._context, icons.ICON_FA_CIRCLE_CHECK, "Nothing is wrong", "What stops a picture appears here."
             )
             return
         imgui.align_text_to_frame_padding()
-        draw_dim(self._context, "1 problem" if len(found) == 1 else f"{len(found)} problems")
+        draw_dim(self._context, "1 problem" if len(problems) == 1 else f"{len(problems)} problems")
         align_right(_COPY)
         if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
-            self._context.clipboard.put("\n".join(_text(finding) for finding in found))
+            self._context.clipboard.put("\n".join(problem_text(finding) for finding in problems))
         if imgui.begin_child("problems"):
-            for index, finding in enumerate(found):
+            for index, finding in enumerate(problems):
                 imgui.push_id(index)
-                self._row(index, finding)
+                self._draw_row(index, finding)
                 imgui.pop_id()
         imgui.end_child()
 
-    def _row(self, index: int, finding: ListedProblem) -> None:
+    def _draw_row(self, index: int, finding: ListedProblem) -> None:
         scale, style = ui_scale(), imgui.get_style()
         indent = 26 * scale
         room = imgui.get_content_region_avail().x - indent - 6 * scale
@@ -62,7 +62,7 @@ class ProblemsPanel:
             tip("Click to show the node")
         if imgui.begin_popup_context_item("menu"):
             if imgui.menu_item(_COPY, "", False)[0]:
-                self._context.clipboard.put(_text(finding))
+                self._context.clipboard.put(problem_text(finding))
             imgui.end_popup()
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + style.frame_padding.y))
@@ -79,10 +79,10 @@ class ProblemsPanel:
         imgui.set_cursor_pos(after)
         imgui.dummy(ImVec2(0, 0))
         if finding.detail:
-            _detail(self._context, finding.detail, f"detail {index}")
+            _draw_detail(self._context, finding.detail, f"detail {index}")
 
 
-def _detail(context: ProblemsContext, detail: str, name: str) -> None:
+def _draw_detail(context: ProblemsContext, detail: str, name: str) -> None:
     """A traceback, for whoever reports it."""
     opened = imgui.tree_node("Details for a report")
     record(context, name)
@@ -95,6 +95,6 @@ def _detail(context: ProblemsContext, detail: str, name: str) -> None:
     imgui.tree_pop()
 
 
-def _text(finding: ListedProblem) -> str:
+def problem_text(finding: ListedProblem) -> str:
     head = f"{finding.where}: " if finding.where else ""
     return f"{head}{finding.sentence}" + (f"\n{finding.detail}" if finding.detail else "")

@@ -12,9 +12,9 @@ from pathlib import Path
 def command(folder: Path) -> list[str] | None:
     """The program that shows a folder, None if this system has none that is known."""
     name = {"darwin": "open", "win32": "explorer"}.get(sys.platform, "xdg-open")
-    found = shutil.which(name)
+    program = shutil.which(name)
     display = sys.platform in ("darwin", "win32") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    return [found, str(folder)] if found and display else None
+    return [program, str(folder)] if program and display else None
 
 
 def show_folder(folder: Path) -> bool:

@@ -77,14 +77,14 @@ class RenderForm:
         """The frames that can be chosen. Typed ones are none while they make no sense."""
         session = self.context.session
         first, last = session.frames
-        found: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
+        extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
         if first < last:
-            found["all frames"] = tuple(range(first, last + 1))
+            extents["all frames"] = tuple(range(first, last + 1))
             low, high = self.context.timeline.span(session)
             if (low, high) != (first, last):
-                found["what is played"] = tuple(range(low, high + 1))
-        found["some frames"] = _parse_listed(self.listed)[0]
-        return found
+                extents["what is played"] = tuple(range(low, high + 1))
+        extents["some frames"] = _parse_listed(self.listed)[0]
+        return extents
 
     def extent_of(self) -> Extent:
         """Which of them are to be rendered."""
@@ -142,19 +142,19 @@ class RenderForm:
 
     # --- all together ------------------------------------------------------------------------------------------------
 
-    def aim(self) -> RenderTargets:
+    def targets(self) -> RenderTargets:
         """What would be written now."""
         frames = self.frames()
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.chosen_outputs()))
         key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
         if self._seen[0] != key or now - self._seen[1] > _FRESH:
-            self._seen = (key, now, _aim(paths, frames, key[2]))
+            self._seen = (key, now, find_targets(paths, frames, key[2]))
         return self._seen[2]
 
     def options(self) -> RenderJob:
         """The choices as the exporter wants them."""
         frames = self.frames()
-        made = RenderJob(
+        job = RenderJob(
             frames=frames,
             precision=self.precision or None,
             view=self.view,
@@ -162,21 +162,21 @@ class RenderForm:
             processes=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
-            return replace(made, scale=self.scale)
-        return replace(made, size=self.size) if self.sizing == "size" else made
+            return replace(job, scale=self.scale)
+        return replace(job, size=self.size) if self.sizing == "size" else job
 
     def start(self) -> QueuedRender:
         """Put it into the queue. Raises UsageError or GraphError."""
         files = [(name, self.file(name)) for name in self.chosen_outputs()]
         if not self.frames():
             raise UsageError(self.list_fault)
-        made = self.context.exports.start(
+        render = self.context.exports.start(
             self.context.session.root, files, dict(self.context.session.bindings), self.options()
         )
         if files:
             self.context.store.note_folder("export", files[0][1])
         self._seen = (None, 0.0, RenderTargets())
-        return made
+        return render
 
 
 def formats() -> tuple[str, ...]:
@@ -201,7 +201,7 @@ def _add_number(path: str) -> str:
         return path
 
 
-def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> RenderTargets:
+def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> RenderTargets:
     if fault or not paths:
         return RenderTargets(fault=fault or "Choose an output to render.")
     try:
@@ -224,5 +224,5 @@ def _count_existing(path: str, frames: tuple[int, ...]) -> int:
     """How many of the files are there."""
     if Pattern.parse(path) is None or len(frames) == 1:
         return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows
-    found = find_sequence(path)
-    return len(found.names.keys() & set(frames)) if found else 0
+    sequence = find_sequence(path)
+    return len(sequence.names.keys() & set(frames)) if sequence else 0

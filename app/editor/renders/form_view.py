@@ -32,31 +32,31 @@ _LONGEST = 24
 
 def draw_form(context: RendersContext, form: RenderForm) -> None:
     """Everything that can be chosen, what would be written, and the button."""
-    _files(context, form)
-    _frames(context, form)
-    _options(context, form)
-    aim = form.aim()
+    _draw_files(context, form)
+    _draw_frames(context, form)
+    _draw_options(context, form)
+    aim = form.targets()
     imgui.dummy((0, 2 * ui_scale()))
-    _consequences(context, form, aim)
+    _draw_consequences(context, form, aim)
     waits = bool(context.exports.unfinished)
     title = f"{icons.ICON_FA_FILM}  {'Add to the queue' if waits else 'Render'}"
     if main_button(context, title, "render", enabled=not aim.fault, width=imgui.get_content_region_avail().x):
         context.log.attempt(lambda: form.start())
 
 
-def _files(context: RendersContext, form: RenderForm) -> None:
-    wanted = form.chosen_outputs()
+def _draw_files(context: RendersContext, form: RenderForm) -> None:
+    chosen_outputs = form.chosen_outputs()
     button = width_of_buttons(icons.ICON_FA_FOLDER_OPEN)
     for name in context.session.root.outputs:
         imgui.push_id(name)
         left, column = imgui.get_cursor_pos_x(), _LABELS * ui_scale()
-        shown = cut_end(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
-        changed, on = imgui.checkbox(f"{shown}##on", name in wanted)
+        short_name = cut_end(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
+        changed, on = imgui.checkbox(f"{short_name}##on", name in chosen_outputs)
         record(context, f"render {name}")
         tip(name)
         if changed:
             form.chosen[name] = on
-        imgui.begin_disabled(name not in wanted)
+        imgui.begin_disabled(name not in chosen_outputs)
         imgui.same_line(left + column)
         imgui.set_next_item_width(imgui.get_content_region_avail().x - button - 4 * ui_scale())
         path = str(form.file(name))
@@ -79,14 +79,14 @@ def _take_file(context: RendersContext, form: RenderForm, output: str, path: Pat
     form.extend(form.extent_of())
 
 
-def _frames(context: RendersContext, form: RenderForm) -> None:
-    offered, now = form.extents(), form.extent_of()
+def _draw_frames(context: RendersContext, form: RenderForm) -> None:
+    offered, extent = form.extents(), form.extent_of()
     labels: dict[str, Extent] = {_extent_text(extent, frames): extent for extent, frames in offered.items()}
-    if chosen := choice(context, "Frames", _extent_text(now, offered[now]), tuple(labels)):
+    if chosen := choose(context, "Frames", _extent_text(extent, offered[extent]), tuple(labels)):
         form.extend(labels[chosen])
-    if now == "some frames":
-        _list(context, form)
-    if now != "this frame":
+    if extent == "some frames":
+        _draw_frame_list(context, form)
+    if extent != "this frame":
         label("Processes", _LABELS)
         imgui.set_next_item_width(-1)
         most = max(os.cpu_count() or 1, 1)
@@ -112,7 +112,7 @@ def _short(frames: tuple[int, ...]) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}\u2026"
 
 
-def _list(context: RendersContext, form: RenderForm) -> None:
+def _draw_frame_list(context: RendersContext, form: RenderForm) -> None:
     """Frames that are typed, checked while they are."""
     label("", _LABELS)
     imgui.set_next_item_width(-1)
@@ -132,12 +132,12 @@ def _list(context: RendersContext, form: RenderForm) -> None:
         imgui.unindent(_LABELS * ui_scale())
 
 
-def _options(context: RendersContext, form: RenderForm) -> None:
+def _draw_options(context: RendersContext, form: RenderForm) -> None:
     kinds = {form.file(name).suffix.lower() for name in form.chosen_outputs()}
-    now = kinds.pop() if len(kinds) == 1 else "mixed"
-    if chosen := choice(context, "Format", now, formats()):
+    format = kinds.pop() if len(kinds) == 1 else "mixed"
+    if chosen := choose(context, "Format", format, formats()):
         form.reform(chosen)
-    if chosen := choice(context, "Size", form.sizing, _SIZINGS):
+    if chosen := choose(context, "Size", form.sizing, _SIZINGS):
         form.sizing = next(one for one in _SIZINGS if one == chosen)
     if form.sizing == "scale":
         label("", _LABELS)
@@ -149,11 +149,11 @@ def _options(context: RendersContext, form: RenderForm) -> None:
         width, height = imgui.input_int2("##size", list(form.size))[1]
         form.size = (min(max(width, 1), 16384), min(max(height, 1), 16384))
     depth = dict(DEPTHS)
-    if chosen := choice(context, "Precision", depth[form.precision], tuple(depth.values())):
+    if chosen := choose(context, "Precision", depth[form.precision], tuple(depth.values())):
         form.precision = next(name for name, text in DEPTHS if text == chosen)
-    if now in VIEWED or now == "mixed":
+    if format in VIEWED or format == "mixed":
         own = "as the output says"
-        if chosen := choice(context, "View", form.view or own, (own, *views(color=settings_in_use(context)))):
+        if chosen := choose(context, "View", form.view or own, (own, *views(color=settings_in_use(context)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]
@@ -164,7 +164,7 @@ def _options(context: RendersContext, form: RenderForm) -> None:
     )
 
 
-def _consequences(context: RendersContext, form: RenderForm, aim: RenderTargets) -> None:
+def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTargets) -> None:
     """What would be written, and what is in the way."""
     palette = context.palette
     if aim.fault:
@@ -193,7 +193,7 @@ def _consequences(context: RendersContext, form: RenderForm, aim: RenderTargets)
                 form.resume = True
 
 
-def choice(context: RendersContext, title: str, now: str, choices: tuple[str, ...]) -> str:
+def choose(context: RendersContext, title: str, current: str, choices: tuple[str, ...]) -> str:
     """A labelled choice; what was chosen in this frame, or ""."""
     label(title, _LABELS)
-    return combo(context, title, now, choices)
+    return combo(context, title, current, choices)

@@ -12,7 +12,7 @@ from ..theme.style import ui_scale
 from ..toolkit.words import draw_empty_panel
 from .form import RenderForm
 from .form_view import draw_form
-from .queue_view import Queue
+from .queue_view import RenderQueueView
 
 if TYPE_CHECKING:
     from .context import RendersContext
@@ -30,7 +30,7 @@ class RendersPanel:
         self._context = context
         self._forms: dict[Path | None, RenderForm] = {}
         """What was chosen last, by document."""
-        self._queue = Queue(context)
+        self._queue = RenderQueueView(context)
 
     def close(self) -> None:
         """Give back what the window holds."""

@@ -54,7 +54,7 @@ class _Button(NamedTuple):
     lit: bool = False
 
 
-class Queue:
+class RenderQueueView:
     """What runs is on top, then what waits, then what has ended, the last one first."""
 
     def __init__(self, context: RendersContext) -> None:
@@ -95,18 +95,18 @@ class Queue:
             imgui.push_id(index)
             if index:
                 imgui.dummy((0, 2 * ui_scale()))
-            self._row(index, export, waiting.index(export) + len(running) if export in waiting else 0)
+            self._draw_row(index, export, waiting.index(export) + len(running) if export in waiting else 0)
             imgui.pop_id()
 
     # --- one of them -------------------------------------------------------------------------------------------------
 
-    def _row(self, index: int, export: QueuedRender, turn: int) -> None:
+    def _draw_row(self, index: int, export: QueuedRender, turn: int) -> None:
         scale, palette = ui_scale(), self._context.palette
         start = imgui.get_cursor_screen_pos()
-        self._picture(export, start)
+        self._draw_picture(export, start)
         indent = (_WIDTH + 12) * scale
         imgui.indent(indent)
-        self._head(index, export, turn)
+        self._draw_head(index, export, turn)
         if export.state == "running":
             high = imgui.get_text_line_height() + 2 * scale
             imgui.progress_bar(export.fraction, ImVec2(-1, high), progress_text(export))
@@ -115,7 +115,7 @@ class Queue:
             imgui.text_colored(vec4(getattr(palette, _COLORS[export.state])), words[:1].upper() + words[1:])
         record(self._context, f"export {index}")
         with font(self._context, "text", SMALL):
-            self._details(export)
+            self._draw_details(export)
         if export.failure:
             draw_wrapped(palette.error, export.failure)
             record(self._context, f"export fault {index}")
@@ -128,80 +128,82 @@ class Queue:
         if imgui.get_cursor_screen_pos().y < low:
             imgui.dummy((0, max(low - imgui.get_cursor_screen_pos().y - imgui.get_style().item_spacing.y, 0.0)))
 
-    def _head(self, index: int, export: QueuedRender, turn: int) -> None:
+    def _draw_head(self, index: int, export: QueuedRender, turn: int) -> None:
         buttons = self._buttons(index, export, turn)
-        shown, spacing = [button.icon for button in buttons], 2 * ui_scale()
+        button_icons, spacing = [button.icon for button in buttons], 2 * ui_scale()
         imgui.align_text_to_frame_padding()
         with font(self._context, "bold"):
-            room = imgui.get_content_region_avail().x - width_of_buttons(*shown) - 12 * ui_scale()
+            room = imgui.get_content_region_avail().x - width_of_buttons(*button_icons) - 12 * ui_scale()
             imgui.text_unformatted(cut_middle(title(export), room))
         tip("\n".join(str(path) for _, path in export.destinations))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, ImVec2(spacing, imgui.get_style().item_spacing.y))
-        align_right(*shown)
+        align_right(*button_icons)
         for place, button in enumerate(buttons):
             if place:
                 imgui.same_line()
             if quiet_button(self._context, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
                 self._context.log.attempt(button.act)
         imgui.pop_style_var()
-        self._compare_menu(index, export)
+        self._draw_compare_menu(index, export)
 
     def _buttons(self, index: int, export: QueuedRender, turn: int) -> list[_Button]:
-        found: list[_Button] = []
+        buttons: list[_Button] = []
         first, folder = export.destinations[0][1], export.destinations[0][1].parent
         over = export.state not in ("running", "waiting")
         if export.written_files:
             doc = "Compare it with another version, in the viewer"
-            found.append(
+            buttons.append(
                 _Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, self._context, export))
             )
-            found.append(
+            buttons.append(
                 _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
             )
         if export.state == "waiting" and turn > len(self._context.exports.running):
             sooner = partial(self._context.exports.move, export, -1)
-            found.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Earlier", sooner))
+            buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Earlier", sooner))
         if export.state in ("failed", "cancelled"):
             doc = "Go on: frames that are there, and would come out the same, are kept" if export.done else "Try again"
-            found.append(
+            buttons.append(
                 _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.resume, export))
             )
         if export.notes:
             lit = export in self._open
-            found.append(_Button(icons.ICON_FA_LIST_UL, "notes", "What it says", partial(self._flip, export), lit))
+            buttons.append(
+                _Button(icons.ICON_FA_LIST_UL, "notes", "What it says", partial(self._toggle_notes, export), lit)
+            )
         if over:
             copy = partial(self._context.clipboard.put, str(first))
-            found.append(_Button(icons.ICON_FA_COPY, "copy path", "Copy the path", copy))
+            buttons.append(_Button(icons.ICON_FA_COPY, "copy path", "Copy the path", copy))
         show = partial(_open, self._context, folder)
-        found.append(_Button(icons.ICON_FA_FOLDER_OPEN, "open folder", f"Show {folder}", show))
+        buttons.append(_Button(icons.ICON_FA_FOLDER_OPEN, "open folder", f"Show {folder}", show))
         if not over:
             doc = "Take it out of the queue" if export.state == "waiting" else "Stop it. Finished frames stay."
-            found.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
-        return found
+            buttons.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
+        return buttons
 
-    def _compare_menu(self, index: int, export: QueuedRender) -> None:
+    def _draw_compare_menu(self, index: int, export: QueuedRender) -> None:
         """What it can be compared with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
-        others = [one for one in self._context.exports.all if one is not export and one.written_files]
-        for place, other in enumerate(others):
-            path = other.destinations[0][1]
-            name = f"{path.parent.name}/{title(other)}" if title(other) == title(export) else title(other)
+        candidates = [one for one in self._context.exports.all if one is not export and one.written_files]
+        for place, candidate in enumerate(candidates):
+            path = candidate.destinations[0][1]
+            name = f"{path.parent.name}/{title(candidate)}" if title(candidate) == title(export) else title(candidate)
             left, wide = imgui.get_cursor_pos_x(), imgui.calc_text_size(name).x
             if imgui.selectable(f"##{place}", False, 0, ImVec2(wide, 0))[0]:
-                self._context.log.attempt(partial(_compare, self._context, export, other))
+                self._context.log.attempt(partial(_compare, self._context, export, candidate))
             record(self._context, f"compare with {place}")
             tip(str(path))
             imgui.same_line(left)
             imgui.text_unformatted(name)
-        if others:
+        if candidates:
             imgui.separator()
         if imgui.menu_item("Other pictures...", "", False)[0]:
             self._context.log.attempt(partial(_choose, self._context, export))
         record(self._context, "compare with other")
         imgui.end_popup()
 
-    def _details(self, export: QueuedRender) -> None:
+    def _draw_details(self, export: QueuedRender) -> None:
         """What is computed, and the file that was written last."""
         last = export.written_files[-1] if export.written_files else None
         parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
@@ -212,7 +214,7 @@ class Queue:
 
     # --- small pictures ----------------------------------------------------------------------------------------------
 
-    def _picture(self, export: QueuedRender, start: ImVec2) -> None:
+    def _draw_picture(self, export: QueuedRender, start: ImVec2) -> None:
         """The last file that it wrote, or what stands for it."""
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         width, height = _WIDTH * scale, _HEIGHT * scale
@@ -222,12 +224,12 @@ class Queue:
         if chosen is not None:
             if self._pictures is None:
                 self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
-            found = self._pictures.get(*chosen)
-            if found is not None and not isinstance(found, str):
+            pixels_or_fault = self._pictures.get(*chosen)
+            if pixels_or_fault is not None and not isinstance(pixels_or_fault, str):
                 self._shown[export] = chosen
-        shown = self._shown.get(export)
-        pixels = self._pictures.get(*shown) if self._pictures is not None and shown is not None else None
-        if shown is None or pixels is None or isinstance(pixels, str):
+        displayed = self._shown.get(export)
+        pixels = self._pictures.get(*displayed) if self._pictures is not None and displayed is not None else None
+        if displayed is None or pixels is None or isinstance(pixels, str):
             size = 20 * scale
             middle = start.x + (width - size) / 2, start.y + (height - size) / 2
             face = self._context.fonts.text if self._context.fonts else imgui.get_font()
@@ -235,7 +237,7 @@ class Queue:
             return
         across, down = fit_picture(pixels, width, height)
         left, top = start.x + (width - across) / 2, start.y + (height - down) / 2
-        texture = self._textures.get(shown, lambda: pixels)
+        texture = self._textures.get(displayed, lambda: pixels)
         lines.add_image_rounded(
             texture, (left, top), (left + across, top + down), (0, 0), (1, 1), u32((1.0, 1.0, 1.0)), 4 * scale
         )
@@ -251,16 +253,16 @@ class Queue:
                 self._seen[export] = path, os.stat(path).st_mtime, now  # noqa: PTH116
             except OSError:
                 return None
-        found = self._seen.get(export)
-        return found and found[:2]
+        choice = self._seen.get(export)
+        return choice and choice[:2]
 
-    def _forget(self, known: tuple[QueuedRender, ...]) -> None:
-        for kept in (self._seen, self._shown):
-            for export in [one for one in kept if one not in known]:
-                del kept[export]
-        self._open.intersection_update(known)
+    def _forget(self, renders: tuple[QueuedRender, ...]) -> None:
+        for remembered in (self._seen, self._shown):
+            for export in [one for one in remembered if one not in renders]:
+                del remembered[export]
+        self._open.intersection_update(renders)
 
-    def _flip(self, export: QueuedRender) -> None:
+    def _toggle_notes(self, export: QueuedRender) -> None:
         self._open ^= {export}
 
 
@@ -268,8 +270,8 @@ def _play(context: RendersContext, export: QueuedRender) -> None:
     context.flipbooks.open(FlipbookStrip.from_render(export))
 
 
-def _compare(context: RendersContext, one: QueuedRender, other: QueuedRender) -> None:
-    context.flipbooks.open(FlipbookStrip.from_render(one), FlipbookStrip.from_render(other))
+def _compare(context: RendersContext, first: QueuedRender, second: QueuedRender) -> None:
+    context.flipbooks.open(FlipbookStrip.from_render(first), FlipbookStrip.from_render(second))
 
 
 def _choose(context: RendersContext, export: QueuedRender) -> None:

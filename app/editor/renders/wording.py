@@ -17,12 +17,12 @@ def title(export: QueuedRender) -> str:
 
 def progress_text(export: QueuedRender) -> str:
     """How far a render is that runs."""
-    done, total = export.passes
+    computed, total = export.passes
     if export.total > 1:
         return f"{export.done} of {export.total} frames" if export.done or total else "starting"
     if not total:
         return "writing" if export.done else "starting"
-    return f"{done} of {total} passes" if done < total else "writing"
+    return f"{computed} of {total} passes" if computed < total else "writing"
 
 
 def under_way(export: QueuedRender) -> str:

@@ -54,8 +54,8 @@ def code_entries() -> tuple[CatalogEntry, ...]:
 def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
     """Shaders of this machine, under what they say they are."""
     return tuple(
-        CatalogEntry(str(one.path), spell_out(one.path.stem), f"ISF {one.category.lower()}", one.doc, SHADER)
-        for one in files
+        CatalogEntry(str(file.path), spell_out(file.path.stem), f"ISF {file.category.lower()}", file.doc, SHADER)
+        for file in files
     )
 
 
@@ -108,8 +108,8 @@ def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequenc
 
 def keep_fitting(entries: Collection[CatalogEntry], fitting: Collection[str]) -> tuple[CatalogEntry, ...]:
     """Those that a link fits."""
-    known = set(fitting)
-    return tuple(entry for entry in entries if entry.id in known)
+    fitting_ids = set(fitting)
+    return tuple(entry for entry in entries if entry.id in fitting_ids)
 
 
 def _says(entry: CatalogEntry, query: str) -> bool:

@@ -27,21 +27,21 @@ def match(query: str, candidates: Sequence[str]) -> tuple[Match, ...]:
     return _rank(" ".join(query.lower().split()), tuple(candidates))
 
 
-def runs(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bool]]:
+def split_matched(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bool]]:
     """Pieces of `text` in order, and whether they matched: what a list draws in bold."""
-    wanted = frozenset(positions)
+    matched = frozenset(positions)
     start = 0
     for at in range(1, len(text) + 1):
-        if at == len(text) or (at in wanted) != (start in wanted):
-            yield text[start:at], start in wanted
+        if at == len(text) or (at in matched) != (start in matched):
+            yield text[start:at], start in matched
             start = at
 
 
 @lru_cache(maxsize=64)
 def _rank(query: str, candidates: tuple[str, ...]) -> tuple[Match, ...]:
     words = query.split()
-    found = (_match_words(index, words, text) for index, text in enumerate(candidates))
-    return tuple(sorted((one for one in found if one), key=lambda one: (-one.score, one.index)))
+    matches = (_match_words(index, words, text) for index, text in enumerate(candidates))
+    return tuple(sorted((one for one in matches if one), key=lambda one: (-one.score, one.index)))
 
 
 def _match_words(index: int, words: list[str], text: str) -> Match | None:

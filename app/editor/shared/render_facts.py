@@ -62,8 +62,8 @@ def named_layers(item: object) -> Mapping[str, str]:
 
 def use_of(context: RenderContext, port: Port, declaration: Value) -> Use | None:
     """What is known of the layer that a value is about."""
-    seen = overview_of(context, port.node) if declaration.role else None
-    return seen.uses.get(Role(declaration.role)) if isinstance(seen, Overview) else None
+    overview = overview_of(context, port.node) if declaration.role else None
+    return overview.uses.get(Role(declaration.role)) if isinstance(overview, Overview) else None
 
 
 def first_words(use: Use | None) -> str:
@@ -79,23 +79,23 @@ def convention_words(declaration: Value, use: Use | None) -> tuple[str, ...]:
     return (f"{FOUND}: {rule.words}" if rule else FOUND, *declaration.choices[1:])
 
 
-def rule_words(rule: Convention, *, told: bool) -> str:
+def rule_words(rule: Convention, *, kind_shown: bool) -> str:
     """How a convention is known; `told` that the kind is shown elsewhere."""
-    return f"{certainty(rule)}: {rule.reason}" if told else f"{rule.words}, {certainty(rule)}: {rule.reason}"
+    return f"{certainty(rule)}: {rule.reason}" if kind_shown else f"{rule.words}, {certainty(rule)}: {rule.reason}"
 
 
 def matte_at(context: RenderContext, id: str) -> Matte | str | None:
     """The cryptomatte that a node picks from, a sentence if there is none, None while nobody knows."""
-    item, seen = context.session.graph.nodes.get(id), overview_of(context, id)
+    item, overview = context.session.graph.nodes.get(id), overview_of(context, id)
     pick = pick_value(item)
-    if not isinstance(seen, Overview) or pick is None:
-        return seen if isinstance(seen, str) else None
+    if not isinstance(overview, Overview) or pick is None:
+        return overview if isinstance(overview, str) else None
     kind = str(getattr(item, pick.matte))
-    found = matte_of(seen.mattes, kind)
-    if found is not None:
-        return found
-    others = [matte.kind or "nameless" for matte in seen.mattes]
-    return f"no cryptomatte of kind {kind} in this file; it has {', '.join(others) or 'none'}"
+    matte = matte_of(overview.mattes, kind)
+    if matte is not None:
+        return matte
+    kinds = [matte.kind or "nameless" for matte in overview.mattes]
+    return f"no cryptomatte of kind {kind} in this file; it has {', '.join(kinds) or 'none'}"
 
 
 def pick_value(item: object) -> Value | None:

@@ -25,25 +25,25 @@ MOUSE: tuple[tuple[str, str], ...] = (
 
 def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
     """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
-    found: dict[str, list[Action]] = {}
+    by_title: dict[str, list[Action]] = {}
     for action in actions.all:
         if every or actions.shortcut(action.id):
             title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")
-            found.setdefault(title, []).append(action)
-    return ((title, tuple(group)) for title, group in found.items())
+            by_title.setdefault(title, []).append(action)
+    return ((title, tuple(group)) for title, group in by_title.items())
 
 
 def condense_rows(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
     """Keys and labels, where a row that only counts up is one line: `1 - 9`, `View 1 - 9`."""
-    made: list[tuple[str, str]] = []
+    rows: list[tuple[str, str]] = []
     for keys, label in lines:
         before = (re.sub(r"\d", "#", keys), re.sub(r"\d", "#", label))
-        if made and "#" in before[0] and "#" in before[1] and (_stem(made[-1][0]), _stem(made[-1][1])) == before:
+        if rows and "#" in before[0] and "#" in before[1] and (_stem(rows[-1][0]), _stem(rows[-1][1])) == before:
             digit = re.findall(r"\d", keys)[-1]
-            made[-1] = (_through(made[-1][0], digit), _through(made[-1][1], digit))
+            rows[-1] = (_through(rows[-1][0], digit), _through(rows[-1][1], digit))
         else:
-            made.append((keys, label))
-    return tuple(made)
+            rows.append((keys, label))
+    return tuple(rows)
 
 
 def _stem(text: str) -> str:
@@ -67,12 +67,12 @@ def balance_columns(sizes: tuple[int, ...], count: int) -> tuple[tuple[int, ...]
 
 
 def _fill_columns(sizes: tuple[int, ...], height: int) -> tuple[tuple[int, ...], ...]:
-    made: list[list[int]] = []
+    columns: list[list[int]] = []
     room = 0
     for index, size in enumerate(sizes):
-        if not made or size > room:
-            made.append([])
+        if not columns or size > room:
+            columns.append([])
             room = height
-        made[-1].append(index)
+        columns[-1].append(index)
         room -= size
-    return tuple(map(tuple, made))
+    return tuple(map(tuple, columns))

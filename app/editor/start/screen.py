@@ -42,8 +42,8 @@ class StartScreen:
     def __init__(self, context: StartContext) -> None:
         self._context = context
         self._textures = Textures()
-        self._found: tuple[RecoveredWork, ...] | None = None
-        self._there: dict[str, bool] = {}
+        self._recovered: tuple[RecoveredWork, ...] | None = None
+        self._recent_exists: dict[str, bool] = {}
         self._pictured = {path: picture(path).is_file() for path in preset_paths()}
 
     def close(self) -> None:
@@ -53,38 +53,38 @@ class StartScreen:
     def draw(self) -> None:
         """Draw over everything, if it is open."""
         if "start" not in self._context.dialogs.open:
-            self._found = None
+            self._recovered = None
             return
-        if self._found is None:
-            self._found = self._context.recovery.find_abandoned()
-            self._there = {recent.path: recent.exists for recent in self._context.store.current.recent}
+        if self._recovered is None:
+            self._recovered = self._context.recovery.find_abandoned()
+            self._recent_exists = {recent.path: recent.exists for recent in self._context.store.current.recent}
         covered = self._context.dialogs.browse is not None or self._context.dialogs.question is not None
         close = backdrop(self._context, "start") and not covered
         with dialog(self._context, "Start", (1180, 560)):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
-            self._begin()
-            self._recent()
+            self._draw_title()
+            self._draw_recent()
             imgui.end_child()
             imgui.same_line(0, 18 * ui_scale())
             imgui.begin_child("right", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
-            self._recoveries(self._found)
-            self._presets()
+            self._draw_recoveries(self._recovered)
+            self._draw_presets()
             imgui.end_child()
             if not covered:
                 close = close or escape_pressed()
-                self._keys()
+                self._run_shortcuts()
         if close:
             self._context.dialogs.open.discard("start")
 
-    def _keys(self) -> None:
+    def _run_shortcuts(self) -> None:
         """The shortcuts that make sense here."""
         for id in ("file.new", "file.open", "file.quit", "help.shortcuts"):
             keys = self._context.actions.shortcut(id)
             if keys and imgui.is_key_chord_pressed(chord(keys)):
                 self._context.actions.run(id)
 
-    def _begin(self) -> None:
+    def _draw_title(self) -> None:
         with font(self._context, "bold", 30.0):
             imgui.text_unformatted("Halation")
         draw_dim(self._context, "Screen-space effects, node by node")
@@ -96,9 +96,9 @@ class StartScreen:
             self._context.actions.run("file.open")
         record(self._context, "start open")
         if not self._context.store.current.hint_seen:
-            self._hint()
+            self._draw_hint()
 
-    def _hint(self) -> None:
+    def _draw_hint(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         with font(self._context, "bold"):
             imgui.text_unformatted("First time here?")
@@ -107,7 +107,7 @@ class StartScreen:
         if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
 
-    def _recent(self) -> None:
+    def _draw_recent(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         with font(self._context, "bold"):
             imgui.text_unformatted("Recent")
@@ -115,11 +115,11 @@ class StartScreen:
             draw_dim(self._context, "Files that you open appear here.")
         for index, recent in enumerate(self._context.store.current.recent):
             imgui.push_id(index)
-            self._recent_row(index, recent)
+            self._draw_recent_row(index, recent)
             imgui.pop_id()
 
-    def _recent_row(self, index: int, recent: Recent) -> None:
-        scale, path, there = ui_scale(), Path(recent.path), self._there.get(recent.path, True)
+    def _draw_recent_row(self, index: int, recent: Recent) -> None:
+        scale, path, there = ui_scale(), Path(recent.path), self._recent_exists.get(recent.path, True)
         line = imgui.get_text_line_height()
         room = imgui.get_content_region_avail().x - 30 * scale
         start = imgui.get_cursor_pos()
@@ -146,30 +146,30 @@ class StartScreen:
         elif clicked:
             self._context.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
 
-    def _recoveries(self, found: tuple[RecoveredWork, ...]) -> None:
-        if not found:
+    def _draw_recoveries(self, recovered: tuple[RecoveredWork, ...]) -> None:
+        if not recovered:
             return
         with font(self._context, "bold"):
             imgui.text_colored(vec4(self._context.palette.warning), "Recover unsaved work")
-        for index, one in enumerate(found):
-            when = strftime("%Y-%m-%d %H:%M", localtime(one.time))
-            nodes = "1 node" if one.nodes == 1 else f"{one.nodes} nodes"
-            if main_button(self._context, "Recover", f"recover {index}", enabled=not one.fault):
-                self._context.documents.recover(one)
-                self._found = None
+        for index, work in enumerate(recovered):
+            when = strftime("%Y-%m-%d %H:%M", localtime(work.time))
+            nodes = "1 node" if work.nodes == 1 else f"{work.nodes} nodes"
+            if main_button(self._context, "Recover", f"recover {index}", enabled=not work.fault):
+                self._context.documents.recover(work)
+                self._recovered = None
             imgui.same_line()
             if imgui.button(f"Discard##{index}"):
-                self._context.log.attempt(one.discard)
-                self._found = None
+                self._context.log.attempt(work.discard)
+                self._recovered = None
             record(self._context, f"discard {index}")
             imgui.same_line()
-            imgui.text_unformatted(cut_middle(one.title, 200 * ui_scale()))
-            tip(str(one.path or "never saved"))
+            imgui.text_unformatted(cut_middle(work.title, 200 * ui_scale()))
+            tip(str(work.path or "never saved"))
             imgui.same_line()
-            draw_dim(self._context, cut_middle(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
+            draw_dim(self._context, cut_middle(work.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
 
-    def _presets(self) -> None:
+    def _draw_presets(self) -> None:
         scale = ui_scale()
         with font(self._context, "bold"):
             imgui.text_unformatted("Presets")
@@ -180,9 +180,9 @@ class StartScreen:
         for index, path in enumerate(self._pictured):
             if index % count:
                 imgui.same_line()
-            self._card(path, width)
+            self._draw_card(path, width)
 
-    def _card(self, path: Path, width: float) -> None:
+    def _draw_card(self, path: Path, width: float) -> None:
         scale, palette = ui_scale(), self._context.palette
         name = path.stem.replace("_", " ")
         picture_height = width * _PICTURE_HEIGHT / _CARD

@@ -23,10 +23,10 @@ def _step(by: int) -> Act:
         context.timeline.stop()
         session = context.session
         first, last = context.timeline.span(session)
-        wanted = session.frame + by
-        if session.frame in (first, last) and not first <= wanted <= last and context.timeline.loop == "loop":
-            wanted = first if by > 0 else last
-        session.seek(wanted)
+        target = session.frame + by
+        if session.frame in (first, last) and not first <= target <= last and context.timeline.loop == "loop":
+            target = first if by > 0 else last
+        session.seek(target)
 
     return step
 

@@ -26,35 +26,35 @@ Gaps = tuple[tuple[int, int], ...]
 
 
 @dataclass
-class Missing:
+class MissingFrames:
     """What is known of the gaps of one document."""
 
-    found: Gaps = ()
+    gaps: Gaps = ()
     _of: tuple[object, ...] = ()
     _at: float = field(default=float("-inf"))
 
-    def gaps(self, session: Session) -> Gaps:
+    def update(self, session: Session) -> Gaps:
         """The frames between the first and the last one of a sequence that have no file."""
         now, of = time.monotonic(), (session.root, dict(session.bindings))
         if now - self._at > STALE or (now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
             self._at, self._of = now, of
-            self.found = gaps_of(session.root, session.bindings)
-        return self.found
+            self.gaps = find_gaps(session.root, session.bindings)
+        return self.gaps
 
 
-def gaps_of(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
+def find_gaps(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
     """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
     paths = [split_layer(str(file))[0] for file in bindings.values() if isinstance(file, str | Path)]
     with suppress(HalationError):
         paths += [
             path for path, owner, _ in find_named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings
         ]
-    found: set[tuple[int, int]] = set()
+    gaps: set[tuple[int, int]] = set()
     for path in dict.fromkeys(paths):
         try:
             sequence = find_sequence(path)
         except HalationError:
             continue
         if sequence is not None:
-            found.update(sequence.gaps)
-    return tuple(sorted(found))
+            gaps.update(sequence.gaps)
+    return tuple(sorted(gaps))

@@ -12,7 +12,7 @@ from ..theme.style import mix, u32, ui_scale
 from ..toolkit.places import Rect
 from ..toolkit.plane import Plane, View, ticks
 from ..toolkit.words import SMALL, font, tip
-from .gaps import Missing
+from .gaps import MissingFrames
 
 if TYPE_CHECKING:
     from .context import TimelineContext
@@ -36,7 +36,7 @@ class Ruler:
     """Scrubbing, the part that is played, and the part that is seen."""
 
     context: TimelineContext
-    missing: Missing = field(default_factory=Missing)
+    missing: MissingFrames = field(default_factory=MissingFrames)
     _hold: Hold = ""
     _played: bool = False
 
@@ -145,8 +145,8 @@ class Ruler:
         draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         bottom = plane.rect[3]
         for frames, color in (
-            (_runs(self.context.preview.frames), palette.good),
-            (self.missing.gaps(self.context.session), palette.error),
+            (list_runs(self.context.preview.frames), palette.good),
+            (self.missing.update(self.context.session), palette.error),
         ):
             for first, last in frames:
                 a, b = plane.x(first - 0.5), max(plane.x(last + 0.5), plane.x(first - 0.5) + 1.5)
@@ -158,15 +158,15 @@ def _plane(context: TimelineContext, rect: Rect) -> Plane:
     return Plane(View(low, high), rect)
 
 
-def _runs(frames: tuple[int, ...]) -> list[tuple[int, int]]:
+def list_runs(frames: tuple[int, ...]) -> list[tuple[int, int]]:
     """Frames in a row as their first and last."""
-    found: list[tuple[int, int]] = []
+    runs: list[tuple[int, int]] = []
     for frame in frames:
-        if found and found[-1][1] == frame - 1:
-            found[-1] = found[-1][0], frame
+        if runs and runs[-1][1] == frame - 1:
+            runs[-1] = runs[-1][0], frame
         else:
-            found.append((frame, frame))
-    return found
+            runs.append((frame, frame))
+    return runs
 
 
 def _keys(context: TimelineContext, plane: Plane) -> None:

@@ -63,14 +63,14 @@ class Timeline:
         words, range_wide = (196.0 if wide > _ROOMY else 0.0) * scale, (196.0 if wide > _NARROW else 0.0) * scale
         right = start.x + size.x - words - range_wide - 8.0 * scale
         pad = 4.0 * scale
-        asked = self._ruler.draw((left, start.y + pad, max(right, left + 8.0), start.y + size.y - pad))
+        target_frame = self._ruler.draw((left, start.y + pad, max(right, left + 8.0), start.y + size.y - pad))
         if range_wide:
             imgui.set_cursor_screen_pos((right + 8.0 * scale, top))
             self._range(scale)
         if words:
             self._words((right + range_wide + 12.0 * scale, top, start.x + size.x - 8.0 * scale, top + high))
         imgui.pop_style_var()
-        if asked:
+        if target_frame:
             imgui.open_popup("timeline menu")
         if imgui.begin_popup("timeline menu"):
             for action in self._context.actions.in_menu("timeline"):
@@ -143,8 +143,8 @@ class Timeline:
         text, color = timeline.playback.words, palette.text
         lead = preview.lead
         if lead:
-            kind, done, total = lead
-            text = f"pre-roll {done} of {total}" if kind == "pre-roll" else f"planning {done} of {total} frames"
+            kind, computed, total = lead
+            text = f"pre-roll {computed} of {total}" if kind == "pre-roll" else f"planning {computed} of {total} frames"
             color = palette.accent
         elif not text:
             first, last = self._context.session.frames

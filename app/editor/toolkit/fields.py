@@ -40,14 +40,14 @@ def label(text: str, width: float) -> None:
     imgui.same_line(left + width * ui_scale())
 
 
-def combo(surface: WidgetSurface, name: str, now: str, choices: Sequence[str], width: float = -1.0) -> str:
+def combo(surface: WidgetSurface, name: str, current: str, choices: Sequence[str], width: float = -1.0) -> str:
     """A list of texts; what was chosen in this frame, or ""."""
     imgui.set_next_item_width(width)
     chosen = ""
-    opened = imgui.begin_combo(f"##{name}", now, int(imgui.ComboFlags_.no_arrow_button))
+    opened = imgui.begin_combo(f"##{name}", current, int(imgui.ComboFlags_.no_arrow_button))
     if opened:
         for choice in choices:
-            if imgui.selectable(choice, choice == now)[0]:
+            if imgui.selectable(choice, choice == current)[0]:
                 chosen = choice
             record(surface, f"{name} {choice}")
         imgui.end_combo()

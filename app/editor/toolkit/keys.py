@@ -76,8 +76,8 @@ def pressed() -> str:
 def _keys() -> Mapping[str, int]:
     """Keys of the keyboard by name; modifiers alone are none."""
     names = list(imgui.Key.__members__)  # `dir` leaves out names that share a number
-    other = re.compile(r"^(mouse|gamepad|reserved|named|mod|none)|_(ctrl|shift|alt|super)$")
-    plain = [name for name in names if not other.search(name)]
+    not_keys = re.compile(r"^(mouse|gamepad|reserved|named|mod|none)|_(ctrl|shift|alt|super)$")
+    plain = [name for name in names if not not_keys.search(name)]
     return MappingProxyType({_name_key(name): int(getattr(imgui.Key, name)) for name in plain})
 
 

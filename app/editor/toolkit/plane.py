@@ -29,22 +29,22 @@ class View:
         """Moved on."""
         return View(self.first + frames, self.last + frames, self.low + values, self.high + values)
 
-    def zoomed(self, frame: float, value: float, across: float, up: float) -> View:
+    def zoom(self, frame: float, value: float, across: float, up: float) -> View:
         """So many times as large, with one place staying where it is."""
         first, last = _spread(self.first, self.last, frame, across, _FRAMES)
         low, high = _spread(self.low, self.high, value, up, _VALUES)
         return View(first, last, low, high)
 
-    def fitted(self, frames: tuple[float, float] | None, values: tuple[float, float] | None) -> View:
+    def fit(self, frames: tuple[float, float] | None, values: tuple[float, float] | None) -> View:
         """With these frames and values in view, and some room around them; None leaves an axis as it is."""
-        found = self
+        view = self
         if frames:
             first, last = _roomy(*frames, _BESIDE, 1.0)
-            found = replace(found, first=first, last=last)
+            view = replace(view, first=first, last=last)
         if values:
             low, high = _roomy(*values, _ABOVE, max(abs(values[0]), 1.0) * 0.5)
-            found = replace(found, low=low, high=high)
-        return found
+            view = replace(view, low=low, high=high)
+        return view
 
 
 @dataclass(frozen=True)
@@ -104,12 +104,12 @@ def ticks(low: float, high: float, scale: float, apart: float, whole: bool = Fal
     if small * scale < 8.0 or (whole and small < 1.0):
         small = large
     parts = round(large / small)
-    found: list[Tick] = []
+    marks: list[Tick] = []
     for place in range(math.ceil(low / small - 1e-9), math.floor(high / small + 1e-9) + 1):
         at = place * small
         text = "" if place % parts else f"{at:.{digits}f}" if abs(at) < 1e7 else f"{at:g}"
-        found.append(Tick(at, text.removeprefix("-") if at == 0.0 else text))
-    return found
+        marks.append(Tick(at, text.removeprefix("-") if at == 0.0 else text))
+    return marks
 
 
 def _spread(low: float, high: float, about: float, factor: float, limits: tuple[float, float]) -> tuple[float, float]:

@@ -24,7 +24,7 @@ class FileThumbnails:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._decoded: BackgroundCache[tuple[Path, float], Array | str] = BackgroundCache(
-            "thumbnails", self._made, _IN_MEMORY, _WAITING, self._tidy
+            "thumbnails", self._load_or_make, _IN_MEMORY, _WAITING, self._tidy
         )
 
     def get(self, path: Path, time: float) -> Array | str | None:
@@ -47,24 +47,24 @@ class FileThumbnails:
         """End the thread."""
         self._decoded.close()
 
-    def _made(self, key: tuple[Path, float]) -> Array | str:
+    def _load_or_make(self, key: tuple[Path, float]) -> Array | str:
         from ...media.pictures.thumbnail import load_thumbnail, make_thumbnail, save_thumbnail
 
         path, time = key
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]
-        kept = self._folder / f"{name}.png"
+        cached_file = self._folder / f"{name}.png"
         with contextlib.suppress(HalationError):
-            return load_thumbnail(kept)
+            return load_thumbnail(cached_file)
         try:
-            made = make_thumbnail(path, WIDTH, HEIGHT)
+            pixels = make_thumbnail(path, WIDTH, HEIGHT)
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
             return f"{path}: cannot be shown ({fault})"
         with contextlib.suppress(HalationError, OSError):
             self._folder.mkdir(parents=True, exist_ok=True)
-            save_thumbnail(kept, made)
-        return made
+            save_thumbnail(cached_file, pixels)
+        return pixels
 
     def _tidy(self) -> None:
         """Remove the oldest files if there are too many."""

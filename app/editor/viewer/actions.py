@@ -184,7 +184,7 @@ VIEWER: tuple[Action, ...] = (
         Action(
             f"viewer.{name}",
             label,
-            lambda context, name=name: context.viewer.comparing(name),
+            lambda context, name=name: context.viewer.toggle_comparison(name),
             "Viewer/Compare",
             key,
             "viewer",

@@ -26,9 +26,9 @@ def take_files(editor: Editor, documents: DocumentWorkflow, paths: Sequence[Path
         documents.open_graph(graphs[0])
         return
     if len(paths) == 1 and _has_graph(paths[0]):
-        _ask(editor, documents, paths[0])
+        ask_graph_or_picture(editor, documents, paths[0])
         return
-    _read(editor, paths)
+    add_files(editor, paths)
 
 
 def _has_graph(path: Path) -> bool:
@@ -39,18 +39,18 @@ def _has_graph(path: Path) -> bool:
         return False
 
 
-def _ask(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
+def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
     editor.dialogs.question = Question(
         "Rendered by Halation",
         f"{path.name} holds the graph that made it.",
         (
             ("Open its graph", lambda: documents.open_graph_of_picture(path)),
-            ("Read it as a picture", lambda: editor.log.attempt(lambda: _read(editor, [path]))),
+            ("Read it as a picture", lambda: editor.log.attempt(lambda: add_files(editor, [path]))),
         ),
     )
 
 
-def _read(editor: Editor, paths: Sequence[Path]) -> None:
+def add_files(editor: Editor, paths: Sequence[Path]) -> None:
     """Make nodes of files."""
     codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
     files, frames = suggest_patterns([path for path in paths if path not in codes])
@@ -58,16 +58,16 @@ def _read(editor: Editor, paths: Sequence[Path]) -> None:
     at = editor.canvas.pointer
     editor.dialogs.open.discard("start")
 
-    def drop(some: Sequence[Path]) -> None:
-        editor.session.drop_files(list(some), at)
+    def drop(files: Sequence[Path]) -> None:
+        editor.session.drop_files(list(files), at)
 
     single = [path for path in files if path in frames]
     if not single:
         drop(files)
         return
     first, pattern = single[0], frames[single[0]]
-    found = find_sequence(str(pattern))
-    count = len(found.frames) if found else 0
+    sequence = find_sequence(str(pattern))
+    count = len(sequence.frames) if sequence else 0
     editor.dialogs.question = Question(
         "One of a sequence",
         f"{first.name} is one of {count} frames of {pattern.name}.",

@@ -20,9 +20,9 @@ class _Menu:
 
 def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
     """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
-    for name, menu in _menus(context.actions.all).items():
+    for name, menu in arrange_menus(context.actions.all).items():
         if imgui.begin_menu(name):
-            _draw(context, menu)
+            draw_menu(context, menu)
             if name == "View":
                 imgui.separator()
                 for title, visible in panels.items():
@@ -32,31 +32,31 @@ def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
             imgui.end_menu()
 
 
-def _menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
-    found = {name: _Menu() for name in MENUS}
+def arrange_menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
+    menus = {name: _Menu() for name in MENUS}
     for action in actions:
         top, *inner = action.menu.split("/") if action.menu else [""]
         if not top:
             continue
-        menu = found.setdefault(top, _Menu())
+        menu = menus.setdefault(top, _Menu())
         for name in inner:
             deeper = menu.entries.setdefault(name, _Menu())
             assert isinstance(deeper, _Menu)
             menu = deeper
         menu.entries[action.label] = action
-    return found
+    return menus
 
 
-def _draw(context: ActionSurface, menu: _Menu) -> None:
-    for name, one in menu.entries.items():
-        if isinstance(one, _Menu):
-            first = next(iter(one.entries.values()), None)
+def draw_menu(context: ActionSurface, menu: _Menu) -> None:
+    for name, item in menu.entries.items():
+        if isinstance(item, _Menu):
+            first = next(iter(item.entries.values()), None)
             if isinstance(first, Action) and first.separated:
                 imgui.separator()
             if imgui.begin_menu(name):
-                _draw(context, one)
+                draw_menu(context, item)
                 imgui.end_menu()
             continue
-        if one.separated and name != next(iter(menu.entries)):
+        if item.separated and name != next(iter(menu.entries)):
             imgui.separator()
-        entry(context, one)
+        entry(context, item)

@@ -24,10 +24,10 @@ def best_version() -> tuple[int, int]:
     A refused version would spoil every later attempt of the window library in this process, so a hidden window is
     asked first. HALATION_WINDOW=none opens windows that no display is needed for, and that nobody sees: for tests.
     """
-    seen = os.environ.get("HALATION_WINDOW") != "none"
+    visible = os.environ.get("HALATION_WINDOW") != "none"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        if not (glfw.init() if seen else needs_no_display()):
+        if not (glfw.init() if visible else needs_no_display()):
             raise DeviceError(_NO_WINDOW)
         try:
             version = next(filter(_opens, _VERSIONS), None)
@@ -38,7 +38,7 @@ def best_version() -> tuple[int, int]:
         raise DeviceError(
             "no window with OpenGL 4.1 can be opened here: update the graphics driver; 'halation render' may still work"
         )
-    if not seen:
+    if not visible:
         needs_no_display()
     return version
 

@@ -20,9 +20,9 @@ def open_window(path: Path | None, bindings: Mapping[str, str]) -> None:
     state = state_folder()
     window = Window(path, bindings, version=best_version(), state=state)
     keep_layout(window.params, state)
-    with _close_on_signals(window) as asked:
+    with _close_on_signals(window) as signals:
         run(window)
-    if signal.SIGINT in asked:
+    if signal.SIGINT in signals:
         raise KeyboardInterrupt
 
 
@@ -57,16 +57,16 @@ def _close_on_signals(window: Window) -> Iterator[list[int]]:
 
     They are heard between two frames: an exception at any moment could cut a save in two.
     """
-    asked: list[int] = []
+    received: list[int] = []
 
     def ask(number: int, _: object) -> None:
-        asked.append(number)
+        received.append(number)
         window.params.app_shall_exit = True
 
     numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = {number: signal.signal(number, ask) for number in numbers}
     try:
-        yield asked
+        yield received
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

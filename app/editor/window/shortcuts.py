@@ -23,12 +23,12 @@ def run_shortcuts(editor: Editor) -> None:
         editor.timeline.tapped = True
     for button in range(3):
         editor.timeline.tapped &= not imgui.is_mouse_down(button)
-    done = False
+    has_run = False
     for action in editor.actions.all:
         text = editor.actions.shortcut(action.id)
-        if not done and text and action.scope in ("", editor.scope) and _is_pressed(editor, text, action.repeats):
+        if not has_run and text and action.scope in ("", editor.scope) and _is_pressed(editor, text, action.repeats):
             editor.actions.run(action.id)
-            done = True
+            has_run = True
     for key in _TAKEN:
         imgui.internal.set_key_owner(key, _OURS)
 

@@ -68,16 +68,16 @@ def _panel_below(editor: Editor) -> str:
 
 def _figures(editor: Editor) -> str:
     used, budget = editor.preview.memory
-    done, total = editor.preview.progress
+    computed, total = editor.preview.progress
     count = len(editor.session.graph.nodes)
     parts = [f"{count} node{'' if count == 1 else 's'}", f"{used / 2**20:.0f} of {budget / 2**20:.0f} MiB"]
     if editor.preview.paused:
         parts.insert(0, f"{icons.ICON_FA_PAUSE} paused")
     elif lead := editor.preview.lead:
         parts.insert(0, f"{'pre-roll' if lead[0] == 'pre-roll' else 'planning'} {lead[1]} of {lead[2]}")
-    elif (seen := editor.preview.seen(A)) and seen.partial:
-        width, height = seen.texture.size
+    elif (picture := editor.preview.seen(A)) and picture.partial:
+        width, height = picture.texture.size
         parts.insert(0, f"region {width}\u00d7{height}")
     elif editor.preview.busy:
-        parts.insert(0, f"pass {done} of {total}")
+        parts.insert(0, f"pass {computed} of {total}")
     return "   ".join(parts)

@@ -105,9 +105,9 @@ class Window:
         return params
 
     def _dockable(self, docked: Docked) -> hello_imgui.DockableWindow:
-        found = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked))
-        found.include_in_view_menu = found.call_begin_end = False
-        return found
+        dockable = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked))
+        dockable.include_in_view_menu = dockable.call_begin_end = False
+        return dockable
 
     # --- from opening to closing -------------------------------------------------------------------------------------
 
@@ -183,8 +183,8 @@ class Window:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
         visible = {title: window.is_visible for title, window in windows.items()}
         draw_guarded(self.editor, "Menus", lambda: draw_menus(self._contexts.dialogs, visible))
-        for title, shown in visible.items():
-            windows[title].is_visible = shown
+        for title, is_shown in visible.items():
+            windows[title].is_visible = is_shown
 
     def _draw_status(self) -> None:
         draw_guarded(self.editor, "Status", lambda: draw_status(self.editor, self._contexts))
@@ -199,11 +199,11 @@ class Window:
         if docked.title in self._fronted:  # the library only does so for windows that it begins itself
             self._fronted.discard(docked.title)
             imgui.set_next_window_focus()
-        seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+        is_seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
         host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
-        if seen:
+        if is_seen:
             self._draw_inside(docked.title)
         imgui.end()
 

@@ -109,11 +109,11 @@ def test_zooming_keeps_the_place_under_the_pointer() -> None:
     view = View(0.0, 100.0, -1.0, 1.0)
     plane = Plane(view, (100.0, 50.0, 900.0, 450.0))
     assert (plane.frame(plane.x(33.0)), plane.value(plane.y(0.25))) == (pytest.approx(33.0), pytest.approx(0.25))
-    closer = Plane(view.zoomed(33.0, 0.25, 1.7, 0.6), plane.rect)
+    closer = Plane(view.zoom(33.0, 0.25, 1.7, 0.6), plane.rect)
     assert (closer.x(33.0), closer.y(0.25)) == (pytest.approx(plane.x(33.0)), pytest.approx(plane.y(0.25)))
     assert closer.across == pytest.approx(plane.across * 1.7)
     for factor in (1e-30, 1e30):
-        far = view.zoomed(10.0, 0.0, factor, factor)
+        far = view.zoom(10.0, 0.0, factor, factor)
         assert far.last > far.first and far.high > far.low
-    assert view.fitted((5.0, 5.0), (2.0, 2.0)) == View(4.0, 6.0, 1.0, 3.0)
-    assert view.fitted(None, None) == view
+    assert view.fit((5.0, 5.0), (2.0, 2.0)) == View(4.0, 6.0, 1.0, 3.0)
+    assert view.fit(None, None) == view

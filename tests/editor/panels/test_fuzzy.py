@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.shared.fuzzy import Match, match, runs
+from halation.editor.shared.fuzzy import Match, match, split_matched
 
 NODES = (
     "Blend",
@@ -68,7 +68,12 @@ def test_whole_words_beat_scattered_letters() -> None:
 def test_positions_are_the_letters() -> None:
     (one,) = match("gb", ("Gaussian Blur",))
     assert one.positions == (0, 9)
-    assert list(runs("Gaussian Blur", one.positions)) == [("G", True), ("aussian ", False), ("B", True), ("lur", False)]
+    assert list(split_matched("Gaussian Blur", one.positions)) == [
+        ("G", True),
+        ("aussian ", False),
+        ("B", True),
+        ("lur", False),
+    ]
 
 
 def test_letters_that_grow_in_lower_case_do_no_harm() -> None:
