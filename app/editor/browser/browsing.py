@@ -121,7 +121,7 @@ def endings(browse: Browse) -> frozenset[str]:
 
 
 def size_text(size: int) -> str:
-    """Bytes as people read them."""
+    """A size in bytes as text: `4.71 MB`."""
     if size < 1000:
         return f"{size} B"
     value, unit = float(size), 0

@@ -115,7 +115,7 @@ class Listing:
 
 
 class _FolderReader(Thread):
-    """Reads one folder; nobody waits for one that a slow disk holds up."""
+    """Reads one folder in a thread; the window does not wait for it, however slow the disk is."""
 
     def __init__(self, folder: Path) -> None:
         super().__init__(name="folder", daemon=True)

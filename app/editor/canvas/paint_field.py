@@ -1,4 +1,4 @@
-"""Values on nodes as they look while nobody touches them: like the fields of the inspector, at any zoom."""
+"""Values on nodes while the mouse is not over them: drawn like the fields of the inspector, at any zoom."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class CodeState:
     flush: Callable[[], object] = _nothing
     """Takes over what was typed last: it waits for a pause otherwise."""
     told: str = ""
-    """The path of the node whose fault stood below its text in the last frame: nobody needs to say it again."""
+    """The path of the node whose fault stood below its text in the last frame: other panels need not repeat it."""
     telling: str = ""
     """The same for this frame, as far as it is drawn."""
 

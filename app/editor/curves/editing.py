@@ -215,7 +215,7 @@ def straightened(animation: Animations, spots: Collection[Spot]) -> dict[Port, K
 
 
 def fixed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
-    """Chosen keys with the handles that they have now, as if somebody had put them there."""
+    """Chosen keys with the handles that they have now, as if the user had placed them."""
     made: dict[Port, Keys] = {}
     for port, frames in chosen(animation, spots).items():
         keys = _keys(animation, port)

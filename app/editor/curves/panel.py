@@ -109,7 +109,7 @@ class AnimationPanel:
         )
 
     def _grown(self) -> bool:
-        """True if there are new keys outside of a view that shows everything and that nobody has moved."""
+        """True if there are new keys outside of a view that shows everything and that the user has not moved."""
         state, session = self._context.curves, self._context.session
         of = session.graph.animation, session.frames
         if state.view != self._untouched or (self._of[0] is of[0] and self._of[1] == of[1]):

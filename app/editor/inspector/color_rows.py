@@ -17,7 +17,7 @@ from ..shared.dialogs import Browse
 from .rows import Rows
 
 FOUND = "found out"
-"""A color space that nobody chose."""
+"""The choice that leaves the color space to the file."""
 
 _PATH = Value("config", "path", "")
 _FROM_FILE = "choose a file…"

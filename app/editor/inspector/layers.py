@@ -55,7 +55,7 @@ class Layers:
         return found if isinstance(found, np.ndarray) else None
 
     def space(self, path: Path, layer: str, color: ColorSettings, wanted: str) -> tuple[str, bool]:
-        """What the color of a layer is in and how that is known, and whether that is a fault; "" while nobody knows."""
+        """What the color of a layer is in and how that is known, and whether that is a fault; "" while it is read."""
         version, fault = self._versions.of(path)
         found = None if fault else self._spaces.get((str(path), version, color, color_mark(color), wanted))
         header = self.header(path)

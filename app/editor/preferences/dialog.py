@@ -1,4 +1,4 @@
-"""What a person may have otherwise."""
+"""The Preferences dialog: appearance, shortcuts, folders, memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a person chooses other shortcuts."""
+"""The page of Preferences where the user changes shortcuts."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def always(context: object) -> bool:
 
 @dataclass(frozen=True)
 class Action:
-    """Something a person can do from a menu, by a shortcut, from a context menu or the command palette.
+    """Something the user can do from a menu, by a shortcut, from a context menu or the command palette.
 
     `menu` is the path in the menu bar, such as `File` or `View/Channels`; without one it is only in the palette.
     `shortcut` is written like `Ctrl+Shift+S`; Ctrl is Command on macOS. `contexts` are the context menus that list it.

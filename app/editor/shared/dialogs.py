@@ -1,4 +1,4 @@
-"""What the window asks a person: files, yes or no, and which dialog is open. Panels draw it."""
+"""What the window asks the user: for a file, or a question; and which dialogs are open. Panels draw it."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def render_file(graph: Graph, id: str) -> Path | None:
 
 
 def overview_of(context: RenderContext, id: str) -> Overview | str | None:
-    """What the render of a node holds, a sentence if it cannot be read or none is named, None while nobody knows."""
+    """What the render of a node holds, a sentence if it cannot be read or none is named, None while it is read."""
     graph = context.session.graph
     file = render_file(graph, id)
     return "no file" if file is None else context.renders.overview(file, named_layers(graph.nodes[id]))
@@ -85,7 +85,7 @@ def rule_words(rule: Convention, *, kind_shown: bool) -> str:
 
 
 def matte_at(context: RenderContext, id: str) -> Matte | str | None:
-    """The cryptomatte that a node picks from, a sentence if there is none, None while nobody knows."""
+    """The cryptomatte that a node picks from, a sentence if there is none, None while the file is being read."""
     item, overview = context.session.graph.nodes.get(id), overview_of(context, id)
     pick = pick_value(item)
     if not isinstance(overview, Overview) or pick is None:

@@ -72,7 +72,7 @@ def align_right(*labels: str) -> None:
 
 
 def main_button(surface: WidgetSurface, label: str, name: str, *, width: float = 0.0, enabled: bool = True) -> bool:
-    """The button that most people want."""
+    """The main button of a dialog, in the accent color."""
     palette = surface.palette
     for color, lit in ((imgui.Col_.button, 0.0), (imgui.Col_.button_hovered, 0.12), (imgui.Col_.button_active, 0.25)):
         imgui.push_style_color(color, vec4(mix(palette.accent, palette.text, lit)))

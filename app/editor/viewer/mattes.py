@@ -47,7 +47,7 @@ def picks(context: ViewerContext) -> Port | None:
 
 
 def under(context: ViewerContext, sight: Sight, at: Point) -> Under | None:
-    """What a click there would pick; None for nothing, and while nobody knows yet."""
+    """What a click there would pick; None for nothing, and while the file is being read."""
     port = picks(context)
     file = render_file(context.session.graph, port.node) if port else None
     matte = matte_at(context, port.node) if port else None

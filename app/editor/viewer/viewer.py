@@ -284,7 +284,7 @@ class Viewer:
                 viewer.picking = ""
 
     def _picked(self, port: Port, values: tuple[float, ...]) -> Plain | None:
-        """What a value becomes by a click on the picture: a place, a depth or a color; None if nobody knows."""
+        """What a value becomes by a click on the picture: a place, a depth or a color; None if it is not known."""
         viewer = self._context.viewer
         if takes_position(self._context.session, port):
             return pixel_place(viewer)

@@ -139,7 +139,7 @@ class Window:
             self.editor.interface.fonts = fonts.load()
 
     def close(self) -> None:
-        """Give everything back, once; unsaved work that nobody agreed to lose is kept."""
+        """Give everything back, once; unsaved work is kept, unless the user agreed to lose it."""
         if self._closed:
             return
         self._closed = True
