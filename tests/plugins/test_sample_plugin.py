@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 SAMPLE = Path(__file__).parents[2] / "docs" / "sample_plugin"
+SEARCH = Path(__file__).parents[1] / "plugin_search.py"
 
 
 @pytest.fixture(scope="module")
@@ -68,20 +69,7 @@ def test_a_graph_with_it_renders(site: Path) -> None:
 
 
 def test_the_editor_finds_it(site: Path) -> None:
-    code = """
-from pathlib import Path
-from halation.custom_nodes.plugins import preset_paths
-from halation.authoring.session import Session
-from halation.editor.shared import entries
-from halation.nodes import catalogue
-every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths())
-for query in ("soft glow", "acme glow", "acme dream"):
-    print(entries.arrange_entries(every, query)[0].entries[0].title)
-session = Session()
-print(session.add_node("acme_glow.soft_glow"))
-print(session.add_group(next(path for path in preset_paths() if path.stem == "acme_dream")))
-"""
-    result = python(site, "-c", code)
+    result = python(site, SEARCH)
     assert result.stdout.split("\n")[:5] == [
         "soft glow (acme glow)",
         "soft glow (acme glow)",

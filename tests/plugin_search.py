@@ -1,0 +1,15 @@
+"""Prints what the editor's search finds of the sample plug-in, and the ids of what is added to a graph. Run by a test."""
+
+from __future__ import annotations
+
+from halation.authoring.session import Session
+from halation.custom_nodes.plugins import preset_paths
+from halation.editor.shared import entries
+from halation.nodes import catalogue
+
+every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths())
+for query in ("soft glow", "acme glow", "acme dream"):
+    print(entries.arrange_entries(every, query)[0].entries[0].title)
+session = Session()
+print(session.add_node("acme_glow.soft_glow"))
+print(session.add_group(next(path for path in preset_paths() if path.stem == "acme_dream")))
