@@ -1,4 +1,4 @@
-"""Prints what the editor's search finds of the sample plug-in, and the ids of what is added to a graph. Run by a test."""
+"""Prints what the search of the editor finds of the sample plug-in, and the ids of new nodes. Run by a test."""
 
 from __future__ import annotations
 
