@@ -7,8 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from msgspec.structs import replace
-
 from ..errors import UsageError
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
@@ -25,6 +23,8 @@ if TYPE_CHECKING:
 
 def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> int:
     """Render what a job says and report it; the exit code. Raises the errors of `app.errors`."""
+    from msgspec.structs import replace
+
     started = time.perf_counter()
     graph = open_graph(Path(job.graph), job.sets, job.document)
     report_problems(Path(job.graph), graph)
@@ -73,6 +73,8 @@ def _default_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
 
 def _split(job: RenderJob, graph: Graph, targets: Mapping[str, Port], watch: bool) -> list[RenderJob]:
     """The jobs of helpers; none where this process renders. What watches over their code is here, not in them."""
+    from msgspec.structs import replace
+
     if min(job.processes, len(job.frames)) > 1 and _is_independent(job, graph, targets):
         parts = [part for start in range(job.processes) if (part := job.frames[start :: job.processes])]
     elif watch:

@@ -155,13 +155,21 @@ def test_checking_loads_the_nodes_of_the_graph_alone(ten):
 
 def test_a_command_loads_no_other_one(ten):
     commands = {f"halation.cli.{path.stem}" for path in (Path(__file__).parents[2] / "app" / "cli").glob("*.py")}
-    shared = {f"halation.cli.{name}" for name in ("program", "options", "outcome", "parsing", "check")}
+    shared = {f"halation.cli.{name}" for name in ("program", "options", "outcome", "parsing", "plugins", "check")}
     assert modules("check", ten) & commands == shared
 
 
 def test_render_loads_no_window_library(ten, tmp_path):
-    names = loaded("render", ten, "-o", tmp_path / "out.png")
+    names = modules("render", ten, "-o", tmp_path / "out.png")
     assert "moderngl" in names and not names & {*WINDOWS, "scipy", "cv2"}
+    assert not [name for name in names if name.startswith(("halation.editor", "halation.authoring"))]
+
+
+def test_watching_loads_no_window_library() -> None:
+    code = "import sys, halation.cli.watch, halation.watch.rerendering, halation.watch.reloading; print(*sys.modules)"
+    names = set(subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60).stdout.split())
+    assert "halation.watch.watching" in names and not names & WINDOWS
+    assert not [name for name in names if name.startswith(("halation.editor", "halation.authoring"))]
 
 
 def test_without_display_home_or_a_place_for_caches(ten, tmp_path):
