@@ -29,8 +29,8 @@ from .outcome import print_json
 from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
-    from ..renderer.baseline import Against, Ratio
-    from ..renderer.bench import Bench, Share
+    from ..renderer.baseline import BaselineComparison, Ratio
+    from ..renderer.bench import Benchmark, NodeShare
 
 _BAR = 24
 
@@ -66,8 +66,8 @@ def bench(
     from ..errors import UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
-    from ..renderer.baseline import against
-    from ..renderer.bench import bench as measured
+    from ..renderer.baseline import compare_with_baseline
+    from ..renderer.bench import measure_graph as measured
 
     limit = _limit(fail_over)
     if limit is not None and compare is None:
@@ -87,7 +87,7 @@ def bench(
         timings = measured(renderer, whole, request, at, repeats, warm_up, work.step)
     if not timings.passes:
         raise UsageError(f"{graph}: there is nothing to measure: its outputs are made without a single pass")
-    comparison = against(timings, compare) if compare else None
+    comparison = compare_with_baseline(timings, compare) if compare else None
     slower = comparison.slower(limit) if comparison and limit is not None else ()
     if as_json:
         print_json(_as_json(graph, timings, renderer.device.description, at, comparison, slower))
@@ -113,9 +113,9 @@ def _limit(text: str | None) -> float | None:
     return ratio
 
 
-def _print(timings: Bench, by_pass: bool, software: bool, repeats: int) -> None:
+def _print(timings: Benchmark, by_pass: bool, software: bool, repeats: int) -> None:
     from ..compiler.explain import size_text
-    from ..renderer.bench import shares
+    from ..renderer.bench import group_by_nodes
 
     if by_pass:
         rows = [
@@ -123,7 +123,7 @@ def _print(timings: Bench, by_pass: bool, software: bool, repeats: int) -> None:
             for one in sorted(timings.passes, key=lambda one: -one.median)
         ]
     else:
-        rows = [(_together(one), one.median, one.read, one.written) for one in shares(timings.passes)]
+        rows = [(_together(one), one.median, one.read, one.written) for one in group_by_nodes(timings.passes)]
     block, wide = _block(), min(60, max(len(row[0]) for row in rows))
     most = max(row[1] for row in rows)
     for label, seconds, read, written in rows:
@@ -147,12 +147,14 @@ def _print(timings: Bench, by_pass: bool, software: bool, repeats: int) -> None:
     )
 
 
-def _together(share: Share) -> str:
+def _together(share: NodeShare) -> str:
     """The nodes of some passes, and how many these are."""
     return ", ".join(share.nodes) + (f"  {share.count} passes" if share.count > 1 else "")
 
 
-def _print_compared(comparison: Against, slower: tuple[Ratio, ...], limit: float | None, device: str) -> None:
+def _print_compared(
+    comparison: BaselineComparison, slower: tuple[Ratio, ...], limit: float | None, device: str
+) -> None:
     if comparison.device != device:
         print(f"the baseline was measured on another device: {comparison.device}")
     if comparison.gone or comparison.new:
@@ -183,13 +185,13 @@ def _block() -> str:
 
 def _as_json(
     graph: Path,
-    timings: Bench,
+    timings: Benchmark,
     device: str,
     frames: tuple[int, ...],
-    comparison: Against | None,
+    comparison: BaselineComparison | None,
     slower: tuple[Ratio, ...],
 ) -> dict[str, Any]:
-    from ..renderer.bench import names, shares
+    from ..renderer.bench import group_by_nodes, identify_passes
 
     report: dict[str, Any] = {
         "graph": str(graph),
@@ -215,7 +217,7 @@ def _as_json(
                 "read_bytes": one.read,
                 "written_bytes": one.written,
             }
-            for one in shares(timings.passes)
+            for one in group_by_nodes(timings.passes)
         ],
         "passes": [
             {
@@ -227,7 +229,7 @@ def _as_json(
                 "read_bytes": one.read,
                 "written_bytes": one.written,
             }
-            for name, one in zip(names(timings.passes), timings.passes, strict=True)
+            for name, one in zip(identify_passes(timings.passes), timings.passes, strict=True)
         ],
     }
     if comparison:

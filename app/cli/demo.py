@@ -22,7 +22,7 @@ def demo(
 
     from .. import document
     from ..renderer import RenderRequest
-    from ..renderer.jobs.job import Writing, run_job
+    from ..renderer.jobs.job import OutputSettings, run_job
 
     rows: list[dict[str, object]] = []
     with open_batch(output, len(paths())) as work:
@@ -33,7 +33,7 @@ def demo(
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
             report = run_job(
-                work.renderer, graph, RenderRequest(), Writing(pictures), (middle_frame(work.renderer, graph),)
+                work.renderer, graph, RenderRequest(), OutputSettings(pictures), (middle_frame(work.renderer, graph),)
             )
             spent = time.perf_counter() - started
             word = "pass  " if report.passes == 1 else "passes"

@@ -16,8 +16,8 @@ from .watchdog import needs_watchdog
 
 if TYPE_CHECKING:
     from ..graph import Graph, Port
-    from ..inputs.prefetch import Ahead
-    from ..renderer.jobs.job import Report
+    from ..inputs.prefetch import Prefetcher
+    from ..renderer.jobs.job import JobReport
     from ..renderer.jobs.render_job import RenderJob
 
 
@@ -51,15 +51,15 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     return 0
 
 
-def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> Ahead | None:
+def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> Prefetcher | None:
     """Load the driver on another thread, and read pictures on a third, while this one imports the renderer."""
     from ..renderer.opengl.warming import warm
 
     if not job.deterministic:  # a pinned driver is loaded with other settings
         warm()
-    from ..inputs.prefetch import Ahead
+    from ..inputs.prefetch import Prefetcher
 
-    return None if job.resume or targets or job.memory else Ahead(graph, job.inputs)
+    return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs)
 
 
 def _default_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
@@ -103,13 +103,13 @@ def _render(
     job: RenderJob,
     graph: Graph,
     targets: Mapping[str, Port],
-    ahead: Ahead | None,
+    ahead: Prefetcher | None,
     progress: Literal["bar", "json"],
     started: float,
 ) -> dict[str, Any]:
     """Render in this process: the report as JSON has it."""
     from ..renderer import DEFAULT_BUDGET, Renderer, RenderRequest, open_device, open_pinned
-    from ..renderer.jobs.job import Writing, run_job
+    from ..renderer.jobs.job import OutputSettings, run_job
 
     loaded = time.perf_counter()
     device = open_pinned(job.memory) if job.deterministic else open_device(job.form, job.memory)
@@ -120,7 +120,7 @@ def _render(
     ready = time.perf_counter()
     precision = "float" if job.deterministic else job.precision
     request = RenderRequest(job.inputs, targets, job.size, job.scale, precision=precision)
-    writing = Writing(
+    writing = OutputSettings(
         job.files,
         job.view,
         job.compression,
@@ -137,7 +137,7 @@ def _render(
     return _as_json(report, renderer.device.description, seconds)
 
 
-def _as_json(report: Report, device: str, seconds: Mapping[str, float]) -> dict[str, Any]:
+def _as_json(report: JobReport, device: str, seconds: Mapping[str, float]) -> dict[str, Any]:
     return {
         "written": [str(path) for path in report.written],
         "frames": [item.frame for item in report.frames],

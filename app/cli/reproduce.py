@@ -14,9 +14,9 @@ from .outcome import note, print_json
 from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
-    from ..renderer.provenance.finding import Found
+    from ..renderer.provenance.file_finder import LocatedFile
     from ..renderer.provenance.recipe import Recipe
-    from ..renderer.provenance.reproduction import Layer, Reproduction
+    from ..renderer.provenance.reproduction import LayerDifference, Reproduction
 
 _SHORT = 12
 
@@ -47,26 +47,26 @@ def reproduce(
     as_json: AsJson = False,
 ) -> int:
     """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
-    from ..renderer.provenance.finding import Finder, missing
+    from ..renderer.provenance.file_finder import FileFinder, describe_missing
     from ..renderer.provenance.recipe import read_recipe
 
     given_files = parsing.assignments(inputs or (), "-i")
     recipe = read_recipe(picture)
-    files = Finder(recipe, given_files, search or ()).all()
+    files = FileFinder(recipe, given_files, search or ()).find_all()
     saved = _save_graph(recipe, files, graph) if graph else ""
     if graph and not output:
         if as_json:
             print_json({"picture": str(picture), "graph": saved, "inputs": [_input_facts(item) for item in files]})
         return 0
-    if fault := missing(files, picture):
+    if fault := describe_missing(files, picture):
         raise fault
     report_problems(picture, recipe.graph)
     if (code := rerun_watched(context, picture, recipe.graph, timeout)) is not None:
         return code
     from ..renderer import Renderer
-    from ..renderer.provenance.reproduction import open_alike, reproduce
+    from ..renderer.provenance.reproduction import open_matching_device, reproduce
 
-    renderer = Renderer(open_alike(recipe), budget=0)
+    renderer = Renderer(open_matching_device(recipe), budget=0)
     note(renderer.device.description)
     reproduction = reproduce(renderer, recipe, files, tuple(output or ()), tolerance)
     if as_json:
@@ -76,15 +76,15 @@ def reproduce(
     return 0 if reproduction.same else 1
 
 
-def _save_graph(recipe: Recipe, files: tuple[Found, ...], path: Path) -> str:
+def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path) -> str:
     """Save the graph with what was found in it; where to."""
     from dataclasses import replace
 
     from .. import document
     from ..graph.paths import rebased
-    from ..renderer.provenance.finding import pointed
+    from ..renderer.provenance.file_finder import relink_files
 
-    whole = pointed(recipe.graph, files)
+    whole = relink_files(recipe.graph, files)
     folder = str(path.absolute().parent)
     below = rebased(replace(whole, folder=str(recipe.path.absolute().parent)), folder)
     if str(path) == "-":
@@ -95,7 +95,7 @@ def _save_graph(recipe: Recipe, files: tuple[Found, ...], path: Path) -> str:
     return str(path)
 
 
-def _print(recipe: Recipe, files: tuple[Found, ...], reproduction: Reproduction) -> None:
+def _print(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction) -> None:
     proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
     print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
     for item in reproduction.differences:
@@ -115,7 +115,7 @@ def _print(recipe: Recipe, files: tuple[Found, ...], reproduction: Reproduction)
         note(f"{path}  the rebuilt picture")
 
 
-def _describe_layer(layer: Layer, tolerance: float) -> str:
+def _describe_layer(layer: LayerDifference, tolerance: float) -> str:
     measured = layer.compared
     if measured.fault:
         return f"differ: {measured.fault}"
@@ -129,11 +129,11 @@ def _describe_layer(layer: Layer, tolerance: float) -> str:
     )
 
 
-def _name(item: Found) -> str:
+def _name(item: LocatedFile) -> str:
     return item.used.owner.removeprefix("inputs.")
 
 
-def _input_facts(item: Found) -> dict[str, Any]:
+def _input_facts(item: LocatedFile) -> dict[str, Any]:
     used = item.used
     return {
         "name": _name(item),
@@ -146,7 +146,7 @@ def _input_facts(item: Found) -> dict[str, Any]:
     }
 
 
-def _as_json(recipe: Recipe, files: tuple[Found, ...], reproduction: Reproduction, saved: str) -> dict[str, Any]:
+def _as_json(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction, saved: str) -> dict[str, Any]:
     return {
         "picture": str(recipe.path),
         "same": reproduction.same,

@@ -76,7 +76,7 @@ def sweep(
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import DEFAULT_BUDGET, RenderRequest
     from ..renderer.jobs import sweep as sweeping
-    from ..renderer.jobs.job import Writing
+    from ..renderer.jobs.job import OutputSettings
 
     started = time.perf_counter()
     depth = parsing.precision(precision) if precision is not None else None
@@ -90,16 +90,16 @@ def sweep(
     at = chosen[0] if chosen else LazyResourceProvider().frames(whole, bindings)[0]
     name = _output(whole, show, node)
     look = view or ("" if node else whole.outputs[name].view)
-    count = len(sweeping.cells(whole, swept, at))
+    count = len(sweeping.list_cells(whole, swept, at))
     media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=look)
     if output.suffix.casefold() in (".exr", ".hdr"):
         raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
-    written = Writing((("", cells),), view, precision=depth or "half") if cells is not None else None
+    written = OutputSettings((("", cells),), view, precision=depth or "half") if cells is not None else None
     request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in swept)}"
     with open_batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
-        how = sweeping.Swept(request, name, look, cell, columns, written, _suffix(ending), title)
-        sheet = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)
+        how = sweeping.SweepRequest(request, name, look, cell, columns, written, _suffix(ending), title)
+        sheet = sweeping.render_sweep(work.renderer, whole, swept, how, at, work.step)
         device = work.device
     metadata = {"ImageDescription": "\n".join(item.label for item in sheet.cells)}
     media.write_picture(output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata)

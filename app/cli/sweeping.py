@@ -25,7 +25,7 @@ def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Grap
     Raises UsageError.
     """
     from ..errors import UsageError
-    from ..renderer.jobs.sweep import FRAME, Axis, Step, used_labels
+    from ..renderer.jobs.sweep import FRAME, Axis, SweepStep, choose_labels
 
     typed: dict[str, list[str]] = {}
     for item in sets:
@@ -43,13 +43,13 @@ def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Grap
             graph = override_value(graph, name, steps.pop(name)[0])
     if len(frames) > 1:
         steps[FRAME] = tuple(map(str, frames))
-    labels_used = used_labels(tuple(steps), labels)
+    labels_used = choose_labels(tuple(steps), labels)
 
-    def step(name: str, text: str) -> Step:
+    def step(name: str, text: str) -> SweepStep:
         if name == FRAME and len(frames) > 1:
-            return Step(text, lambda graph: graph, int(text))
+            return SweepStep(text, lambda graph: graph, int(text))
         override_value(graph, name, text)  # what cannot be set is refused before anything is rendered
-        return Step(text, lambda graph: override_value(graph, name, text))
+        return SweepStep(text, lambda graph: override_value(graph, name, text))
 
     swept = (Axis(name, labels_used[name], tuple(step(name, text) for text in texts)) for name, texts in steps.items())
     return graph, tuple(swept)

@@ -49,20 +49,20 @@ def test(
     as_json: AsJson = False,
 ) -> int:
     """Render graphs and compare with golden pictures; see docs/testing.md for the files that say what and how."""
-    from ..regression.selection import chosen
+    from ..regression.selection import select_cases
     from ..regression.suites import load_suites
 
-    cases = chosen(load_suites(suites or [Path()]), select)
+    cases = select_cases(load_suites(suites or [Path()]), select)
     if listed:
         return _list_cases(cases, as_json)
-    from ..regression.crew import run_cases
+    from ..regression.case_runner import RunOptions
     from ..regression.junit import write_junit
+    from ..regression.parallel import run_cases
     from ..regression.report import check_report, write_report
     from ..regression.results import as_json as for_machines
-    from ..regression.running import How
 
     check_report(report, junit)
-    how = How(update, out, pictures=report is not None, deterministic=deterministic)
+    how = RunOptions(update, out, pictures=report is not None, deterministic=deterministic)
     session = run_cases(
         cases, how, jobs=jobs, stop_early=stop_early, hears=None if as_json else lambda outcome: print(_line(outcome))
     )
@@ -90,11 +90,11 @@ def _list_cases(cases: tuple[Case, ...], as_json: bool) -> int:
 
 def _line(outcome: Outcome) -> str:
     """One line of what became of a case; a sentence follows where there is one to say."""
-    from ..regression.cases import number
+    from ..regression.cases import format_number
 
     worst = outcome.worst
     measured = worst is not None and worst.value is not None and outcome.status == "passed"
-    value = f"  {outcome.case.metric} {number(worst.value or 0.0)}" if worst is not None and measured else ""
+    value = f"  {outcome.case.metric} {format_number(worst.value or 0.0)}" if worst is not None and measured else ""
     head = f"{_MARKS[outcome.status]}  {outcome.case.id}{value}  {outcome.seconds:.2f} s"
     sentence = outcome.sentence if outcome.status != "passed" else ""
     files = [path for check in outcome.checks for path in check.files]

@@ -29,7 +29,7 @@ from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
     from ..graph import Graph
-    from ..renderer.jobs.job import Progress, Report
+    from ..renderer.jobs.job import JobProgress, JobReport
     from ..watch.rerendering import WatchReport
 
 _LISTED = 3
@@ -58,7 +58,7 @@ def watch(
     """
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
-    from ..renderer.jobs.job import Writing, run_job
+    from ..renderer.jobs.job import OutputSettings, run_job
     from ..watch.rerendering import ContinuousRenderer
 
     if str(graph) == "-":
@@ -74,13 +74,18 @@ def watch(
         report_problems(graph, graph_now)
         return graph_now
 
-    def render(graph_now: Graph, progress: Progress) -> Report:
+    def render(graph_now: Graph, progress: JobProgress) -> JobReport:
         bindings, targets = resolve_inputs(graph_now, parsing.inputs(inputs)), parsing.targets(graph_now, node)
         first, last = (0, 0) if chosen else LazyResourceProvider().frames(graph_now, bindings)
         every = chosen or (tuple(range(first, last + 1)) if parsing.holds_frames(files) else (first,))
         request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
         return run_job(
-            renderer, graph_now, request, Writing(files, view, compression, depth or "half"), every, progress=progress
+            renderer,
+            graph_now,
+            request,
+            OutputSettings(files, view, compression, depth or "half"),
+            every,
+            progress=progress,
         )
 
     renderings = ContinuousRenderer(graph, lambda found: resolve_inputs(found, parsing.inputs(inputs)), load, render)

@@ -24,7 +24,7 @@ Request = tuple[str, LayerRequest]
 """A path, and the layer that is read from it."""
 
 
-class Ahead:
+class Prefetcher:
     """Reads, one after the other, the files that the outputs of a graph are likely to need: those of its inputs.
 
     `inputs` are paths, or `path:layer`, by the names of inputs. A file that cannot be read is no error here: the error

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from ..resources.mesh import Mesh
     from ..resources.provider import FrameFile
     from ..resources.working_space import WorkingSpace
-    from .prefetch import Ahead
+    from .prefetch import Prefetcher
 
     Array = np.ndarray
     Binding = str | Path | Array | float | tuple[float, ...]
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 class MediaProvider:
     """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` reads some files already."""
 
-    def __init__(self, ahead: Ahead | None = None) -> None:
+    def __init__(self, ahead: Prefetcher | None = None) -> None:
         self.ahead = ahead
         self.repaired: dict[str, int] = {}
         """How many pixels were repaired, by path."""

@@ -23,10 +23,11 @@ class Metric:
         """True if a case with this value passes."""
         return value >= tolerance if self.least else value <= tolerance
 
-    def said(self, value: float, tolerance: float) -> str:
+    def describe(self, value: float, tolerance: float) -> str:
         """Value and tolerance for a sentence."""
         bound = "at least" if self.least else "at most"
-        return f"{self.name} {number(value)}{self.unit} where {bound} {number(tolerance)}{self.unit} is allowed"
+        measure, limit = format_number(value), format_number(tolerance)
+        return f"{self.name} {measure}{self.unit} where {bound} {limit}{self.unit} is allowed"
 
 
 PER_PIXEL = ("max_rel", "max_abs")
@@ -84,6 +85,6 @@ class Case:
         return f"{self.suite.as_posix()}::{self.name}"
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """A measure in few digits."""
     return f"{value:.4g}"

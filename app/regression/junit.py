@@ -8,12 +8,12 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from ..resources.atomic_write import write_text_atomically
-from .results import Outcome, Session
+from .results import Outcome, RegressionRun
 
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def write_junit(session: Session, path: Path) -> None:
+def write_junit(session: RegressionRun, path: Path) -> None:
     """One testsuite for every suite file, whole or not at all. Raises OutputError."""
     root = ET.Element("testsuites", name="halation", time=f"{session.seconds:.3f}")
     _count(root, session.outcomes)

@@ -12,33 +12,35 @@ from ..errors import OutputError
 from ..media.comparison.metrics import amplify_difference, to_three_channels
 from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing, encode_png, write_difference
 from .cases import Case
-from .judging import Parts
-from .results import Check, Views
+from .comparison import Parts
+from .results import PictureCheck, PictureViews
 
 Array = np.ndarray
 
 _UNSAFE = re.compile(r"[^\w.+-]+")
 
 
-def views_of(check: Check, made: Parts, wanted: Parts, view: str) -> Views:
+def make_views(check: PictureCheck, made: Parts, wanted: Parts, view: str) -> PictureViews:
     """The worst layer to look at: both pictures, and what differs, as bright as it can be shown."""
     name = check.layer if check.layer in made else next(iter(made))
     actual, expected = made[name], wanted.get(name)
     if expected is None:
-        return Views(encode_png(encode_for_viewing(actual, view, _span(actual))))
-    span, gain = _span(expected), 1.0
+        return PictureViews(encode_png(encode_for_viewing(actual, view, _measure_range(actual))))
+    span, gain = _measure_range(expected), 1.0
     first, second = actual.array, expected.array
     if first.shape == second.shape:
         # Bright lights, which differ by large numbers, would leave all else black.
         size = np.maximum(1.0, np.abs(np.where(np.isfinite(second), second, 0.0)))
         first, second = first / size, second / size
-        gain = _gain(np.abs(first - second))
+        gain = _choose_gain(np.abs(first - second))
     light = amplify_difference(first, second, gain)
     views = (encode_png(encode_for_viewing(actual, view, span)), encode_png(encode_for_viewing(expected, view, span)))
-    return Views(*views, encode_png(light ** (1.0 / 2.2)), gain)
+    return PictureViews(*views, encode_png(light ** (1.0 / 2.2)), gain)
 
 
-def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path) -> Check:
+def leave_pictures(
+    check: PictureCheck, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path
+) -> PictureCheck:
     """The same check with its pictures in a folder: as stored and as PNG; differences as EXR and PNG.
 
     Raises OutputError.
@@ -57,7 +59,7 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
         layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
         if layer in made and layer in wanted:
             files.append(folder / f"{stem}.difference.exr")
-            write_difference(files[2], {layer: _difference(made[layer].array, wanted[layer].array)})
+            write_difference(files[2], {layer: _subtract(made[layer].array, wanted[layer].array)})
     if check.views:
         for word in ("actual", "expected", "difference"):
             data: bytes = getattr(check.views, word)
@@ -67,7 +69,7 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
     return replace(check, files=tuple(files))
 
 
-def _difference(actual: Array, expected: Array) -> Array:
+def _subtract(actual: Array, expected: Array) -> Array:
     """The absolute difference as numbers; where sizes differ, a picture of that."""
     same = actual.shape == expected.shape
     return (
@@ -77,13 +79,13 @@ def _difference(actual: Array, expected: Array) -> Array:
     )
 
 
-def _gain(difference: Array) -> float:
+def _choose_gain(difference: Array) -> float:
     """What makes all but the few largest differences visible."""
     there = difference[np.isfinite(difference) & (difference > 0.0)]
     return 1.0 / float(np.percentile(there, 99.5)) if there.size else 1.0
 
 
-def _span(part: StoredPart) -> tuple[float, float]:
+def _measure_range(part: StoredPart) -> tuple[float, float]:
     """What is black and what is white where data is shown."""
     finite = part.array[np.isfinite(part.array)]
     return (float(finite.min()), float(finite.max())) if part.data and finite.size else (0.0, 1.0)

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
+    from .case_runner import RunOptions
     from .cases import Case
-    from .running import How
 
 _ENDING = ".suite.toml"
 
@@ -34,7 +34,7 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
     return SuiteFile.from_parent(parent, path=file_path) if file_path.name.endswith(_ENDING) else None  # pyright: ignore[reportUnknownMemberType]
 
 
-class Failure(Exception):
+class CaseFailure(Exception):
     """A case that failed, in one sentence."""
 
 
@@ -63,9 +63,9 @@ class CaseItem(pytest.Item):
 
     def runtest(self) -> None:
         """Render and compare. Raises Failure."""
-        from .crew import in_this_process
+        from .parallel import run_here
 
-        outcome = in_this_process(self.case, self._how())
+        outcome = run_here(self.case, self._how())
         for check in outcome.checks:
             self.user_properties += [("picture", str(path)) for path in check.files]
         if outcome.status == "skipped":
@@ -75,20 +75,20 @@ class CaseItem(pytest.Item):
         if outcome.status == "failed":
             files = [path for check in outcome.checks for path in check.files]
             where = f"\npictures: {files[0].parent}" if files else ""
-            raise Failure(f"{outcome.sentence}{where}")
+            raise CaseFailure(f"{outcome.sentence}{where}")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """The sentence alone: where it was raised is nobody's business."""
-        return str(excinfo.value) if isinstance(excinfo.value, Failure) else super().repr_failure(excinfo, style)
+        return str(excinfo.value) if isinstance(excinfo.value, CaseFailure) else super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
         """Where a failure is said to be."""
         return self.path, None, f"{self.path.name}::{self.name}"
 
-    def _how(self) -> How:
-        from .running import How
+    def _how(self) -> RunOptions:
+        from .case_runner import RunOptions
 
         update, out = self.config.getoption("--halation-update"), self.config.getoption("--halation-out")
         if out is None:
             out = self.config.cache.mkdir("halation") if self.config.cache else None
-        return How(bool(update), Path(str(out)) if out else None)
+        return RunOptions(bool(update), Path(str(out)) if out else None)

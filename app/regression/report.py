@@ -10,8 +10,8 @@ from typing import Any
 
 from ..errors import UsageError
 from ..resources.atomic_write import write_text_atomically
-from .cases import METRICS, number
-from .results import Check, Outcome, Session, Views
+from .cases import METRICS, format_number
+from .results import Outcome, PictureCheck, PictureViews, RegressionRun
 
 _MARK = "/*DATA*/null"
 _MOST = 200 * 2**20
@@ -29,12 +29,12 @@ def check_report(*paths: Path | None) -> None:
             raise UsageError(f"{path}: there is no such folder: create it first")
 
 
-def write_report(session: Session, path: Path) -> None:
+def write_report(session: RegressionRun, path: Path) -> None:
     """Write the page, whole or not at all. Raises OutputError."""
-    write_text_atomically(path, page(session))
+    write_text_atomically(path, make_page(session))
 
 
-def page(session: Session) -> str:
+def make_page(session: RegressionRun) -> str:
     """The page as text. Pictures are inside, those of failures only."""
     template = resources.files(__package__ or "").joinpath("report.html").read_text("utf-8")
     data = {
@@ -49,7 +49,7 @@ def page(session: Session) -> str:
     return template.replace(_MARK, json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))
 
 
-def _cases(session: Session) -> list[dict[str, Any]]:
+def _cases(session: RegressionRun) -> list[dict[str, Any]]:
     room = _MOST
     found: list[dict[str, Any]] = []
     for outcome in session.outcomes:
@@ -63,7 +63,7 @@ def _cases(session: Session) -> list[dict[str, Any]]:
 
 def _case(outcome: Outcome) -> dict[str, Any]:
     case, worst = outcome.case, outcome.worst
-    value = "" if worst is None or worst.value is None else number(worst.value)
+    value = "" if worst is None or worst.value is None else format_number(worst.value)
     return {
         "suite": case.suite.as_posix(),
         "name": case.name,
@@ -82,12 +82,12 @@ def _metric(outcome: Outcome) -> str:
         return "must fail"
     if not case.goldens:
         return "must render"
-    share = f", {number(case.failing)} % may fail" if case.failing else ""
+    share = f", {format_number(case.failing)} % may fail" if case.failing else ""
     sign = "\u2265" if METRICS[case.metric].least else "\u2264"
-    return f"{case.metric} {sign} {number(case.tolerance)}{METRICS[case.metric].unit}{share}"
+    return f"{case.metric} {sign} {format_number(case.tolerance)}{METRICS[case.metric].unit}{share}"
 
 
-def _check(outcome: Outcome, check: Check) -> dict[str, Any]:
+def _check(outcome: Outcome, check: PictureCheck) -> dict[str, Any]:
     found = check.compared
     said: dict[str, Any] = {
         "golden": check.golden.as_posix(),
@@ -102,15 +102,15 @@ def _check(outcome: Outcome, check: Check) -> dict[str, Any]:
     if found is not None and outcome.status == "failed":
         names = ("max_rel", "max_abs", "rms", "psnr", "ssim", "flip")
         values = {name: getattr(found, name) for name in names}
-        said["measures"] = {name: number(value) for name, value in values.items() if value == value}
-        said["share"] = number(100.0 * found.failing)
+        said["measures"] = {name: format_number(value) for name, value in values.items() if value == value}
+        said["share"] = format_number(100.0 * found.failing)
         if found.worst:
             said["worst"] = list(found.worst)
-            said["numbers"] = [[number(part) for part in side] for side in (found.actual, found.expected)]
+            said["numbers"] = [[format_number(part) for part in side] for side in (found.actual, found.expected)]
     return said
 
 
-def _views(views: Views | None, room: int) -> tuple[dict[str, Any], int]:
+def _views(views: PictureViews | None, room: int) -> tuple[dict[str, Any], int]:
     if views is None:
         return {}, room
     pictures = {"actual": views.actual, "expected": views.expected, "difference": views.difference}
@@ -118,4 +118,4 @@ def _views(views: Views | None, room: int) -> tuple[dict[str, Any], int]:
     if size > room:
         return {"left": True}, room
     inside = {name: f"data:image/png;base64,{b64encode(data).decode()}" for name, data in pictures.items() if data}
-    return {"views": inside, "gain": number(views.gain)}, room - size
+    return {"views": inside, "gain": format_number(views.gain)}, room - size

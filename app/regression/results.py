@@ -15,7 +15,7 @@ Status = Literal["passed", "failed", "blessed", "skipped"]
 
 
 @dataclass(frozen=True)
-class Views:
+class PictureViews:
     """PNG files of what was rendered, what was expected and the amplified difference; the last two may be missing."""
 
     actual: bytes
@@ -25,7 +25,7 @@ class Views:
 
 
 @dataclass(frozen=True)
-class Check:
+class PictureCheck:
     """A picture against its golden. `layer` is the one that is worst; `value` is the case's metric there.
 
     `sentence` says what is wrong, "" if nothing is. `golden_by` and `made_by` are the renderers of both pictures.
@@ -40,7 +40,7 @@ class Check:
     sentence: str = ""
     golden_by: str = ""
     made_by: str = ""
-    views: Views | None = None
+    views: PictureViews | None = None
     files: tuple[Path, ...] = ()
 
     @property
@@ -59,17 +59,17 @@ class Outcome:
     status: Status
     sentence: str = ""
     seconds: float = 0.0
-    checks: tuple[Check, ...] = ()
+    checks: tuple[PictureCheck, ...] = ()
 
     @property
-    def worst(self) -> Check | None:
+    def worst(self) -> PictureCheck | None:
         """The picture to look at first: one that fails, else one with a measure."""
         measured = [check for check in self.checks if check.value is not None]
         return next((check for check in self.checks if check.sentence), measured[0] if measured else None)
 
 
 @dataclass(frozen=True)
-class Session:
+class RegressionRun:
     """All outcomes in order, and what they were made with. `remark` says what could not be pinned."""
 
     outcomes: Sequence[Outcome]
@@ -91,7 +91,7 @@ class Session:
         return f"{', '.join(parts) or 'no cases'} in {self.seconds:.2f} s"
 
 
-def as_json(session: Session) -> dict[str, Any]:
+def as_json(session: RegressionRun) -> dict[str, Any]:
     """For machines. Infinity and NaN, which JSON does not know, are null."""
     return {
         "device": session.device,
@@ -120,7 +120,7 @@ def _case(outcome: Outcome) -> dict[str, Any]:
     }
 
 
-def _check(check: Check) -> dict[str, Any]:
+def _check(check: PictureCheck) -> dict[str, Any]:
     measures = asdict(check.compared) if check.compared else {}
     return {
         "golden": str(check.golden),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..errors import DocumentError, UsageError
 from .cases import ENDING, METRICS, PER_PIXEL, Case
-from .reading import Table, frames_of, goldens_of, inputs_of, parse, size_of
+from .toml_tables import TomlTable, parse_toml, read_frames, read_goldens, read_inputs, read_size
 
 _KEYS = (
     "graph",
@@ -51,16 +51,16 @@ def find_suites(paths: Iterable[Path]) -> tuple[Path, ...]:
 
 def load_suite(path: Path) -> tuple[Case, ...]:
     """The cases of a file, in its order. Raises DocumentError that names the file and the key at fault."""
-    tree = Table(str(path), "", parse(path))
-    tree.only(("defaults", "cases"))
+    tree = TomlTable(str(path), "", parse_toml(path))
+    tree.refuse_other_keys(("defaults", "cases"))
     defaults = tree.table("defaults")
-    defaults.only(tuple(name for name in _KEYS if name not in ("error", "skip")))
+    defaults.refuse_other_keys(tuple(name for name in _KEYS if name not in ("error", "skip")))
     cases = tree.table("cases")
     if not cases.items:
         raise DocumentError(str(path), "cases", 'there is no case: begin one with [cases.NAME] and graph = "FILE"')
     made: dict[str, Case] = {}
     for name in cases.items:
-        for case in _cases(path, name, cases.table(name), defaults):
+        for case in _read_cases(path, name, cases.table(name), defaults):
             if case.name in made:
                 raise DocumentError(str(path), f"cases.{name}", f"there are two cases '{case.name}'; rename one")
             made[case.name] = case
@@ -68,24 +68,24 @@ def load_suite(path: Path) -> tuple[Case, ...]:
     return tuple(made.values())
 
 
-def _cases(path: Path, name: str, own: Table, defaults: Table) -> Iterator[Case]:
+def _read_cases(path: Path, name: str, own: TomlTable, defaults: TomlTable) -> Iterator[Case]:
     """The case of a table; several where the name of its graph has wildcards."""
-    own.only(_KEYS)
-    both = own.over(defaults)
+    own.refuse_other_keys(_KEYS)
+    both = own.merge_over(defaults)
     pattern = both.text("graph")
     if not pattern:
         raise both.fault("graph", 'which graph? Write graph = "FILE", relative to this file')
     if not any(sign in pattern for sign in "*?["):
-        yield _case(path, name, path.parent / pattern, own, both)
+        yield _read_case(path, name, path.parent / pattern, own, both)
         return
     graphs = sorted(item for item in path.parent.glob(pattern) if item.is_file())
     if not graphs:
         raise both.fault("graph", f"no file is called {pattern}")
     for graph in graphs:
-        yield _case(path, f"{name}/{graph.stem}", graph, own, both)
+        yield _read_case(path, f"{name}/{graph.stem}", graph, own, both)
 
 
-def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
+def _read_case(path: Path, name: str, graph: Path, own: TomlTable, both: TomlTable) -> Case:
     if "metric" in own.items and "tolerance" not in own.items:
         both = both.without("tolerance")
     metric = both.choice("metric", tuple(METRICS), "max_rel")
@@ -101,13 +101,13 @@ def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
         path,
         name,
         graph,
-        inputs_of(both, path.parent),
+        read_inputs(both, path.parent),
         both.table("set").items,
-        frames_of(both),
-        size_of(both),
+        read_frames(both),
+        read_size(both),
         both.number("scale", 1.0, 0.0, 1.0),
         both.text("node"),
-        () if error else goldens_of(both, path.parent, name, graph.stem),
+        () if error else read_goldens(both, path.parent, name, graph.stem),
         metric,
         both.number("tolerance", METRICS[metric].tolerance, None, None),
         failing,

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from .execution.texture_pool import Lease
     from .frame_renderer import FrameRenderer
     from .opening import open_device
-    from .pinned import open_pinned
+    from .pinned_device import open_pinned
     from .viewing.display import Display, Drawable
-    from .viewing.look import Look, fitted, to_panel, to_picture
-    from .viewing.probe import Nonfinite, Probe, first_nonfinite
+    from .viewing.look import Look, fit_zoom, to_panel, to_picture
+    from .viewing.probe import Nonfinite, Probe, find_first_nonfinite
 
 __all__ = [
     "DEFAULT_BUDGET",
@@ -39,8 +39,8 @@ __all__ = [
     "Renderer",
     "Run",
     "Runner",
-    "first_nonfinite",
-    "fitted",
+    "find_first_nonfinite",
+    "fit_zoom",
     "open_device",
     "open_pinned",
     "to_panel",
@@ -64,8 +64,8 @@ _HOMES = MappingProxyType(
         "Run": "execution.run",
         "Runner": "execution.runner",
         "RenderRequest": "engine",
-        "first_nonfinite": "viewing.probe",
-        "fitted": "viewing.look",
+        "find_first_nonfinite": "viewing.probe",
+        "fit_zoom": "viewing.look",
         "open_device": "opening",
         "open_pinned": "pinned",
         "to_panel": "viewing.look",

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import UsageError
-from .bench import Bench, names
+from .bench import Benchmark, identify_passes
 
 JUDGED = 0.02
 """The part of the whole that a pass must take to be judged: what takes less is lost in the noise."""
@@ -37,7 +37,7 @@ class Ratio:
 
 
 @dataclass(frozen=True)
-class Against:
+class BaselineComparison:
     """A baseline: the whole first, then passes that both have and that matter; `gone` and `new` are passes of one."""
 
     ratios: tuple[Ratio, ...]
@@ -50,30 +50,32 @@ class Against:
         return tuple(sorted((one for one in self.ratios if one.judged > limit), key=lambda one: -one.judged))
 
 
-def against(bench: Bench, path: Path) -> Against:
+def compare_with_baseline(bench: Benchmark, path: Path) -> BaselineComparison:
     """Compare with what `halation bench --json` printed before. Raises UsageError for a file that is none of these."""
-    found = _read(path)
+    found = _read_baseline(path)
     size = tuple(found["size"])
     if size != bench.size:
         then, now = ("x".join(map(str, sides)) for sides in (size, bench.size))
         raise UsageError(f"{path}: it was measured at {then} pixels, this is {now}: use the same --size and --scale")
     before = {(tuple(one["nodes"]), tuple(one["functions"]), one["number"]): one for one in found["passes"]}
-    ratios = [_ratio((), (), bench.median, bench.fastest, found)]
-    here = dict(zip(names(bench.passes), bench.passes, strict=True))
+    ratios = [_make_ratio((), (), bench.median, bench.fastest, found)]
+    here = dict(zip(identify_passes(bench.passes), bench.passes, strict=True))
     for name, one in here.items():
         then = before.get(name)
         if then and max(one.median / bench.median, then["median"] / found["median"]) >= JUDGED:
-            ratios.append(_ratio(one.nodes, one.functions, one.median, one.fastest, then))
-    return Against(tuple(ratios), len(before.keys() - here.keys()), len(here.keys() - before.keys()), found["device"])
+            ratios.append(_make_ratio(one.nodes, one.functions, one.median, one.fastest, then))
+    return BaselineComparison(
+        tuple(ratios), len(before.keys() - here.keys()), len(here.keys() - before.keys()), found["device"]
+    )
 
 
-def _ratio(
+def _make_ratio(
     nodes: tuple[str, ...], functions: tuple[str, ...], middle: float, fastest: float, then: Mapping[str, Any]
 ) -> Ratio:
     return Ratio(nodes, functions, middle / then["median"], fastest / then["fastest"], then["median"], middle)
 
 
-def _read(path: Path) -> dict[str, Any]:
+def _read_baseline(path: Path) -> dict[str, Any]:
     try:
         found: Any = json.loads(path.read_bytes())
         whole = [one[key] for one in (found, *found["passes"]) for key in ("median", "fastest")]

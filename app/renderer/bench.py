@@ -24,7 +24,7 @@ Name = tuple[tuple[str, ...], tuple[str, ...], int]
 
 
 @dataclass(frozen=True)
-class Timed:
+class PassTiming:
     """What a pass took, in seconds, every time; and the bytes of the textures that it reads and writes."""
 
     nodes: tuple[str, ...]
@@ -45,14 +45,14 @@ class Timed:
 
 
 @dataclass(frozen=True)
-class Bench:
+class Benchmark:
     """Times of all passes in their order, of the whole (the sum of passes, for each time), and what came first.
 
     `planning` is graph to plan, `compiling` is programs by the driver, `loading` is the first run with all that is read
     from files; `lead` says how many frames were gone through before, for what nodes remember.
     """
 
-    passes: tuple[Timed, ...]
+    passes: tuple[PassTiming, ...]
     totals: tuple[float, ...]
     size: tuple[int, int]
     planning: float
@@ -74,7 +74,7 @@ class Bench:
 
 
 @dataclass(frozen=True)
-class Share:
+class NodeShare:
     """Passes of the same nodes together: what is fused cannot be told apart, and has one time."""
 
     nodes: tuple[str, ...]
@@ -85,7 +85,7 @@ class Share:
     written: int
 
 
-def bench(
+def measure_graph(
     renderer: Renderer,
     graph: Graph,
     wanted: RenderRequest,
@@ -93,7 +93,7 @@ def bench(
     repeats: int,
     warm_up: int,
     step: Callable[[str], None] = lambda name: None,
-) -> Bench:
+) -> Benchmark:
     """Measure frames of a graph: each is rendered `warm_up` times unmeasured, then `repeats` times.
 
     `renderer` has a budget of 0, since what is kept takes no time. Raises the errors of `app.errors`.
@@ -113,7 +113,7 @@ def bench(
     for frame, reel in reels.items():  # one after the other: what one remembers is what the next one makes
         started = time.perf_counter()
         step(f"frame {frame}")
-        given = held(renderer, reel, frame)
+        given = load_frame_inputs(renderer, reel, frame)
         reel.close()
         loading += time.perf_counter() - started
         try:
@@ -123,10 +123,10 @@ def bench(
         timings[frame] = turns[warm_up:]
     first = plans[frames[0]]
     outputs = [first.surfaces[number].size for number in first.outputs.values()]
-    lead = sum(frame - reel.begin(frame) for frame, reel in reels.items() if plans[frame].memories)
-    return Bench(
-        _merged(plans, timings),
-        tuple(_totals(timings)),
+    lead = sum(frame - reel.history_start(frame) for frame, reel in reels.items() if plans[frame].memories)
+    return Benchmark(
+        _merge_frames(plans, timings),
+        tuple(_sum_turns(timings)),
         outputs[0] if outputs else (0, 0),
         planning,
         compiling,
@@ -137,13 +137,13 @@ def bench(
     )
 
 
-def shares(passes: Iterable[Timed]) -> tuple[Share, ...]:
+def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:
     """The passes by their nodes, what takes longest first."""
-    found: dict[tuple[str, ...], list[Timed]] = {}
+    found: dict[tuple[str, ...], list[PassTiming]] = {}
     for one in passes:
         found.setdefault(one.nodes, []).append(one)
     made = (
-        Share(
+        NodeShare(
             nodes,
             len(several),
             median(map(sum, zip(*(one.seconds for one in several), strict=True))),
@@ -156,7 +156,7 @@ def shares(passes: Iterable[Timed]) -> tuple[Share, ...]:
     return tuple(sorted(made, key=lambda share: -share.median))
 
 
-def names(passes: Iterable[Pass | Timed]) -> list[Name]:
+def identify_passes(passes: Iterable[Pass | PassTiming]) -> list[Name]:
     """What to know passes by, in their order."""
     seen: dict[tuple[tuple[str, ...], tuple[str, ...]], int] = {}
     found: list[Name] = []
@@ -167,7 +167,7 @@ def names(passes: Iterable[Pass | Timed]) -> list[Name]:
     return found
 
 
-def held(renderer: Renderer, reel: FrameRenderer, frame: int) -> Lease:
+def load_frame_inputs(renderer: Renderer, reel: FrameRenderer, frame: int) -> Lease:
     """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
     plan, runner = reel.plan(frame), renderer.runner
     lease, kept = runner.lease(), runner.lease()
@@ -190,19 +190,19 @@ def held(renderer: Renderer, reel: FrameRenderer, frame: int) -> Lease:
     return lease
 
 
-def _merged(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Timings]]) -> tuple[Timed, ...]:
+def _merge_frames(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Timings]]) -> tuple[PassTiming, ...]:
     """The passes of all frames; the same pass of several is one, with the times of all."""
-    found: dict[Name, Timed] = {}
+    found: dict[Name, PassTiming] = {}
     for frame, turns in timings.items():
         plan = plans[frame]
         for taken in turns:
-            for name, (one, seconds) in zip(names(one for one, _ in taken), taken, strict=True):
+            for name, (one, seconds) in zip(identify_passes(one for one, _ in taken), taken, strict=True):
                 before = found[name].seconds if name in found else ()
                 read = sum(plan.surfaces[number].nbytes for number in one.textures)
                 written = sum(plan.surfaces[number].nbytes for number in one.targets)
-                found[name] = Timed(one.nodes, one.functions, (*before, seconds), read, written)
+                found[name] = PassTiming(one.nodes, one.functions, (*before, seconds), read, written)
     return tuple(found.values())
 
 
-def _totals(timings: Mapping[int, Sequence[Timings]]) -> list[float]:
+def _sum_turns(timings: Mapping[int, Sequence[Timings]]) -> list[float]:
     return [sum(seconds for _, seconds in taken) for turns in timings.values() for taken in turns]

@@ -47,7 +47,7 @@ def load_or_measure(device: Device, folder: Path | None = None) -> FormTimings |
         return known
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        found = measured(device)
+        found = measure_forms(device)
         known = _read(path)  # another process may have been quicker
         if known is None:
             said = {"renderer": device.target.renderer, "driver": device.driver, **asdict(found)}
@@ -57,7 +57,7 @@ def load_or_measure(device: Device, folder: Path | None = None) -> FormTimings |
     return known or found
 
 
-def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> FormTimings:
+def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> FormTimings:
     """Seconds that noise, which is arithmetic, and its blur, which is reading, take in either form.
 
     Both forms take turns, after a first one that counts for nothing: it compiles, and wakes the device up.

@@ -18,7 +18,7 @@ from .execution.runner import Runner
 from .opening import open_device
 
 if TYPE_CHECKING:
-    from ..inputs.prefetch import Ahead
+    from ..inputs.prefetch import Prefetcher
     from ..inputs.provider import Binding
 
 DEFAULT_BUDGET = 512 * 2**20
@@ -71,7 +71,7 @@ class Renderer:
         budget: int = DEFAULT_BUDGET,
         library: Library | None = None,
         fusion: bool = True,
-        ahead: Ahead | None = None,
+        ahead: Prefetcher | None = None,
     ) -> None:
         self._owns_device = device is None
         self.device = device or open_device()
@@ -82,42 +82,42 @@ class Renderer:
         self._fusion = fusion
         self._planner = Planner()
 
-    def compile(self, graph: Graph, wanted: RenderRequest = _ALL, *, fusion: bool = True) -> Plan:
+    def compile(self, graph: Graph, request: RenderRequest = _ALL, *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
-        bindings = self.pictures.bind(graph, wanted.bound)
-        request = Request(
-            wanted.targets,
+        bindings = self.pictures.bind(graph, request.bound)
+        plan_request = Request(
+            request.targets,
             bindings,
-            wanted.size,
-            wanted.scale,
-            wanted.frame,
-            wanted.memories,
-            wanted.halves,
-            wanted.region,
-            wanted.by_rows,
+            request.size,
+            request.scale,
+            request.frame,
+            request.memories,
+            request.halves,
+            request.region,
+            request.by_rows,
         )
         return self._planner.plan(
             graph,
-            request,
+            plan_request,
             self.pictures,
             target=self.device.target,
-            precision=wanted.precision,
+            precision=request.precision,
             library=self.library,
             fusion=fusion and self._fusion,
             there=self.runner.textures,
         )
 
-    def frames(self, graph: Graph, wanted: RenderRequest = _ALL) -> tuple[int, int]:
+    def frames(self, graph: Graph, request: RenderRequest = _ALL) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
-        named = {name: item for name, item in wanted.inputs.items() if not callable(item)}
+        named = {name: item for name, item in request.inputs.items() if not callable(item)}
         return self.pictures.frames(graph, self.pictures.bind(graph, named))
 
-    def render(self, graph: Graph, wanted: RenderRequest = _ALL) -> dict[str, Array]:
+    def render(self, graph: Graph, request: RenderRequest = _ALL) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.
 
         One frame alone: nodes with a memory have none. See `FrameRenderer`.
         """
-        return self.runner.run(self.compile(graph, wanted))
+        return self.runner.run(self.compile(graph, request))
 
     def close(self) -> None:
         """Give back textures, programs and threads, and the device if it was not handed in."""

@@ -10,10 +10,10 @@ from ..compiler import Memory, Plan
 from ..graph import Graph, Port
 from .engine import Renderer, RenderRequest
 from .execution.decoding import Array
-from .execution.run import Run, Timings, carried
+from .execution.run import Run, Timings, find_shared_surfaces
 from .execution.texture_pool import Lease
 
-KEPT_PLANS = 16
+MAX_PLANS = 16
 
 CARRIED_BYTES = 2**29
 """What may be kept of one frame for the next, beyond what nodes remember."""
@@ -29,16 +29,16 @@ class FrameRenderer:
     it is computed again only where it is no longer on the device. The frame of `wanted` does not matter.
     """
 
-    def __init__(self, renderer: Renderer, graph: Graph, wanted: RenderRequest) -> None:
-        self.renderer, self.graph, self.wanted = renderer, graph, wanted
-        self.frames = renderer.frames(graph, wanted)
+    def __init__(self, renderer: Renderer, graph: Graph, request: RenderRequest) -> None:
+        self.renderer, self.graph, self.request = renderer, graph, request
+        self.frames = renderer.frames(graph, request)
         """The first and last frame of the range."""
         self._memories: dict[tuple[int, int], Memories] = {}
         """By the frame where history begins, and the frame that remembers."""
         self._plans: dict[tuple[int, int], Plan] = {}
         self._held: Lease = renderer.runner.lease()
 
-    def begin(self, frame: int) -> int:
+    def history_start(self, frame: int) -> int:
         """The frame at which the history of another one begins."""
         first, preroll = self.frames[0], self.graph.settings.preroll
         if frame <= first:
@@ -47,18 +47,18 @@ class FrameRenderer:
 
     def plan(self, frame: int) -> Plan:
         """How a frame is made, of what was remembered before it. Raises the errors of `app.errors`."""
-        return self._plan(self.begin(frame), frame)
+        return self._plan(self.history_start(frame), frame)
 
-    def lead(self, frame: int) -> range:
+    def lead_frames(self, frame: int) -> range:
         """The frames that must be gone through, for what they remember, before a frame can be made.
 
         None where that is on the device, or the frame itself is.
         """
-        begin, textures = self.begin(frame), self.renderer.runner.textures
+        begin, textures = self.history_start(frame), self.renderer.runner.textures
         if self._is_there(self._plan(begin, frame)):
             return range(frame, frame)
         start = frame
-        while start > begin and any(item.key not in textures for item in self._before(begin, start).values()):
+        while start > begin and any(item.key not in textures for item in self._memories_before(begin, start).values()):
             start -= 1
         return range(start, frame)
 
@@ -67,7 +67,7 @@ class FrameRenderer:
 
         `plan` compiles all at once, which takes long far from where the history begins.
         """
-        begin, at = self.begin(frame), frame - 1
+        begin, at = self.history_start(frame), frame - 1
         while at >= begin and (begin, at) not in self._memories:
             at -= 1
         if frame > begin and at + 1 < frame and self._memories.get((begin, at), True):
@@ -85,15 +85,15 @@ class FrameRenderer:
 
         What the frame `following` would make again stays on the device until that has been made.
         """
-        runner, begin = self.renderer.runner, self.begin(frame)
-        for at in self.lead(frame):
+        runner, begin = self.renderer.runner, self.history_start(frame)
+        for at in self.lead_frames(frame):
             plan, lease = self._plan(begin, at), runner.lease()
-            yield runner.steps(plan, lease, (*plan.remembered, *_carried(plan, self._plan(begin, at + 1))))
+            yield runner.steps(plan, lease, (*plan.remembered, *_find_carried(plan, self._plan(begin, at + 1))))
             self._hold(lease)
         plan, lease = self.plan(frame), runner.lease()
         # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
         remembered = () if self._is_there(plan) else plan.remembered
-        on = () if following is None else _carried(plan, self.plan(following))
+        on = () if following is None else _find_carried(plan, self.plan(following))
         yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered, *on), timings=timings)
         for number in (*plan.remembered, *on):
             if plan.surfaces[number].key in runner.textures:
@@ -131,15 +131,15 @@ class FrameRenderer:
     def _plan(self, begin: int, frame: int) -> Plan:
         key = (begin, frame)
         if key not in self._plans:
-            before = self._before(begin, frame)
-            plan = self.renderer.compile(self.graph, replace(self.wanted, frame=frame, memories=before))
+            before = self._memories_before(begin, frame)
+            plan = self.renderer.compile(self.graph, replace(self.request, frame=frame, memories=before))
             self._memories[key] = plan.memories
             self._plans[key] = plan
-            while len(self._plans) > KEPT_PLANS:
+            while len(self._plans) > MAX_PLANS:
                 self._plans.pop(next(iter(self._plans)))
         return self._plans[key]
 
-    def _before(self, begin: int, frame: int) -> Memories:
+    def _memories_before(self, begin: int, frame: int) -> Memories:
         """What the frame before remembers."""
         if frame <= begin:
             return {}
@@ -154,13 +154,13 @@ class FrameRenderer:
         return self._memories[begin, frame - 1]
 
 
-def _carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+def _find_carried(plan: Plan, following: Plan) -> tuple[int, ...]:
     """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
     found: list[int] = []
     nbytes, most, memory = 0, CARRIED_BYTES, plan.target.memory
     if memory:  # of the frame before there may be as much
         most = min(most, (memory - max(plan.held_bytes, following.held_bytes)) // 2)
-    for number in carried(plan, following):
+    for number in find_shared_surfaces(plan, following):
         nbytes += plan.surfaces[number].nbytes
         if nbytes > most:
             break

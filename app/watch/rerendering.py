@@ -18,7 +18,7 @@ from typing import Any, cast
 from ..compiler import installed_library
 from ..errors import GraphError, HalationError
 from ..graph import Graph
-from ..renderer.jobs.job import FrameReport, Progress, Report
+from ..renderer.jobs.job import FrameReport, JobProgress, JobReport
 from .code_files import code_files
 from .reloading import NodeFiles, shader_folder
 from .sequence_files import list_sequence_files
@@ -35,7 +35,7 @@ class WatchReport:
 
     changed: tuple[Path, ...]
     seconds: float
-    report: Report | None = None
+    report: JobReport | None = None
     fault: HalationError | None = None
 
 
@@ -56,7 +56,7 @@ class ContinuousRenderer:
         path: Path,
         bindings: Callable[[Graph], Mapping[str, str]],
         load: Callable[[], Graph],
-        render: Callable[[Graph, Progress], Report],
+        render: Callable[[Graph, JobProgress], JobReport],
     ) -> None:
         self._path, self._bindings = path.absolute(), bindings
         self._load, self._render = load, render

@@ -24,7 +24,7 @@ from halation.errors import HalationError
 from halation.graph import Graph
 from halation.media.comparison.metrics import measure_flip
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
-from halation.renderer.bench import bench, held
+from halation.renderer.bench import load_frame_inputs, measure_graph
 from halation.renderer.opengl.device import OpenGLDevice
 from msgspec import structs
 
@@ -78,7 +78,7 @@ def take(
     if one.error:
         return
     try:
-        passes = select_measured(bench(renderer, graph, wanted, (wanted.frame,), repeat, 2).passes)
+        passes = select_measured(measure_graph(renderer, graph, wanted, (wanted.frame,), repeat, 2).passes)
         one.op += [sum(each) for each in zip(*(timed.seconds for timed in passes), strict=True)]
         one.wall += frames(renderer, graph, wanted, repeat)
     except HalationError as fault:
@@ -99,7 +99,7 @@ def take(
 def frames(renderer: Renderer, graph: Graph, wanted: RenderRequest, repeat: int) -> list[float]:
     """Seconds of whole frames by the clock, from the first pass that is submitted to the last that is done."""
     reel = FrameRenderer(renderer, graph, wanted)
-    plan, given, seconds = reel.plan(wanted.frame), held(renderer, reel, wanted.frame), list[float]()
+    plan, given, seconds = reel.plan(wanted.frame), load_frame_inputs(renderer, reel, wanted.frame), list[float]()
     for _ in range(repeat + 1):
         kept = renderer.runner.lease()
         finish(renderer.device)

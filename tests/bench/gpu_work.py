@@ -12,7 +12,7 @@ from bench.inputs import make_light
 from bench.tasks import TASKS
 from halation.compiler import Plan
 from halation.presets import paths
-from halation.renderer.bench import Timed
+from halation.renderer.bench import PassTiming
 
 Array = np.ndarray
 Size = tuple[int, int]
@@ -76,6 +76,6 @@ def least_bytes(plan: Plan) -> int:
     return sum(plan.surfaces[number].nbytes for number in (*read, *set(plan.outputs.values())))
 
 
-def select_measured(passes: tuple[Timed, ...]) -> tuple[Timed, ...]:
+def select_measured(passes: tuple[PassTiming, ...]) -> tuple[PassTiming, ...]:
     """The passes that count."""
     return tuple(one for one in passes if not FITTING.issuperset(one.functions))

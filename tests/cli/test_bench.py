@@ -113,12 +113,12 @@ def test_passes_that_come_and_go(cli, graph, graphs, baseline):
 
 def test_one_slow_moment_fails_nothing():
     """The median of noise may be high, and so may one lucky baseline be low: both have to be."""
-    from halation.renderer.baseline import Against, Ratio
+    from halation.renderer.baseline import BaselineComparison, Ratio
 
     def ratio(median, fastest):
         return Ratio(("blur",), ("gaussian",), median, fastest, 1.0, median)
 
-    found = Against((ratio(3.0, 1.01), ratio(1.0, 5.0), ratio(1.4, 1.3), ratio(2.0, 2.0)), 0, 0, "")
+    found = BaselineComparison((ratio(3.0, 1.01), ratio(1.0, 5.0), ratio(1.4, 1.3), ratio(2.0, 2.0)), 0, 0, "")
     assert [one.judged for one in found.slower(1.2)] == [2.0, 1.3]
 
 

@@ -286,7 +286,7 @@ def test_a_picture_says_how_to_make_it_again(cli, graphs, shot, tmp_path, ending
 
 
 def test_a_file_that_is_read_twice_is_hashed_once(cli, graphs, out, monkeypatch):
-    from halation.renderer.jobs import sources
+    from halation.renderer.jobs import source_files as sources
 
     seen = []
     real = sources.content_hash

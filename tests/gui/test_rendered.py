@@ -13,7 +13,7 @@ from halation.editor.window.dropped_files import take_files
 from halation.graph import Port
 from halation.presets import paths, sample
 from halation.renderer import Renderer, RenderRequest
-from halation.renderer.jobs.job import Writing, run_job
+from halation.renderer.jobs.job import OutputSettings, run_job
 
 BLOOM = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -24,7 +24,12 @@ def rendered(folder: Path) -> Path:
     graph = document.load(BLOOM).set(Port("bloom", "intensity"), 0.625)
     renderer = Renderer()
     inputs = {"beauty": f"{folder / 'plate.exr'}:Combined"}
-    run_job(renderer, graph, RenderRequest(inputs, scale=0.5), Writing((("", folder / "night shot.png"),), view="none"))
+    run_job(
+        renderer,
+        graph,
+        RenderRequest(inputs, scale=0.5),
+        OutputSettings((("", folder / "night shot.png"),), view="none"),
+    )
     renderer.close()
     return folder / "night shot.png"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.graph import Graph, Input, Output, Port
-from halation.inputs.prefetch import MOST, Ahead
+from halation.inputs.prefetch import MOST, Prefetcher
 from halation.inputs.provider import MediaProvider
 from halation.media import LayerRequest, read_layer, write_picture
 from halation.nodes import Kind
@@ -31,7 +31,7 @@ def picture(tmp_path: Path) -> str:
 
 
 def test_it_is_what_would_be_read(picture: str) -> None:
-    ahead = Ahead(graph(a=Input(), z=Input(Kind.FIELD)), {"a": picture, "z": f"{picture}:depth"})
+    ahead = Prefetcher(graph(a=Input(), z=Input(Kind.FIELD)), {"a": picture, "z": f"{picture}:depth"})
     pictures = MediaProvider(ahead=ahead)
     for what in (Picture(picture, "", Kind.IMAGE, 4), Picture(picture, "depth", Kind.FIELD, 1)):
         alone = read_layer(what.path, what.layer, what.kind, what.width).array
@@ -40,7 +40,7 @@ def test_it_is_what_would_be_read(picture: str) -> None:
 
 
 def test_it_is_there_once(picture: str) -> None:
-    ahead = Ahead(graph(a=Input()), {"a": picture})
+    ahead = Prefetcher(graph(a=Input()), {"a": picture})
     assert ahead.take((picture, LayerRequest("depth"))) is None
     assert ahead.take((picture, LayerRequest(""))) is not None
     assert ahead.take((picture, LayerRequest(""))) is None
@@ -50,7 +50,7 @@ def test_an_input_asks_for_a_layer_that_the_file_may_lack(picture: str) -> None:
     """As `MediaProvider.bind` has it: a plain picture stands for any layer of color."""
     made = graph(a=Input(layer="Combined"))
     bound = MediaProvider().bind(made, {"a": picture})["a"]
-    assert Ahead(made, {"a": picture}).take((bound.path, LayerRequest(bound.layer))) is not None
+    assert Prefetcher(made, {"a": picture}).take((bound.path, LayerRequest(bound.layer))) is not None
 
 
 def test_files_of_the_graph_are_beside_it(picture: str) -> None:
@@ -60,19 +60,19 @@ def test_files_of_the_graph_are_beside_it(picture: str) -> None:
         folder=str(Path(picture).parent),
         links={Port("outputs", "a"): Port("inputs", "a")},
     )
-    assert Ahead(made, {}).take((picture, LayerRequest(""))) is not None
+    assert Prefetcher(made, {}).take((picture, LayerRequest(""))) is not None
 
 
 def test_what_nobody_is_sure_to_want_is_not_read(picture: str, tmp_path: Path) -> None:
     made = graph(a=Input(file=picture), b=Input(file=picture), c=Input())
     other = tmp_path / "other.exr"
     other.write_bytes(Path(picture).read_bytes())
-    ahead = Ahead(made, {"a": str(other), "c": str(tmp_path / "picture.####.exr")})
+    ahead = Prefetcher(made, {"a": str(other), "c": str(tmp_path / "picture.####.exr")})
     assert ahead.take((picture, LayerRequest(""))) is None  # b follows a to the other file
     assert ahead.take((str(tmp_path / "picture.####.exr"), LayerRequest(""))) is None
     assert ahead.take((str(other), LayerRequest(""))) is not None
     idle = Graph(inputs={"a": Input()}, outputs={"a": Output()})
-    assert Ahead(idle, {"a": picture}).take((picture, LayerRequest(""))) is None
+    assert Prefetcher(idle, {"a": picture}).take((picture, LayerRequest(""))) is None
 
 
 def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
     files = {name: str(tmp_path / f"{name}.exr") for name in names}
     for file in files.values():
         Path(file).write_bytes(Path(picture).read_bytes())
-    ahead = Ahead(graph(**{name: Input() for name in names}), files)
+    ahead = Prefetcher(graph(**{name: Input() for name in names}), files)
     assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MOST + [True] * 2
 
 
@@ -88,4 +88,4 @@ def test_a_damaged_file_is_found_out_by_who_wants_it(tmp_path: Path) -> None:
     path = tmp_path / "damaged.exr"
     path.write_bytes(b"no picture")
     for layer in ("", "Combined"):
-        Ahead(graph(a=Input(layer=layer)), {"a": str(path)})
+        Prefetcher(graph(a=Input(layer=layer)), {"a": str(path)})

@@ -22,7 +22,7 @@ from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
-from halation.renderer.jobs.job import Writing, run_job
+from halation.renderer.jobs.job import OutputSettings, run_job
 
 Array = np.ndarray
 
@@ -282,7 +282,7 @@ def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str
     graph = loaded("night_street")
     for view, expected in (("", "none"), ("ACES", "ACES")):
         file = tmp_path / f"night{view}.png"
-        run_job(renderer, graph, RenderRequest(), Writing((("image", file),), view))
+        run_job(renderer, graph, RenderRequest(), OutputSettings((("image", file),), view))
         wanted = encoded(show_light(renderer.render(graph)["image"], expected))
         assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
 

@@ -13,8 +13,8 @@ from xml.etree import ElementTree as ET
 import pytest
 from halation.regression.cases import Case
 from halation.regression.junit import write_junit
-from halation.regression.report import page
-from halation.regression.results import Check, Outcome, Session, Views, as_json
+from halation.regression.report import make_page
+from halation.regression.results import Outcome, PictureCheck, PictureViews, RegressionRun, as_json
 
 CASES = """
 [defaults]
@@ -28,17 +28,19 @@ skip = "waits"
 """
 
 
-def many(count: int, odd: str = "") -> Session:
+def many(count: int, odd: str = "") -> RegressionRun:
     """Passed cases, and one failure in a hundred with pictures."""
     suite = Path("looks.suite.toml")
     outcomes: list[Outcome] = []
     for index in range(count):
         case = Case(suite, f"case {index}{odd}", Path("g.json"), goldens=())
         fails = index % 100 == 0
-        check = Check(Path("g.exr"), 1, sentence=f"too far{odd}", views=Views(b"a" * 30, b"b" * 30, b"c" * 30))
+        check = PictureCheck(
+            Path("g.exr"), 1, sentence=f"too far{odd}", views=PictureViews(b"a" * 30, b"b" * 30, b"c" * 30)
+        )
         status = "failed" if fails else "passed"
         outcomes.append(Outcome(case, status, f"too far{odd}" if fails else "", 0.1, (check,) if fails else ()))
-    return Session(outcomes, f"llvmpipe{odd}", 1.0, True, version="0.1.0")
+    return RegressionRun(outcomes, f"llvmpipe{odd}", 1.0, True, version="0.1.0")
 
 
 def test_exit_codes(cli, suite, tmp_path) -> None:
@@ -84,7 +86,7 @@ def test_any_text_goes_into_xml_and_html(tmp_path: Path, odd: str) -> None:
     names = [case.get("name") for case in ET.parse(tmp_path / "j.xml").getroot().iter("testcase")]
     kept = re.sub("[\x00-\x08\x0b-\x1f\ud800\ufffe]", "?", odd)
     assert names == [f"case {index}{kept}" for index in range(3)]
-    data = data_of(page(session))
+    data = data_of(make_page(session))
     assert [case["name"] for case in data["cases"]] == [f"case {index}{odd}" for index in range(3)]
 
 
@@ -121,7 +123,7 @@ def data_of(text: str) -> dict:
 
 
 def test_a_page_of_a_thousand_cases_holds_pictures_of_failures_only() -> None:
-    text = page(many(1000))
+    text = make_page(many(1000))
     data = data_of(text)
     checks = [check for case in data["cases"] for check in case["checks"]]
     assert len(data["cases"]) == 1000 and sum("views" in check for check in checks) == 10

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation.errors import DocumentError, HalationError, UsageError
-from halation.regression.selection import parse
+from halation.regression.selection import parse_expression
 from halation.regression.suites import find_suites, load_suite
 from hypothesis import given
 from hypothesis import strategies as st
@@ -132,7 +132,7 @@ def meant(tree: object, name: str) -> bool:
 
 @given(TREES)
 def test_selection_is_logic(tree: object) -> None:
-    chooses = parse(spelled(tree))
+    chooses = parse_expression(spelled(tree))
     for letters in itertools.product(("", "a"), ("", "b"), ("", "c")):
         assert chooses("".join(letters)) == meant(tree, "".join(letters))
 
@@ -147,13 +147,13 @@ def test_selection_is_logic(tree: object) -> None:
     ],
 )
 def test_and_binds_tighter_than_or(text: str, name: str, expected: bool) -> None:
-    assert parse(text)(name) is expected
+    assert parse_expression(text)(name) is expected
 
 
 @given(st.text(alphabet="ab ()andort", max_size=14))
 def test_any_expression_is_understood_or_refused(text: str) -> None:
     try:
-        assert parse(text)("ab") in (True, False)
+        assert parse_expression(text)("ab") in (True, False)
     except UsageError as fault:
         assert "parentheses" in str(fault)
 

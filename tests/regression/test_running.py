@@ -14,11 +14,11 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.media.pictures.stored import StoredPart
-from halation.regression import crew
+from halation.regression import parallel as crew
 from halation.regression.cases import Case
-from halation.regression.judging import unusable
+from halation.regression.comparison import find_unusable
 from halation.renderer import Renderer
-from halation.renderer.pinned import pinned
+from halation.renderer.pinned_device import pin_driver
 from msgspec import structs
 
 ALL = """
@@ -255,8 +255,8 @@ def test_what_is_not_finite_is_counted(value: float, letters: tuple[str, ...], c
     case = Case(Path("a.suite.toml"), "a", Path("graph.json"))
     assert parts[""].unusable == count
     said = f'{count} pixels are not finite; allow = ["nonfinite"] if they may be'
-    assert unusable(case, parts) == (said if count else "")
-    assert unusable(replace(case, allow=("nonfinite",)), parts) == ""
+    assert find_unusable(case, parts) == (said if count else "")
+    assert find_unusable(replace(case, allow=("nonfinite",)), parts) == ""
 
 
 def test_a_golden_that_the_graph_reads_is_left_alone(cli, suite, tmp_path) -> None:
@@ -312,7 +312,7 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
 
 def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
     """Where no software rasterizer is, the tests go on with what there is."""
-    real = crew._renderer(True).device
+    real = crew._open_renderer(True).device
     device = structs.replace(real, target=structs.replace(real.target, renderer="GPU 9000", software=False))
     monkeypatch.setattr(crew, "_renderer", lambda _: Renderer(device, budget=0))
     suite(ALL)
@@ -329,7 +329,7 @@ def test_pinning_leaves_the_environment_as_it_was(monkeypatch) -> None:
     monkeypatch.setenv("LP_DEBUG", "tgsi")
     monkeypatch.delenv("LIBGL_ALWAYS_SOFTWARE", raising=False)
     before = dict(os.environ)
-    with pytest.raises(ZeroDivisionError), pinned():
+    with pytest.raises(ZeroDivisionError), pin_driver():
         assert os.environ["GALLIUM_DRIVER"] == "llvmpipe" and "LP_DEBUG" not in os.environ
         raise ZeroDivisionError
     assert dict(os.environ) == before

@@ -8,7 +8,7 @@ import pytest
 from halation.compiler.devices import FormTimings
 from halation.errors import ShaderError
 from halation.renderer import calibration, open_device
-from halation.renderer.calibration import load_or_measure, measured
+from halation.renderer.calibration import load_or_measure, measure_forms
 from halation.renderer.execution.runner import Runner
 from halation.resources.sandbox import fenced
 from msgspec.structs import replace
@@ -37,7 +37,7 @@ def counted(monkeypatch):
 
 
 def test_both_forms_run_and_take_time(device):
-    found = measured(device, SMALL, 2)
+    found = measure_forms(device, SMALL, 2)
     assert found.is_usable and 0.0 < found.compute < 60.0 and 0.0 < found.fragment < 60.0
 
 
@@ -50,7 +50,7 @@ def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
         return run(self, plan)
 
     monkeypatch.setattr(Runner, "measure", refusing)
-    found = measured(device, SMALL, 1)
+    found = measure_forms(device, SMALL, 1)
     assert found.compute == float("inf") and found.is_usable
 
 

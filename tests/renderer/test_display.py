@@ -11,7 +11,7 @@ import pytest
 from device_textures import read_texture, upload_texture
 from halation.color.transforms import displays, to_display, views
 from halation.errors import UsageError
-from halation.renderer import DeviceTexture, Display, Look, Renderer, fitted, to_panel, to_picture
+from halation.renderer import DeviceTexture, Display, Look, Renderer, fit_zoom, to_panel, to_picture
 from halation.renderer.opengl.device import OpenGLDevice
 
 NUMBERS = itertools.count()
@@ -203,7 +203,7 @@ def test_points_of_panel_and_picture():
     there = to_picture(look, panel, picture, (40.0, 20.0))
     assert to_panel(look, panel, picture, there) == pytest.approx((40.0, 20.0))
     assert to_picture(Look(), (10, 8), (10, 8), (3.0, 2.0)) == (3.0, 2.0)
-    assert fitted((100, 80), (50, 20)) == 2.0
+    assert fit_zoom((100, 80), (50, 20)) == 2.0
 
 
 def test_the_pixel_under_a_point_is_the_one_that_is_named(result, shown):

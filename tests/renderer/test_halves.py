@@ -10,7 +10,7 @@ from halation import document
 from halation.graph import Graph
 from halation.media.pictures.finite import to_half
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.jobs.destinations import Writing, destinations, halves
+from halation.renderer.jobs.destinations import OutputSettings, plan_destinations, select_half_outputs
 from halation.renderer.jobs.job import run_job
 
 ONLY = frozenset({"image"})
@@ -92,7 +92,7 @@ def test_files_are_the_same_to_the_byte(engine, tmp_path, monkeypatch, code):
     folders = [tmp_path / "half", tmp_path / "float"]
     for folder in folders:
         folder.mkdir()
-        run_job(engine, through(code), given, Writing((("", folder / "out.exr"),), compression="none"))
+        run_job(engine, through(code), given, OutputSettings((("", folder / "out.exr"),), compression="none"))
         monkeypatch.setattr("halation.renderer.jobs.job.halves", lambda *_: frozenset())
     one, other = (_pixels(folder / "out.exr") for folder in folders)
     assert one.dtype == np.float16 and one.tobytes() == other.tobytes()
@@ -159,9 +159,9 @@ def test_results_of_both_kinds_are_not_mixed_up(engine):
 )
 def test_only_what_no_file_wants_more_of(tmp_path, names, more, expected):
     graph, wanted = through(), RenderRequest()
-    writing = Writing([("image", tmp_path / name) for name in names], **more)
-    files = destinations(graph, wanted, writing, (1,))[1]
-    assert halves(files, writing) == (ONLY if expected else frozenset())
+    writing = OutputSettings([("image", tmp_path / name) for name in names], **more)
+    files = plan_destinations(graph, wanted, writing, (1,))[1]
+    assert select_half_outputs(files, writing) == (ONLY if expected else frozenset())
 
 
 def test_data_is_never_rounded(tmp_path):
@@ -170,6 +170,6 @@ def test_data_is_never_rounded(tmp_path):
         '"outputs.depth": "inputs.depth", "outputs.image": "inputs.image"',
         '"depth": {"type": "Field"}, "image": {"type": "Image"}',
     )
-    writing = Writing((("", tmp_path / "o.exr"),))
-    assert halves(destinations(graph, RenderRequest(), writing, (1,))[1], writing) == ONLY
+    writing = OutputSettings((("", tmp_path / "o.exr"),))
+    assert select_half_outputs(plan_destinations(graph, RenderRequest(), writing, (1,))[1], writing) == ONLY
     assert not list(tmp_path.iterdir())

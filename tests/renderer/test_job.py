@@ -16,10 +16,10 @@ from halation.nodes import catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.execution.arrays import Arrays
-from halation.renderer.execution.decoding import AHEAD, AHEAD_BYTES, within_reach
-from halation.renderer.jobs.behind import BEHIND, BEHIND_BYTES, Behind
-from halation.renderer.jobs.job import Writing, run_job
+from halation.renderer.execution.array_pool import ArrayPool
+from halation.renderer.execution.decoding import LOOKAHEAD, LOOKAHEAD_BYTES, limit_lookahead
+from halation.renderer.jobs.job import OutputSettings, run_job
+from halation.renderer.jobs.write_queue import MAX_WAITING, MAX_WAITING_BYTES, WriteQueue
 
 FRAMES = range(1, 13)
 PATIENCE = 20.0
@@ -47,8 +47,8 @@ def engine():
     made.close()
 
 
-def writing(folder: Path) -> Writing:
-    return Writing((("", folder / "out.##.exr"),), precision="float")
+def writing(folder: Path) -> OutputSettings:
+    return OutputSettings((("", folder / "out.##.exr"),), precision="float")
 
 
 def values(folder: Path, frames=FRAMES) -> list[float]:
@@ -102,7 +102,7 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
     engine.runner._load = loading
     monkeypatch.setattr(media, "write_picture", counted)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES), progress=Ends())
-    assert max(most_read + most_waiting) <= AHEAD + BEHIND + 2 and len(written) == len(FRAMES)
+    assert max(most_read + most_waiting) <= LOOKAHEAD + MAX_WAITING + 2 and len(written) == len(FRAMES)
     assert engine.runner.textures.allocated <= engine.runner.textures.budget
 
 
@@ -126,7 +126,7 @@ def test_a_frame_that_cannot_be_written_ends_the_job(engine, graph, shot, monkey
     with pytest.raises(OSError, match="disk full"):
         run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert values(shot, range(1, 4)) == [2.0, 4.0, 6.0]
-    assert len(list(shot.glob("out.*.exr"))) <= 3 + BEHIND + 1
+    assert len(list(shot.glob("out.*.exr"))) <= 3 + MAX_WAITING + 1
 
 
 def test_the_report_says_what_became_of_every_frame(engine, graph, shot):
@@ -200,7 +200,7 @@ def test_a_still_sequence_is_computed_once(graph, shot):
 
 def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
     """A handful for all frames, and none while it is still to be written."""
-    taken, lent, take, write = dict[int, np.ndarray](), set[int](), Arrays.take, media.write_picture
+    taken, lent, take, write = dict[int, np.ndarray](), set[int](), ArrayPool.take, media.write_picture
 
     def counted(self, shape, dtype):
         array = take(self, shape, dtype)
@@ -214,14 +214,14 @@ def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
         write(path, layers, **options)
         lent.difference_update(id(array if array.base is None else array.base) for array in layers.values())
 
-    monkeypatch.setattr(Arrays, "take", counted)
+    monkeypatch.setattr(ArrayPool, "take", counted)
     monkeypatch.setattr(media, "write_picture", slow)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
-    assert len(taken) <= BEHIND + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
+    assert len(taken) <= MAX_WAITING + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
 
 
 def test_arrays_of_other_sizes_are_not_mixed_up():
-    arrays = Arrays()
+    arrays = ArrayPool()
     one, other = arrays.take((2, 3, 4), np.float32), arrays.take((2, 3, 4), np.float16)
     arrays.give([one[..., :3], other])
     assert arrays.take((2, 3, 4), np.float16) is other and arrays.take((3, 2, 4), np.float32) is not one
@@ -233,23 +233,25 @@ def large(nbytes: int) -> np.ndarray:
     return np.broadcast_to(np.uint8(0), (nbytes,))
 
 
-@pytest.mark.parametrize(("nbytes", "most"), [(16, BEHIND), (BEHIND_BYTES // 2 + 1, 1), (2 * BEHIND_BYTES, 1)])
+@pytest.mark.parametrize(
+    ("nbytes", "most"), [(16, MAX_WAITING), (MAX_WAITING_BYTES // 2 + 1, 1), (2 * MAX_WAITING_BYTES, 1)]
+)
 def test_frames_wait_by_number_and_by_bytes(nbytes, most):
-    behind, gate = Behind[int](), threading.Event()
+    behind, gate = WriteQueue[int](), threading.Event()
     try:
         for number in range(most):
-            behind.put(lambda _, number=number: (gate.wait(PATIENCE), number)[1], {"image": large(nbytes)})
-            assert list(behind.written()) == []
-        behind.put(lambda _: -1, {"image": large(nbytes)})
+            behind.submit(lambda _, number=number: (gate.wait(PATIENCE), number)[1], {"image": large(nbytes)})
+            assert list(behind.collect_finished()) == []
+        behind.submit(lambda _: -1, {"image": large(nbytes)})
         gate.set()
-        assert [*behind.written(), *behind.rest()] == [*range(most), -1]
+        assert [*behind.collect_finished(), *behind.collect_all()] == [*range(most), -1]
     finally:
         behind.close()
 
 
-@pytest.mark.parametrize(("side", "most"), [(64, AHEAD), (4096, 1), (3000, 1), (2500, 2)])
+@pytest.mark.parametrize(("side", "most"), [(64, LOOKAHEAD), (4096, 1), (3000, 1), (2500, 2)])
 def test_pictures_are_read_ahead_by_number_and_by_bytes(side, most):
     surface = Surface("", "", (side, side), 4, "f4", 0, 0, 1)
     wanted = [(number, surface) for number in range(9)]
-    assert [number for number, _ in within_reach(wanted)] == list(range(most))
-    assert most == 1 or most * surface.nbytes <= AHEAD_BYTES
+    assert [number for number, _ in limit_lookahead(wanted)] == list(range(most))
+    assert most == 1 or most * surface.nbytes <= LOOKAHEAD_BYTES

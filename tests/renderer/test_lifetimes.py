@@ -16,7 +16,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.execution.decoding import AHEAD
+from halation.renderer.execution.decoding import LOOKAHEAD
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
 
@@ -259,7 +259,7 @@ def test_results_make_room_before_an_allocation_fails(engine, monkeypatch):
 
 
 def test_only_a_few_pictures_are_decoded_ahead(forgetful):
-    count, loaded = 8 + 2 * AHEAD, []
+    count, loaded = 8 + 2 * LOOKAHEAD, []
     load = forgetful.runner._load
 
     def watched(picture):
@@ -274,7 +274,7 @@ def test_only_a_few_pictures_are_decoded_ahead(forgetful):
     next(steps)
     taken = len(plan.passes[0].textures)
     time.sleep(0.1)
-    assert len(loaded) <= taken + AHEAD < count
+    assert len(loaded) <= taken + LOOKAHEAD < count
     for _ in steps:
         pass
     assert sorted(loaded) == sorted(pictures)

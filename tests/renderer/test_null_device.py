@@ -87,7 +87,7 @@ def test_frames_in_order_run_each_plan_once(renderer: Renderer, device: NullDevi
     first = frames.frames[0]
     for frame in range(first, first + 3):
         before = len(device.commands)
-        assert not frames.lead(frame), "what the frame before remembered is on the device"
+        assert not frames.lead_frames(frame), "what the frame before remembered is on the device"
         frames.render(frame)
         assert len(device.commands) - before <= len(frames.plan(frame).passes)
     frames.close()
@@ -98,7 +98,7 @@ def test_a_frame_alone_is_led_up_to(renderer: Renderer, device: NullDevice):
     graph = document.load(PRESETS["light_painting"])
     frames = FrameRenderer(renderer, graph, SMALL)
     first = frames.frames[0]
-    assert list(frames.lead(first + 3)) == [first, first + 1, first + 2]
+    assert list(frames.lead_frames(first + 3)) == [first, first + 1, first + 2]
     frames.render(first + 3)
     assert len(device.reads) == len(frames.plan(first + 3).outputs), "frames on the way are not read back"
     frames.close()

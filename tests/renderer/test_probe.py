@@ -12,7 +12,7 @@ from halation.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Nonfinite, Probe, Renderer, RenderRequest, first_nonfinite, open_device
+from halation.renderer import Nonfinite, Probe, Renderer, RenderRequest, find_first_nonfinite, open_device
 
 NODES = catalogue()
 IMAGE = Port("outputs", "image")
@@ -89,7 +89,7 @@ def divided() -> Graph:
 
 
 def search(renderer, graph, pictures, port=IMAGE) -> tuple[list[None], Nonfinite | None]:
-    *steps, last = first_nonfinite(renderer, graph, RenderRequest(pictures, precision="float"), port)
+    *steps, last = find_first_nonfinite(renderer, graph, RenderRequest(pictures, precision="float"), port)
     return steps, last
 
 

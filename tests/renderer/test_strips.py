@@ -11,7 +11,7 @@ from halation.graph import Graph, Input, Output, Port
 from halation.media.pictures import row_writer
 from halation.nodes import Kind, catalogue
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.jobs.job import Writing, run_job
+from halation.renderer.jobs.job import OutputSettings, run_job
 from oiio_pictures import write_with_attributes
 
 NODES = catalogue()
@@ -39,7 +39,7 @@ def written(folder: Path, picture: str, memory: int, **how) -> Path:
     """The file that a job makes of it, with so much memory."""
     renderer, file = Renderer(open_device("compute", memory), budget=0), folder / "out.exr"
     try:
-        run_job(renderer, blurred(), RenderRequest({"image": picture}), Writing([("image", file)], **how))
+        run_job(renderer, blurred(), RenderRequest({"image": picture}), OutputSettings([("image", file)], **how))
     finally:
         renderer.close()
     return file.rename(folder / f"{memory}.exr")

@@ -13,12 +13,12 @@ import pytest
 from halation.compiler import installed_library
 from halation.errors import GraphError, RenderError
 from halation.graph import Graph, Input
-from halation.renderer.jobs.job import Report
+from halation.renderer.jobs.job import JobReport
 from halation.watch import rerendering
 from halation.watch.rerendering import ContinuousRenderer
 
 FAULT = "nodes/blur/some.py, line 3: it is broken; all nodes stay as they were"
-DONE = Report((), 1, 0, 0, {})
+DONE = JobReport((), 1, 0, 0, {})
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def test_a_rendering_that_is_outdated_begins_again(turning, folder: Path) -> Non
     """The first one would never end: a change ends it, and the second one has the new graph."""
     begun: list[Graph] = []
 
-    def render(graph: Graph, progress) -> Report:
+    def render(graph: Graph, progress) -> JobReport:
         begun.append(graph)
         if len(begun) == 1:
             (folder / "graph.json").write_text("1")
@@ -122,7 +122,7 @@ def test_faults_are_turns_and_are_waited_for(turning, folder: Path) -> None:
             raise faults.pop(0)
         return Graph()
 
-    def render(graph: Graph, progress) -> Report:
+    def render(graph: Graph, progress) -> JobReport:
         if faults:
             raise faults.pop()
         return DONE

@@ -90,7 +90,7 @@ class PictureJob:
             self.planned_frames = planned
             return
         self.plan = _check_displayable(self._frame_renderer.plan(self.frame))
-        self.preroll = (-1, len(self._frame_renderer.lead(self.frame)))
+        self.preroll = (-1, len(self._frame_renderer.lead_frames(self.frame)))
         self._runs = self._frame_renderer.steps(self.frame, self.lease, self.timings)
         self._start_next_run()
 

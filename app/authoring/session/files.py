@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...document import load, loads, save
 from ...errors import UsageError
 from ...graph import Graph, Output
-from ...renderer.provenance.finding import made_by
+from ...renderer.provenance.file_finder import load_graph_of_picture
 from ..edits import folding, layout, paths
 from ..state.history import HistoryStep
 from .state import State
@@ -38,7 +38,7 @@ class Files(State):
 
     def open_made(self, path: str | Path) -> None:
         """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
-        root = made_by(Path(path), self.types)
+        root = load_graph_of_picture(Path(path), self.types)
         self._restart(root, None, root)
         self._title = Path(path).stem
 

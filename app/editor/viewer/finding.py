@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...graph import Port
-from ...renderer import Nonfinite, RenderRequest, first_nonfinite
+from ...renderer import Nonfinite, RenderRequest, find_first_nonfinite
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -68,7 +68,7 @@ class InvalidPixelSearch:
 def _search(context: ViewerContext, port: Port) -> Iterator[Nonfinite | None]:
     viewer = context.viewer
     wanted = RenderRequest(context.session.bindings, {"A": port}, scale=viewer.proxy)
-    return first_nonfinite(context.preview.renderer, context.session.root, wanted, port)
+    return find_first_nonfinite(context.preview.renderer, context.session.root, wanted, port)
 
 
 def _show(context: ViewerContext, found: Nonfinite) -> None:

@@ -39,7 +39,7 @@ class Sight:
     def of(cls, origin: Point, panel: Pixels, picture: Pixels, zoom: float, pan: Point, density: float = 1.0) -> Sight:
         """With a zoom of 0 the picture fits the panel."""
         if zoom <= 0.0:
-            zoom, pan = look.fitted(panel, picture), (0.0, 0.0)
+            zoom, pan = look.fit_zoom(panel, picture), (0.0, 0.0)
         return cls(origin, panel, picture, zoom, pan, density)
 
     @property

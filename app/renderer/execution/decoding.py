@@ -16,53 +16,53 @@ Array = np.ndarray
 Loader = Callable[[Picture], Array]
 """Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
 
-AHEAD = 4
+LOOKAHEAD = 4
 """Pictures decoded before their turn: enough to keep the threads busy, few enough to fit into memory."""
 
-AHEAD_BYTES = 2**28
+LOOKAHEAD_BYTES = 2**28
 """What they may take together; one picture may be larger."""
 
-Wanted = tuple[Upload, Surface]
+DecodeRequest = tuple[Upload, Surface]
 """What is to be decoded, and where it goes."""
 
 
-class Decoded(Struct, frozen=True):
+class DecodedPicture(Struct, frozen=True):
     """Pixels, and the seconds that it took to get them."""
 
     pixels: Array
     seconds: float
 
 
-def decode(load: Loader, picture: Picture) -> Decoded:
+def decode(load: Loader, picture: Picture) -> DecodedPicture:
     """Load a picture and say how long that took."""
     started = time.perf_counter()
     pixels = load(picture)
-    return Decoded(pixels, time.perf_counter() - started)
+    return DecodedPicture(pixels, time.perf_counter() - started)
 
 
-def within_reach(wanted: Iterable[Wanted]) -> Iterator[Wanted]:
+def limit_lookahead(wanted: Iterable[DecodeRequest]) -> Iterator[DecodeRequest]:
     """As many of the first ones as may be decoded before their turn."""
     nbytes = 0
     for number, (upload, surface) in enumerate(wanted):
         nbytes += surface.nbytes
-        if number and (number >= AHEAD or nbytes > AHEAD_BYTES):
+        if number and (number >= LOOKAHEAD or nbytes > LOOKAHEAD_BYTES):
             return
         yield upload, surface
 
 
-class Decoding:
+class DecodeQueue:
     """Decodes pictures in the order in which they are wanted, a few ahead of what is taken.
 
     What was begun and is not wanted any more stays in `begun` for the next one, which may well want it.
     """
 
     def __init__(
-        self, threads: Executor, load: Loader, wanted: Iterable[Wanted], begun: dict[str, Future[Decoded]]
+        self, threads: Executor, load: Loader, wanted: Iterable[DecodeRequest], begun: dict[str, Future[DecodedPicture]]
     ) -> None:
         self._threads, self._load, self._begun = threads, load, begun
         self._uploads = {upload.surface: (upload, surface) for upload, surface in wanted}
-        self._started: dict[int, Future[Decoded]] = {}
-        self._go_ahead()
+        self._started: dict[int, Future[DecodedPicture]] = {}
+        self._start_next()
 
     def __contains__(self, surface: int) -> bool:
         return surface in self._uploads
@@ -75,12 +75,12 @@ class Decoding:
         """True if `take` would not wait."""
         return self._start(surface).done()
 
-    def take(self, surface: int) -> Decoded:
+    def take(self, surface: int) -> DecodedPicture:
         """The pixels for a surface, once. Raises what the loader raised."""
         future = self._start(surface)
         del self._uploads[surface], self._started[surface]
         found = future.result()
-        self._go_ahead()
+        self._start_next()
         return found
 
     def skip(self, surface: int) -> None:
@@ -89,7 +89,7 @@ class Decoding:
         future = self._started.pop(surface, None)
         if future is not None:
             future.cancel()
-        self._go_ahead()
+        self._start_next()
 
     def cancel(self) -> None:
         """Nothing more is wanted."""
@@ -99,18 +99,18 @@ class Decoding:
             if not future.cancel() and not (future.done() and future.exception())
         }
         self._begun.update(left)
-        while len(self._begun) > AHEAD:
+        while len(self._begun) > LOOKAHEAD:
             self._begun.pop(next(iter(self._begun))).cancel()
         self._uploads.clear()
         self._started.clear()
 
-    def _start(self, number: int) -> Future[Decoded]:
+    def _start(self, number: int) -> Future[DecodedPicture]:
         if number not in self._started:
             upload, surface = self._uploads[number]
             begun = self._begun.pop(surface.key, None)
             self._started[number] = begun or self._threads.submit(decode, self._load, upload.picture)
         return self._started[number]
 
-    def _go_ahead(self) -> None:
-        for upload, _ in within_reach(self._uploads.values()):
+    def _start_next(self) -> None:
+        for upload, _ in limit_lookahead(self._uploads.values()):
             self._start(upload.surface)

@@ -13,9 +13,9 @@ from ...errors import InputError, RenderError
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
-from .arrays import Arrays
+from .array_pool import ArrayPool
 from .costs import Costs
-from .decoding import Array, Decoded
+from .decoding import Array, DecodedPicture
 from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
@@ -61,7 +61,7 @@ class Executor:
         for resources in (self.textures, self.programs, self._tables, self._meshes, self._weights):
             resources.clear()
 
-    def upload(self, plan: Plan, upload: Upload, decoded: Decoded, lease: Lease) -> None:
+    def upload(self, plan: Plan, upload: Upload, decoded: DecodedPicture, lease: Lease) -> None:
         """Write decoded pixels, or the part of them that the plan reads, into their surface.
 
         Raises InputError if their size is not the one that was planned for.
@@ -183,7 +183,7 @@ class Executor:
         assert texture is not None, f"surface {number} is gone before its last reader"
         return texture
 
-    def download(self, plan: Plan, number: int, arrays: Arrays) -> Array:
+    def download(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:
         """The pixels of a surface as [height, width, channels], in one of the `arrays`."""
         surface = plan.surfaces[number]
         width, height = surface.size

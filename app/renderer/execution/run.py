@@ -8,8 +8,8 @@ from types import TracebackType
 
 from ...compiler import Pass, Plan
 from ...errors import HalationError
-from .decoding import Array, Decoding
-from .decoding import Wanted as Awaited
+from .decoding import Array, DecodeQueue
+from .decoding import DecodeRequest as Awaited
 from .executor import Executor
 from .texture_pool import Lease
 
@@ -19,7 +19,7 @@ Timings = list[tuple[Pass, float]]
 Rows = Callable[[str, int, Array], None]
 """Takes rows of an output: its name, the first row, and [rows, width, channels], which is used again afterwards."""
 
-Decode = Callable[[Iterable[Awaited]], Decoding]
+Decode = Callable[[Iterable[Awaited]], DecodeQueue]
 
 
 class Run(ABC):
@@ -86,10 +86,10 @@ class WholeRun(Run):
         self._executor, self._kept, self._timings = executor, kept, timings
         textures = executor.textures
         self._wanted = tuple(dict.fromkeys(wanted))
-        self._needed = needed_passes(plan, self._wanted, textures)
+        self._needed = find_needed_passes(plan, self._wanted, textures)
         executor.counters.skipped += len(plan.passes) - len(self._needed)
         self._readers = _count_readers(plan, self._needed, self._wanted)
-        self._decoding = decode(needed_uploads(plan, self._needed, self._wanted, textures))
+        self._decoding = decode(find_needed_uploads(plan, self._needed, self._wanted, textures))
         self._lease = Lease(textures)
         for key in self._readers:
             if key in textures:
@@ -173,7 +173,7 @@ class WholeRun(Run):
                 raise
 
 
-def needed_passes(plan: Plan, wanted: Iterable[int], given: Container[str]) -> list[int]:
+def find_needed_passes(plan: Plan, wanted: Iterable[int], given: Container[str]) -> list[int]:
     """The passes that must run for the surfaces `wanted`, since these keys are not `given`; in order."""
     makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
     passes: set[int] = set()
@@ -197,25 +197,25 @@ def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> di
     return found
 
 
-def needed_uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], given: Container[str]) -> list[Awaited]:
+def find_needed_uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], given: Container[str]) -> list[Awaited]:
     """What must be decoded, in the order in which passes want it, since these keys are not `given`."""
     uploads = {upload.surface: (upload, plan.surfaces[upload.surface]) for upload in plan.uploads}
     return [
         uploads[number]
-        for number in _reads(plan, needed, wanted)
+        for number in _collect_reads(plan, needed, wanted)
         if number in uploads and uploads[number][1].key not in given
     ]
 
 
-def carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+def find_shared_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
     """The surfaces of a plan that the next one would read, so that it need not make them again, or has as outputs."""
     known = {surface.key: number for number, surface in enumerate(plan.surfaces)}
     wanted = tuple(dict.fromkeys((*following.outputs.values(), *following.remembered)))
-    needed = needed_passes(following, wanted, known)
-    keys = (following.surfaces[number].key for number in _reads(following, needed, wanted))
+    needed = find_needed_passes(following, wanted, known)
+    keys = (following.surfaces[number].key for number in _collect_reads(following, needed, wanted))
     return tuple(known[key] for key in keys if key in known)
 
 
-def _reads(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[int, None]:
+def _collect_reads(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[int, None]:
     """The surfaces that passes read, and those that are `wanted`."""
     return dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))

@@ -12,16 +12,16 @@ from msgspec import Struct
 from ...compiler import Plan
 from ...errors import DeviceError, UsageError
 from ..device import Device
-from .arrays import Arrays
-from .decoding import Array, Decoded, Decoding, Loader, decode, within_reach
-from .decoding import Wanted as Awaited
+from .array_pool import ArrayPool
+from .decoding import Array, DecodedPicture, DecodeQueue, Loader, decode, limit_lookahead
+from .decoding import DecodeRequest as Awaited
 from .executor import Executor
-from .run import Run, Timings, WholeRun, needed_passes, needed_uploads
+from .run import Run, Timings, WholeRun, find_needed_passes, find_needed_uploads
 from .texture_pool import Lease, PooledTexture
 from .tiles import TiledRun
 
 
-class Outputs(Struct, frozen=True, eq=False, weakref=True):
+class TiledOutputs(Struct, frozen=True, eq=False, weakref=True):
     """Pixels by name that are not on the device."""
 
     pixels: dict[str, Array]
@@ -35,8 +35,8 @@ class Runner:
         self._executor = Executor(device, budget)
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
-        self._begun: dict[str, Future[Decoded]] = {}
-        self._whole: WeakValueDictionary[tuple[str, ...], Outputs] = WeakValueDictionary()
+        self._begun: dict[str, Future[DecodedPicture]] = {}
+        self._whole: WeakValueDictionary[tuple[str, ...], TiledOutputs] = WeakValueDictionary()
         """What was made tile by tile, by the keys of the outputs, as long as somebody leases it."""
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
@@ -87,19 +87,19 @@ class Runner:
             return
         there = {one.key for one in plan.surfaces if one.key in self.textures or one.key in given}
         surfaces = tuple(plan.outputs.values())
-        passes = needed_passes(plan, surfaces, there)
-        for upload, surface in within_reach(needed_uploads(plan, passes, surfaces, there)):
+        passes = find_needed_passes(plan, surfaces, there)
+        for upload, surface in limit_lookahead(find_needed_uploads(plan, passes, surfaces, there)):
             if surface.key not in self._begun:
                 self._begun[surface.key] = self._threads.submit(decode, self._load, upload.picture)
 
-    def download(self, plan: Plan, arrays: Arrays | None = None) -> dict[str, Array]:
+    def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
         """The outputs of a plan that has run, while they are leased, as [height, width, channels].
 
         They are float16 where the plan keeps halves. `arrays` lend what they are written to, to be given back.
         """
         if plan.tiling is not None:
-            return dict(self._whole[_known(plan)].pixels)
-        arrays = arrays or Arrays()
+            return dict(self._whole[_list_output_keys(plan)].pixels)
+        arrays = arrays or ArrayPool()
         with self.device.make_current():
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
@@ -126,13 +126,13 @@ class Runner:
 
     def _keep(self, plan: Plan, kept: Lease, pixels: dict[str, Array]) -> None:
         """Have a lease hold what was made tile by tile."""
-        outputs = self._whole[_known(plan)] = Outputs(pixels)
+        outputs = self._whole[_list_output_keys(plan)] = TiledOutputs(pixels)
         kept.hold(outputs)
 
-    def _decode(self, wanted: Iterable[Awaited]) -> Decoding:
-        return Decoding(self._threads, self._load, wanted, self._begun)
+    def _decode(self, wanted: Iterable[Awaited]) -> DecodeQueue:
+        return DecodeQueue(self._threads, self._load, wanted, self._begun)
 
 
-def _known(plan: Plan) -> tuple[str, ...]:
+def _list_output_keys(plan: Plan) -> tuple[str, ...]:
     """The keys of the outputs."""
     return tuple(plan.surfaces[number].key for number in plan.outputs.values())

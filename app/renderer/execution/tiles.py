@@ -16,13 +16,13 @@ from ...compiler.ir import LoweredProgram
 from ...errors import DeviceError, HalationError
 from ...resources.machine import machine_memory
 from ...resources.picture import Picture
-from .arrays import Arrays
+from .array_pool import ArrayPool
 from .decoding import Array, Loader
-from .run import Run, carried
+from .run import Run, find_shared_surfaces
 from .texture_pool import Lease
 
 
-class Runs(Protocol):
+class PlanRunner(Protocol):
     """Runs plans that fit: see `Runner`."""
 
     def release_idle(self) -> None:
@@ -33,7 +33,7 @@ class Runs(Protocol):
         """Begin to run a plan."""
         ...
 
-    def download(self, plan: Plan, arrays: Arrays | None = None) -> dict[str, Array]:
+    def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
         """The outputs of a plan that has run, in `arrays` that are lent."""
         ...
 
@@ -48,12 +48,14 @@ class TiledRun(Run):
     What is read anywhere is put together in memory before; so are the outputs, unless their rows are taken.
     """
 
-    def __init__(self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]) -> None:
+    def __init__(
+        self, runner: PlanRunner, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]
+    ) -> None:
         assert plan.tiling is not None
         super().__init__(plan)
         self._tiling = plan.tiling
         self._runner, self._finished = runner, finished
-        self._pictures, self._arrays = _Pictures(load, by_rows=plan.tiling.target.memory > 0), Arrays()
+        self._pictures, self._arrays = _PictureCache(load, by_rows=plan.tiling.target.memory > 0), ArrayPool()
         self._passes = self._run()
 
     @property
@@ -86,18 +88,20 @@ class TiledRun(Run):
         _check_memory(tiling.program, taken)
         made: dict[int, StoredResult] = {}
         for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
-            arrays = yield from self._stage(stage, made)
-            made |= self._held(stage, arrays)
-            self._forget(made, tiling.stages[number + 1 :])
+            arrays = yield from self._run_stage(stage, made)
+            made |= self._hold_outputs(stage, arrays)
+            self._drop_unread(made, tiling.stages[number + 1 :])
         outputs = {
-            name: _pixels(made[ref.op], ref.output) for name, ref in tiling.program.outputs.items() if ref.op in made
+            name: _get_pixels(made[ref.op], ref.output)
+            for name, ref in tiling.program.outputs.items()
+            if ref.op in made
         }
         for number, stage in enumerate(tiling.last, len(tiling.before)):
-            outputs |= yield from self._stage(stage, made)
-            self._forget(made, tiling.stages[number + 1 :])
+            outputs |= yield from self._run_stage(stage, made)
+            self._drop_unread(made, tiling.stages[number + 1 :])
         self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
 
-    def _stage(self, stage: TileStage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
+    def _run_stage(self, stage: TileStage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
         """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
         size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
         taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
@@ -108,10 +112,10 @@ class TiledRun(Run):
                 # Each tile keeps what the next one would make again.
                 last = number + 1 == len(stage.tiles)
                 following = None if last else plan_tile(self._tiling, stage, number + 1, made)
-                shared = carried(plan, following) if following else ()
+                shared = find_shared_surfaces(plan, following) if following else ()
                 kept = self._runner.lease()
                 try:
-                    there = self._there(plan)
+                    there = self._load_pictures(plan)
                     with self._runner.steps(there, kept, (*plan.outputs.values(), *shared)) as run:
                         before.close()
                         yield from run
@@ -125,7 +129,7 @@ class TiledRun(Run):
                         # Others may read more of an output than the tile.
                         window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
                         own = Region(tile.x - window.x, tile.y - window.y, *tile.size)
-                        whole[name][_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[_slices(own)]
+                        whole[name][_to_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[_to_slices(own)]
                         if name in taken and self.rows and tile.across[1] == size[0]:
                             self.rows(name, first, whole.pop(name))
                     self._arrays.give(made_here.values())
@@ -133,19 +137,19 @@ class TiledRun(Run):
                         if surface not in shared:
                             kept.give(plan.surfaces[surface].key)
                 finally:
-                    if following and _kinds(following) != _kinds(plan):
+                    if following and _collect_texture_kinds(following) != _collect_texture_kinds(plan):
                         self._runner.release_idle()  # else textures of other sizes would wait for their next use
                     before, plan = kept, following or plan
         finally:
             before.close()
         return whole
 
-    def _there(self, plan: Plan) -> Plan:
+    def _load_pictures(self, plan: Plan) -> Plan:
         """The same plan with the pixels that it reads."""
         found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
         return replace(plan, uploads=found)
 
-    def _held(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
+    def _hold_outputs(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
         """What a stage made, in place of the operations that would make it again."""
         program, keys = self._tiling.program, self._tiling.keys
         found: dict[int, StoredResult] = {}
@@ -157,13 +161,13 @@ class TiledRun(Run):
             found[index] = StoredResult(
                 op.shapes,
                 op.owner,
-                tuple(None if array is None else _picture(op.owner, array) for array in pixels),
+                tuple(None if array is None else _wrap_pixels(op.owner, array) for array in pixels),
                 tuple(array is not None and array.dtype == np.float16 for array in pixels),
                 tuple(keys.get(ref, "") for ref in refs),
             )
         return found
 
-    def _forget(self, made: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
+    def _drop_unread(self, made: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
         """Let go of what no later stage reads."""
         read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
         read |= {ref.op for ref in self._tiling.program.outputs.values()}
@@ -173,7 +177,7 @@ class TiledRun(Run):
         self._pictures.keep({picture for op in ops if (picture := op.find_upload(0))})
 
 
-class _Pictures:
+class _PictureCache:
     """The pixels of files, each decoded once; or `by_rows`, the last rows that were read of those that can be."""
 
     def __init__(self, load: Loader, *, by_rows: bool) -> None:
@@ -220,20 +224,20 @@ def _check_memory(program: LoweredProgram, taken: Set[str]) -> None:
         )
 
 
-def _picture(owner: str, pixels: Array) -> Picture:
+def _wrap_pixels(owner: str, pixels: Array) -> Picture:
     return Picture(owner, "", Kind.VECTOR, pixels.shape[2], in_memory=True, pixels=pixels)
 
 
-def _pixels(held: StoredResult, output: int) -> Array:
+def _get_pixels(held: StoredResult, output: int) -> Array:
     picture = held.pictures[output]
     assert picture is not None and isinstance(picture.pixels, np.ndarray)
     return picture.pixels
 
 
-def _kinds(plan: Plan) -> set[tuple[Size, str]]:
+def _collect_texture_kinds(plan: Plan) -> set[tuple[Size, str]]:
     """The sizes and formats of textures."""
     return {(surface.size, surface.texel) for surface in plan.surfaces}
 
 
-def _slices(region: Region) -> tuple[slice, slice]:
+def _to_slices(region: Region) -> tuple[slice, slice]:
     return slice(*region.down), slice(*region.across)

@@ -20,7 +20,7 @@ from ...resources.picture import Picture
 from ..engine import RenderRequest
 
 
-class Writing(Struct, frozen=True):
+class OutputSettings(Struct, frozen=True):
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
 
     Without a `view`, outputs are shown as they ask for themselves. `display`, `look` and `space` are those of
@@ -57,26 +57,26 @@ class Destination(Struct, frozen=True):
         return self.encoding.view
 
 
-def destinations(
-    graph: Graph, wanted: RenderRequest, writing: Writing, frames: Sequence[int]
+def plan_destinations(
+    graph: Graph, wanted: RenderRequest, writing: OutputSettings, frames: Sequence[int]
 ) -> dict[int, tuple[Destination, ...]]:
     """The files of every frame; an EXR may be named for several outputs.
 
     Raises UsageError, also where several frames would go into one file.
     """
-    files = _files(graph, wanted, writing)
+    files = _group_outputs(graph, wanted, writing)
     for file in files:
         check_numbered(str(file.path), frames)
-    return {frame: tuple(replace(file, path=_at(file.path, frame)) for file in files) for frame in frames}
+    return {frame: tuple(replace(file, path=_name_at_frame(file.path, frame)) for file in files) for frame in frames}
 
 
-def _at(path: Path, frame: int) -> Path:
+def _name_at_frame(path: Path, frame: int) -> Path:
     """The name that a file has at a frame."""
     pattern = Pattern.parse(str(path))
     return path if pattern is None else Path(pattern.name(frame))
 
 
-def _files(graph: Graph, wanted: RenderRequest, writing: Writing) -> tuple[Destination, ...]:
+def _group_outputs(graph: Graph, wanted: RenderRequest, writing: OutputSettings) -> tuple[Destination, ...]:
     """What is to be written, by the names that were given."""
     names = tuple(wanted.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
@@ -95,10 +95,12 @@ def _files(graph: Graph, wanted: RenderRequest, writing: Writing) -> tuple[Desti
         if same in files and not (layered and name and name not in files[same]):
             raise UsageError(f"-o {path}: this file is given twice; give every output a file of its own")
         files[same] = (*files.get(same, ()), *((name,) if name else names))
-    return tuple(_destination(graph, wanted, writing, path, files[path]) for path in files)
+    return tuple(_describe_destination(graph, wanted, writing, path, files[path]) for path in files)
 
 
-def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: Writing) -> None:
+def check_destinations(
+    found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: OutputSettings
+) -> None:
     """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
 
     `sources` are pictures by the input or node that reads them.
@@ -114,7 +116,7 @@ def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Pictur
         media.check_destination(file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding)
 
 
-def halves(files: Sequence[Destination], writing: Writing) -> frozenset[str]:
+def select_half_outputs(files: Sequence[Destination], writing: OutputSettings) -> frozenset[str]:
     """The outputs of which only half floats are kept, as they are: no file wants more of them."""
     found, rest = set[str](), set[str]()
     for file in files:
@@ -126,8 +128,8 @@ def halves(files: Sequence[Destination], writing: Writing) -> frozenset[str]:
     return frozenset(found - rest)
 
 
-def _destination(
-    graph: Graph, wanted: RenderRequest, writing: Writing, path: Path, names: Sequence[str]
+def _describe_destination(
+    graph: Graph, wanted: RenderRequest, writing: OutputSettings, path: Path, names: Sequence[str]
 ) -> Destination:
     layers: dict[str, str] = {}
     kinds: dict[str, Kind] = {}
@@ -138,17 +140,17 @@ def _destination(
                 f"{path}: the outputs '{layers[layer]}' and '{name}' have the same layer '{layer}'; write them to "
                 "several files"
             )
-        layers[layer], kinds[layer] = name, _kind(graph, _port(wanted, name))
-    first = _port(wanted, names[0]) if names else Port("", "")
+        layers[layer], kinds[layer] = name, _find_kind(graph, _find_port(wanted, name))
+    first = _find_port(wanted, names[0]) if names else Port("", "")
     asked = graph.outputs[first.socket].view if first.node == OUTPUTS and not writing.space else ""
     encoding = Encoding(writing.view or asked, writing.display, writing.look, writing.space, color_settings(graph))
     return Destination(path, layers, kinds, encoding)
 
 
-def _port(wanted: RenderRequest, name: str) -> Port:
+def _find_port(wanted: RenderRequest, name: str) -> Port:
     return wanted.targets.get(name, Port(OUTPUTS, name))
 
 
-def _kind(graph: Graph, port: Port) -> Kind:
+def _find_kind(graph: Graph, port: Port) -> Kind:
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     return socket.kind if isinstance(socket, Socket) else Kind.IMAGE

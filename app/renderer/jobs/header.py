@@ -18,28 +18,28 @@ from ...graph import Graph
 from ...graph.paths import inlined
 from ...version import VERSION
 from ..engine import RenderRequest
-from .destinations import Destination, Writing
-from .sources import Hashes, Source, said
+from .destinations import Destination, OutputSettings
+from .source_files import FileHashes, SourceFile, describe_source
 
 PREFIX = "halation:"
 _KEY = "halation:key"
 
 
-def whole(graph: Graph) -> str:
+def dump_whole_graph(graph: Graph) -> str:
     """A graph and its groups as one text."""
     return document.dumps(inlined(graph))
 
 
-def header(
+def make_header(
     graph: str,
     target: Target,
     wanted: RenderRequest,
     frames: tuple[int, int],
-    writing: Writing,
+    writing: OutputSettings,
     file: Destination,
     plan: Plan,
-    sources: Sequence[Source],
-    hashes: Hashes,
+    sources: Sequence[SourceFile],
+    hashes: FileHashes,
 ) -> dict[str, Any]:
     """What a file says: metadata of what was read passes through, and how to make it again is added.
 
@@ -52,17 +52,17 @@ def header(
     found["halation:graph"] = graph
     found["halation:version"] = VERSION
     found["halation:renderer"] = target.renderer
-    found["halation:settings"] = settings(wanted, target, writing, file, frames if plan.memories else None)
+    found["halation:settings"] = format_settings(wanted, target, writing, file, frames if plan.memories else None)
     if color := color_digest(file.encoding.color):
         found["halation:color"] = color
     for source in sources:
-        found |= said(source, hashes)
-    found[_KEY] = frame_key(graph, wanted, plan, file, writing, sources, hashes)
+        found |= describe_source(source, hashes)
+    found[_KEY] = compute_frame_key(graph, wanted, plan, file, writing, sources, hashes)
     return found
 
 
-def settings(
-    wanted: RenderRequest, target: Target, writing: Writing, file: Destination, frames: tuple[int, int] | None
+def format_settings(
+    wanted: RenderRequest, target: Target, writing: OutputSettings, file: Destination, frames: tuple[int, int] | None
 ) -> str:
     """How a file was rendered and written, as `name=value` words that a shell would take apart.
 
@@ -82,49 +82,51 @@ def settings(
     return " ".join(shlex.quote(word) for word in words if not word.endswith("="))
 
 
-def frame_key(
+def compute_frame_key(
     graph: str,
     wanted: RenderRequest,
     plan: Plan,
     file: Destination,
-    writing: Writing,
-    sources: Sequence[Source],
-    hashes: Hashes,
+    writing: OutputSettings,
+    sources: Sequence[SourceFile],
+    hashes: FileHashes,
 ) -> str:
     """What tells whether a file is still what would be written: it is equal only where all bytes of pixels are.
 
     It covers shaders, values and the content of all that is read; where history matters, the whole graph.
     """
-    contents = {item.picture.path: hashes.of(item.picture.path) for item in plan.uploads if not item.picture.in_memory}
+    contents = {
+        item.picture.path: hashes.hash_file(item.picture.path) for item in plan.uploads if not item.picture.in_memory
+    }
     before = ""
     if plan.memories:
-        led = [(item.owner, hashes.of_all(item.files.values())) for item in sources if item.files]
-        before = _digest(graph, led, wanted.scale, wanted.size, plan.target.form)
-    keys = _content_keys(plan, contents, before)
+        led = [(item.owner, hashes.hash_files(item.files.values())) for item in sources if item.files]
+        before = _hash_parts(graph, led, wanted.scale, wanted.size, plan.target.form)
+    keys = _compute_content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     seen = (file.view, writing.display, writing.look, writing.space, color_digest(file.encoding.color))
     how = (file.path.suffix, *seen, writing.compression, writing.precision)
-    return _digest(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
+    return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
 
 
-def is_marked(file: Destination) -> bool:
+def has_key(file: Destination) -> bool:
     """True if that file is there and says what it was made of."""
-    return bool(_mark(file))
+    return bool(_read_key(file))
 
 
-def is_written(file: Destination, key: str) -> bool:
+def matches_key(file: Destination, key: str) -> bool:
     """True if that file is there and says that it was made with that key."""
-    return _mark(file) == key
+    return _read_key(file) == key
 
 
-def _mark(file: Destination) -> object:
+def _read_key(file: Destination) -> object:
     try:
         return media.read_metadata(file.path).get(_KEY) if file.path.is_file() else None
     except HalationError:  # whatever it is, it is not what would be written
         return None
 
 
-def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[int, str]:
+def _compute_content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[int, str]:
     """Keys of surfaces as a plan has them, but of what is in files instead of where these are and how old.
 
     What was remembered of the frame before is known by `before`.
@@ -133,7 +135,7 @@ def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[
     for item in plan.uploads:
         picture, surface = item.picture, plan.surfaces[item.surface]
         content = surface.key if picture.in_memory else contents[picture.path]
-        keys[item.surface] = _digest(
+        keys[item.surface] = _hash_parts(
             content,
             picture.frame,
             picture.layer,
@@ -144,17 +146,17 @@ def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[
             surface.size,
         )
     for one in plan.passes:
-        made = _digest(*_work(one), [keys.get(number, before) for number in one.textures])
+        made = _hash_parts(*_describe_work(one), [keys.get(number, before) for number in one.textures])
         for place, number in enumerate(one.targets):
             surface = plan.surfaces[number]
             keys[number] = f"{made}.{place}.{surface.size}.{surface.texel}"
     return {number: keys.get(number, before) for number in range(len(plan.surfaces))}
 
 
-def _work(one: Pass) -> tuple[object, ...]:
+def _describe_work(one: Pass) -> tuple[object, ...]:
     mesh = one.mesh.digest if one.mesh is not None else ""
     return one.shader.source, one.shader.vertex, one.uniforms, one.weights, mesh
 
 
-def _digest(*parts: object) -> str:
+def _hash_parts(*parts: object) -> str:
     return blake2b("\0".join(map(str, parts)).encode(), digest_size=16).hexdigest()

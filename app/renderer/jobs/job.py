@@ -24,18 +24,18 @@ from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..execution.texture_pool import Lease
 from ..frame_renderer import FrameRenderer
-from .behind import Behind
-from .destinations import Destination, Writing, check, destinations, halves
-from .header import frame_key, header, is_marked, is_written, whole
-from .sources import Hashes, Source, Sources
-from .strips import Strips, written_by_rows
-from .videos import Videos
+from .destinations import Destination, OutputSettings, check_destinations, plan_destinations, select_half_outputs
+from .header import compute_frame_key, dump_whole_graph, has_key, make_header, matches_key
+from .scanline_writers import ScanlineWriters, select_row_outputs
+from .source_files import FileHashes, SourceFile, SourceFinder
+from .video_writers import VideoWriters
+from .write_queue import WriteQueue
 
 if TYPE_CHECKING:
     from fractions import Fraction
 from functools import cached_property
 
-__all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
+__all__ = ["FrameReport", "JobProgress", "JobReport", "OutputSettings", "run_job"]
 
 
 class FrameReport(Struct, frozen=True):
@@ -50,7 +50,7 @@ class FrameReport(Struct, frozen=True):
     kept: bool = False
 
 
-class Progress(Protocol):
+class JobProgress(Protocol):
     """Hears how far a job is."""
 
     def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
@@ -62,7 +62,7 @@ class Progress(Protocol):
         ...
 
 
-class Report(Struct, frozen=True):
+class JobReport(Struct, frozen=True):
     """What a job did. `seconds` are by stage; stages of different frames overlap."""
 
     frames: tuple[FrameReport, ...]
@@ -83,12 +83,12 @@ def run_job(
     renderer: Renderer,
     graph: Graph,
     wanted: RenderRequest,
-    writing: Writing,
+    writing: OutputSettings,
     frames: Sequence[int] | None = None,
     *,
     resume: bool = False,
-    progress: Progress | None = None,
-) -> Report:
+    progress: JobProgress | None = None,
+) -> JobReport:
     """Render frames, by default that of `wanted`, and write them.
 
     Whatever can be known to be wrong with a destination is known before anything is rendered. With `resume`, frames
@@ -101,7 +101,7 @@ def run_job(
         reports = job.run()
     finally:
         job.close()
-    return Report(
+    return JobReport(
         tuple(reports),
         renderer.runner.counters.passes - counters,
         renderer.runner.programs.compiled - programs,
@@ -118,7 +118,7 @@ class _Task(Struct, frozen=True):
     frame: int
     files: tuple[Destination, ...]
     plan: Plan
-    sources: tuple[Source, ...]
+    sources: tuple[SourceFile, ...]
 
 
 class _Job:
@@ -127,25 +127,25 @@ class _Job:
         renderer: Renderer,
         graph: Graph,
         wanted: RenderRequest,
-        writing: Writing,
+        writing: OutputSettings,
         resume: bool,
-        progress: Progress | None,
+        progress: JobProgress | None,
         frames: tuple[int, ...],
     ) -> None:
-        self._files = destinations(graph, wanted, writing, frames)
+        self._files = plan_destinations(graph, wanted, writing, frames)
         first = self._files[frames[0]]
-        by_rows = written_by_rows(first) if renderer.device.target.memory else frozenset[str]()
-        wanted = replace(wanted, halves=halves(first, writing), by_rows=by_rows)
+        by_rows = select_row_outputs(first) if renderer.device.target.memory else frozenset[str]()
+        wanted = replace(wanted, halves=select_half_outputs(first, writing), by_rows=by_rows)
         self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
         self._resume, self._progress, self._frames = resume, progress, frames
         self._reel = FrameRenderer(renderer, graph, wanted)
-        self._hashes = Hashes()
-        self._sources = Sources(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
-        self._behind = Behind[FrameReport]()
+        self._hashes = FileHashes()
+        self._sources = SourceFinder(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
+        self._behind = WriteQueue[FrameReport]()
         self._fault: HalationError | None = None
         self._reports: list[FrameReport] = []
-        self._films = Videos(writing, self._rate)
-        self._strips: Strips | None = None
+        self._films = VideoWriters(writing, self._rate)
+        self._strips: ScanlineWriters | None = None
         self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
@@ -159,17 +159,17 @@ class _Job:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
                 remove_abandoned_files(folder)
         todo = deque(self._frames)
-        task = self._next(todo)
+        task = self._plan_next(todo)
         if task is not None:
             self._renderer.runner.prepare(task.plan)
-        following = self._next(todo)
+        following = self._plan_next(todo)
         while task is not None:
-            kept, passes = self._begun(task, following)
-            later = self._next(todo)  # while the device is busy
-            self._write(task, self._taken(task, kept), passes)
+            kept, passes = self._render_frame(task, following)
+            later = self._plan_next(todo)  # while the device is busy
+            self._write(task, self._download(task, kept), passes)
             task, following = following, later
-        for report in self._behind.rest():
-            self._finished(report)
+        for report in self._behind.collect_all():
+            self._report_frame(report)
         if self._fault is not None:
             raise self._fault
         started = time.perf_counter()
@@ -189,50 +189,50 @@ class _Job:
     @cached_property
     def _text(self) -> str:
         """The graph as files say it."""
-        return whole(self._graph)
+        return dump_whole_graph(self._graph)
 
     # --- one frame ---------------------------------------------------------------------------------------------------
 
-    def _next(self, todo: deque[int]) -> _Task | None:
+    def _plan_next(self, todo: deque[int]) -> _Task | None:
         """The next frame that must be rendered. One that cannot be made is the end: the ones before it can."""
         try:
-            return self._planned(todo)
+            return self._find_unfinished(todo)
         except HalationError as error:
             self._fault = error
             todo.clear()
             return None
 
-    def _planned(self, todo: deque[int]) -> _Task | None:
+    def _find_unfinished(self, todo: deque[int]) -> _Task | None:
         while todo:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._reel.plan(frame), self._files[frame]
             reading = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            check(files, plan, reading, self._writing)
-            task = _Task(frame, files, plan, self._sources.of(plan, frame, self._reel.begin(frame)))
+            check_destinations(files, plan, reading, self._writing)
+            task = _Task(frame, files, plan, self._sources.find(plan, frame, self._reel.history_start(frame)))
             self.seconds["compile"] += time.perf_counter() - started
             if self._resume and self._is_done(task):
-                self._finished(FrameReport(frame, tuple(file.path for file in files), 0, kept=True))
+                self._report_frame(FrameReport(frame, tuple(file.path for file in files), 0, kept=True))
                 continue
             return task
         return None
 
     def _is_done(self, task: _Task) -> bool:
         """True if the files of a frame are there and would come out the same."""
-        if not all(map(is_marked, task.files)):
+        if not all(map(has_key, task.files)):
             return False
         wanted = replace(self._wanted, frame=task.frame)
         keys = (
-            frame_key(self._text, wanted, task.plan, file, self._writing, task.sources, self._hashes)
+            compute_frame_key(self._text, wanted, task.plan, file, self._writing, task.sources, self._hashes)
             for file in task.files
         )
-        return all(map(is_written, task.files, keys))
+        return all(map(matches_key, task.files, keys))
 
-    def _begun(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
+    def _render_frame(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
         started, passes = time.perf_counter(), 0
         self._hashes.begin(task.sources)
         kept = self._renderer.runner.lease()
-        self._strips = Strips(task.plan, task.files, self._writing, lambda file: self._said(task, file))
+        self._strips = ScanlineWriters(task.plan, task.files, self._writing, lambda file: self._make_header(task, file))
         for run in self._reel.steps(task.frame, kept, following=following.frame if following else None):
             run.rows = self._strips.take
             with run:
@@ -245,7 +245,7 @@ class _Job:
         self.seconds["render"] += time.perf_counter() - started
         return kept, passes
 
-    def _taken(self, task: _Task, kept: Lease) -> dict[str, Array]:
+    def _download(self, task: _Task, kept: Lease) -> dict[str, Array]:
         """Wait for the outputs of a frame."""
         started = time.perf_counter()
         outputs = self._renderer.runner.download(task.plan, self._behind.arrays)
@@ -253,10 +253,10 @@ class _Job:
         self.seconds["render"] += time.perf_counter() - started
         return outputs
 
-    def _said(self, task: _Task, file: Destination) -> dict[str, Any]:
+    def _make_header(self, task: _Task, file: Destination) -> dict[str, Any]:
         """What a file says of itself."""
         wanted, device = replace(self._wanted, frame=task.frame), self._renderer.device
-        said = header(
+        said = make_header(
             self._text,
             device.target,
             wanted,
@@ -278,7 +278,7 @@ class _Job:
             for file in task.files:
                 if file.path in finished:
                     continue
-                said = self._said(task, file)
+                said = self._make_header(task, file)
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 if file.path in self._writing.videos:
                     self._films.add(file, layers, said)
@@ -296,16 +296,16 @@ class _Job:
             pictures = (file.path for file in task.files if file.path not in self._writing.videos)
             return FrameReport(task.frame, tuple(pictures), passes)
 
-        self._behind.put(write, outputs)
-        for report in self._behind.written():
-            self._finished(report)
+        self._behind.submit(write, outputs)
+        for report in self._behind.collect_finished():
+            self._report_frame(report)
 
     def _rate(self) -> float | Fraction:
         """Frames per second of what is written."""
         pictures = self._renderer.pictures
         return pictures.rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
 
-    def _finished(self, report: FrameReport) -> None:
+    def _report_frame(self, report: FrameReport) -> None:
         self._reports.append(report)
         if self._progress is not None:
             self._progress.report_frame(report, len(self._reports), len(self._frames))

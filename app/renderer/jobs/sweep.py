@@ -19,7 +19,7 @@ from ...media.comparison.contact_sheet import make_grid_sheet, make_grouped_shee
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..frame_renderer import FrameRenderer
-from .destinations import Writing
+from .destinations import OutputSettings
 from .job import run_job
 
 LETTERS = 16
@@ -30,7 +30,7 @@ _WIDE = 1.7
 
 
 @dataclass(frozen=True)
-class Step:
+class SweepStep:
     """One setting of what is swept: as it was typed, and what makes a graph have it."""
 
     text: str
@@ -44,14 +44,14 @@ class Axis:
 
     name: str
     label: str
-    steps: tuple[Step, ...]
+    steps: tuple[SweepStep, ...]
 
 
 @dataclass(frozen=True)
 class Cell:
     """A picture: one step of every axis, the graph that they make, and the frame of it."""
 
-    steps: tuple[tuple[Axis, Step], ...]
+    steps: tuple[tuple[Axis, SweepStep], ...]
     graph: Graph
     frame: int
 
@@ -63,11 +63,11 @@ class Cell:
     @property
     def file_stem(self) -> str:
         """A name for a file of its own: `blur.sigma=4`, `blur.sigma=4,frame=0012`."""
-        return ",".join(f"{axis.name}={_plain(step.text, axis.name == FRAME)}" for axis, step in self.steps)
+        return ",".join(f"{axis.name}={_format_step(step.text, axis.name == FRAME)}" for axis, step in self.steps)
 
 
 @dataclass(frozen=True)
-class Swept:
+class SweepRequest:
     """What to render of each graph, and how it is shown. `width` is that of a cell in pixels, 0 for the picture's."""
 
     wanted: RenderRequest
@@ -75,14 +75,14 @@ class Swept:
     view: str = ""
     width: int = 480
     columns: int = 0
-    written: Writing | None = None
+    written: OutputSettings | None = None
     """How pictures are written alone, their folder as its only file; None if they are not."""
     ending: str = ".png"
     title: str = ""
 
 
 @dataclass(frozen=True)
-class Sheet:
+class SweepSheet:
     """Light of the display, what is in its cells, and the files that were written beside it."""
 
     light: Array
@@ -90,7 +90,7 @@ class Sheet:
     files: tuple[Path, ...] = field(default=())
 
 
-def cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
+def list_cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
     """All combinations, the last axis fastest. Raises UsageError for more than a sheet can show."""
     if not axes:
         raise UsageError("nothing is swept: give several values, such as --set blur.sigma=1,2,4,8, or --frames")
@@ -100,10 +100,10 @@ def cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
     count = int(np.prod([len(axis.steps) for axis in axes]))
     if count > MOST_CELLS:
         raise UsageError(f"{count} pictures are more than the {MOST_CELLS} that a sheet can hold: sweep fewer values")
-    return tuple(_combined(graph, axes, frame))
+    return tuple(_combine(graph, axes, frame))
 
 
-def _combined(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
+def _combine(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
     for steps in product(*(axis.steps for axis in axes)):
         changed, at = graph, frame
         for step in steps:
@@ -111,39 +111,39 @@ def _combined(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
         yield Cell(tuple(zip(axes, steps, strict=True)), changed, at)
 
 
-def sweep(
+def render_sweep(
     renderer: Renderer,
     graph: Graph,
     axes: Sequence[Axis],
-    swept: Swept,
+    swept: SweepRequest,
     frame: int,
     step: Callable[[str], None] = lambda name: None,
-) -> Sheet:
+) -> SweepSheet:
     """Render all cells and put them on a sheet; `step` hears the label of what comes next.
 
     What several pictures share is computed once. Raises the errors of `app.errors`.
     """
-    found = cells(graph, axes, frame)
+    found = list_cells(graph, axes, frame)
     pictures: list[Array] = []
     files: list[Path] = []
     for cell in found:
         step(cell.label)
-        pictures.append(_small(_rendered(renderer, cell, swept), swept.width))
+        pictures.append(_shrink(_render_cell(renderer, cell, swept), swept.width))
         if swept.written is not None:
-            files += _alone(renderer, cell, swept)
-    light = _lights(graph, pictures, swept)
+            files += _write_cell(renderer, cell, swept)
+    light = _show_cells(graph, pictures, swept)
     if len(axes) == 2:
         heads = [[f"{axis.label} {step.text}" for step in axis.steps] for axis in axes]
         across = len(heads[1])
         rows = [light[start : start + across] for start in range(0, len(light), across)]
-        return Sheet(make_grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
+        return SweepSheet(make_grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
     named = dict(zip((cell.label for cell in found), light, strict=True))
-    columns = swept.columns or _columns(len(named), light[0])
+    columns = swept.columns or _choose_columns(len(named), light[0])
     sheet = make_grouped_sheet({swept.title: named}, columns, swept.width, letters=LETTERS)
-    return Sheet(sheet, found, tuple(files))
+    return SweepSheet(sheet, found, tuple(files))
 
 
-def _rendered(renderer: Renderer, cell: Cell, swept: Swept) -> Array:
+def _render_cell(renderer: Renderer, cell: Cell, swept: SweepRequest) -> Array:
     reel = FrameRenderer(renderer, cell.graph, swept.wanted)
     try:
         return reel.render(cell.frame)[swept.output]
@@ -151,7 +151,7 @@ def _rendered(renderer: Renderer, cell: Cell, swept: Swept) -> Array:
         reel.close()
 
 
-def _alone(renderer: Renderer, cell: Cell, swept: Swept) -> tuple[Path, ...]:
+def _write_cell(renderer: Renderer, cell: Cell, swept: SweepRequest) -> tuple[Path, ...]:
     """Write a picture as `render` would; what was rendered for the sheet is not rendered again."""
     assert swept.written is not None
     ((_, folder),) = swept.written.files
@@ -160,31 +160,31 @@ def _alone(renderer: Renderer, cell: Cell, swept: Swept) -> tuple[Path, ...]:
     return run_job(renderer, cell.graph, swept.wanted, writing, (cell.frame,)).written
 
 
-def _small(array: Array, width: int) -> Array:
+def _shrink(array: Array, width: int) -> Array:
     """Every n-th pixel of a picture that is far larger than its cell: sheets are not kept in memory at full size."""
     every = max(1, array.shape[1] // (4 * width)) if width else 1
     return np.ascontiguousarray(array[::every, ::every])
 
 
-def _lights(graph: Graph, pictures: Sequence[Array], swept: Swept) -> list[Array]:
+def _show_cells(graph: Graph, pictures: Sequence[Array], swept: SweepRequest) -> list[Array]:
     """Pictures as light of the display; data between the smallest and largest number of all of them."""
     port = swept.wanted.targets.get(swept.output, Port(OUTPUTS, swept.output))
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
     if kind in (Kind.IMAGE, Kind.COLOR):
-        return [show_over_checker(_wide(array), swept.view) for array in pictures]
+        return [show_over_checker(_widen(array), swept.view) for array in pictures]
     finite = [array[np.isfinite(array)].astype(np.float64) for array in pictures]
     low = min((float(part.min()) for part in finite if part.size), default=0.0)
     high = max((float(part.max()) for part in finite if part.size), default=1.0)
-    return [show_data(_wide(array), min(low, 0.0), high if high > low else low + 1.0) for array in pictures]
+    return [show_data(_widen(array), min(low, 0.0), high if high > low else low + 1.0) for array in pictures]
 
 
-def _wide(array: Array) -> Array:
+def _widen(array: Array) -> Array:
     """One value is shown as a field of it."""
     return np.tile(array, (64, 64, 1)) if array.shape[:2] == (1, 1) else array
 
 
-def _columns(count: int, first: Array) -> int:
+def _choose_columns(count: int, first: Array) -> int:
     """How many go side by side: few in one row, many in about the shape of a screen."""
     if count <= 4:
         return count
@@ -192,12 +192,12 @@ def _columns(count: int, first: Array) -> int:
     return ceil(count / ceil(count / wide))  # rows of about the same length
 
 
-def _plain(text: str, is_frame: bool) -> str:
+def _format_step(text: str, is_frame: bool) -> str:
     """A value as a part of a file name."""
     return f"{int(text):04d}" if is_frame else re.sub(r"[^\w.+-]+", "_", text)
 
 
-def used_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[str, str]:
+def choose_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[str, str]:
     """What cells call each name: its own label, the whole name where two labels would be the same."""
     return {
         name: labels[name] if sum(labels[other] == labels[name] for other in names) == 1 else name for name in names

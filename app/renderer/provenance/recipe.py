@@ -24,7 +24,7 @@ _HOLDS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
 
 
 @dataclass(frozen=True)
-class Used:
+class RecordedFile:
     """A file that was read, by whom: see `Source`. Of a sequence, `frames` of `pattern` were, with hash `together`."""
 
     owner: str
@@ -45,7 +45,7 @@ class Recipe:
     version: str
     renderer: str
     driver: str
-    used: tuple[Used, ...]
+    used: tuple[RecordedFile, ...]
     outputs: tuple[str, ...] = ()
     node: str = ""
     frame: int = 1
@@ -82,8 +82,8 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
         )
     graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue)
     try:
-        settings = _settings(said.get("halation:settings", ""))
-        used = _used(said)
+        settings = _parse_settings(said.get("halation:settings", ""))
+        used = _parse_files(said)
     except ValueError as fault:
         raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
     return Recipe(
@@ -103,7 +103,7 @@ def has_recipe(path: str | Path) -> bool:
     return bool(media.read_metadata(path).get("halation:graph"))
 
 
-def _settings(text: str) -> dict[str, Any]:
+def _parse_settings(text: str) -> dict[str, Any]:
     """The arguments of a recipe. Raises ValueError."""
     words: dict[str, list[str]] = {}
     for word in shlex.split(text):
@@ -126,37 +126,37 @@ def _settings(text: str) -> dict[str, Any]:
     if "scale" in plain:
         found["scale"] = float(plain["scale"])
     if "size" in plain:
-        found["size"] = _pair(plain["size"], "x")
+        found["size"] = _parse_pair(plain["size"], "x")
     if "frames" in plain:
-        found["range"] = _pair(plain["frames"], "..")
+        found["range"] = _parse_pair(plain["frames"], "..")
     return found
 
 
-def _pair(text: str, between: str) -> tuple[int, int]:
+def _parse_pair(text: str, between: str) -> tuple[int, int]:
     first, _, second = text.partition(between)
     return int(first), int(second)
 
 
-def _used(said: Mapping[str, str]) -> tuple[Used, ...]:
+def _parse_files(said: Mapping[str, str]) -> tuple[RecordedFile, ...]:
     """The files that a header names. Raises ValueError."""
-    found: list[Used] = []
+    found: list[RecordedFile] = []
     for name, text in said.items():
         if not name.startswith("halation:input:"):
             continue
         owner = name.removeprefix("halation:input:")
-        file, digest = _digested(text)
+        file, digest = _split_digest(text)
         layered = _LAYERED.fullmatch(file)
         file, layer = (layered["name"], layered["layer"]) if layered else (file, "")
         pattern, frames, together = "", (), ""
         if several := said.get(f"halation:frames:{owner}"):
-            rest, together = _digested(several)
+            rest, together = _split_digest(several)
             pattern, _, listed = rest.rpartition(" ")
             frames = parse_frames(listed)
-        found.append(Used(owner, PurePath(file).name, digest, layer, PurePath(pattern).name, frames, together))
+        found.append(RecordedFile(owner, PurePath(file).name, digest, layer, PurePath(pattern).name, frames, together))
     return tuple(sorted(found, key=lambda one: one.owner))
 
 
-def _digested(text: str) -> tuple[str, str]:
+def _split_digest(text: str) -> tuple[str, str]:
     match = _DIGEST.fullmatch(text)
     if match is None:
         raise ValueError(f"'{text[:60]}' is no file and its hash")

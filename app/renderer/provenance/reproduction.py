@@ -20,11 +20,11 @@ from ...version import VERSION
 from ..device import Device
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
-from ..jobs.destinations import Writing
+from ..jobs.destinations import OutputSettings
 from ..jobs.job import run_job
 from ..opening import open_device
-from ..pinned import open_pinned
-from .finding import Found, pointed
+from ..pinned_device import open_pinned
+from .file_finder import LocatedFile, relink_files
 from .recipe import Recipe
 
 ELSEWHERE = EIGHT_BIT_STEP
@@ -36,7 +36,7 @@ _USUAL = "linear Rec.709, built in"
 
 
 @dataclass(frozen=True)
-class Difference:
+class EnvironmentDifference:
     """Something that is not what it was."""
 
     what: str
@@ -45,7 +45,7 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Layer:
+class LayerDifference:
     """A part of a picture. `farthest` is the largest difference of a number, relative to it where it is over 1."""
 
     name: str
@@ -57,8 +57,8 @@ class Layer:
 class Reproduction:
     """What came of making a picture again."""
 
-    differences: tuple[Difference, ...]
-    layers: tuple[Layer, ...]
+    differences: tuple[EnvironmentDifference, ...]
+    layers: tuple[LayerDifference, ...]
     tolerance: float
     written: tuple[Path, ...]
 
@@ -68,7 +68,7 @@ class Reproduction:
         return all(layer.farthest <= self.tolerance for layer in self.layers)
 
 
-def open_alike(recipe: Recipe) -> Device:
+def open_matching_device(recipe: Recipe) -> Device:
     """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
     if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED):
         return open_pinned()
@@ -81,7 +81,7 @@ def open_alike(recipe: Recipe) -> Device:
 def reproduce(
     renderer: Renderer,
     recipe: Recipe,
-    found: Sequence[Found],
+    found: Sequence[LocatedFile],
     files: Sequence[Path] = (),
     tolerance: float | None = None,
 ) -> Reproduction:
@@ -90,7 +90,7 @@ def reproduce(
     Without a tolerance, pictures of the same renderer must be equal, those of others within `ELSEWHERE`. Raises the
     errors of `app.errors`.
     """
-    graph, targets = _graph(recipe, found), {}
+    graph, targets = _relink_graph(recipe, found), {}
     if recipe.node:
         targets = {recipe.node: node_output(graph, recipe.node)}
     names = recipe.outputs or (recipe.node,)  # "" is all of them
@@ -101,35 +101,37 @@ def reproduce(
     with tempfile.TemporaryDirectory(prefix="halation-", dir=os.environ.get(ROOT) or None) as folder:
         again = Path(folder, recipe.path.name)
         pairs = [(name, file) for file in (again, *files) for name in names]
-        writing = Writing(
+        writing = OutputSettings(
             pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
         )
         run_job(renderer, graph, wanted, writing, (recipe.frame,))
-        layers = compared(stored(again), stored(recipe.path))
-    differences = tuple(_differences(recipe, renderer.device, color_digest(color_settings(graph))))
+        layers = compare_layers(stored(again), stored(recipe.path))
+    differences = tuple(_find_differences(recipe, renderer.device, color_digest(color_settings(graph))))
     elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
     allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
     return Reproduction(differences, layers, allowed, tuple(files))
 
 
-def compared(actual: Mapping[str, Array], expected: Mapping[str, Array]) -> tuple[Layer, ...]:
+def compare_layers(actual: Mapping[str, Array], expected: Mapping[str, Array]) -> tuple[LayerDifference, ...]:
     """How far the parts of two files are apart, by name; one that only one of them has is as far as can be."""
-    layers: list[Layer] = []
+    layers: list[LayerDifference] = []
     for name in dict.fromkeys((*expected, *actual)):
         if name not in actual or name not in expected:
             gone = "it was not made again" if name in expected else "it was not there before"
-            layers.append(Layer(name, np.inf, PictureDifference(fault=gone)))
+            layers.append(LayerDifference(name, np.inf, PictureDifference(fault=gone)))
             continue
         one, other = actual[name], expected[name]
         if one.dtype != other.dtype:
-            layers.append(Layer(name, np.inf, PictureDifference(fault=f"it is {one.dtype} now, and was {other.dtype}")))
+            layers.append(
+                LayerDifference(name, np.inf, PictureDifference(fault=f"it is {one.dtype} now, and was {other.dtype}"))
+            )
             continue
         measured = compare_pictures(one, other, perceptual=False, threshold=0.0)
-        layers.append(Layer(name, np.inf if measured.fault else _farthest(one, other), measured))
+        layers.append(LayerDifference(name, np.inf if measured.fault else _measure_distance(one, other), measured))
     return tuple(layers)
 
 
-def _farthest(one: Array, other: Array) -> float:
+def _measure_distance(one: Array, other: Array) -> float:
     if one.dtype.kind in "ui":
         one, other = (item / float(np.iinfo(item.dtype).max) for item in (one, other))
     first, second = one.astype(np.float64), other.astype(np.float64)
@@ -140,14 +142,14 @@ def _farthest(one: Array, other: Array) -> float:
     return float(apart.max(initial=0.0))
 
 
-def _graph(recipe: Recipe, found: Sequence[Found]) -> Graph:
-    graph = pointed(recipe.graph, found)
+def _relink_graph(recipe: Recipe, found: Sequence[LocatedFile]) -> Graph:
+    graph = relink_files(recipe.graph, found)
     if recipe.range:  # which frames a sequence has now may be others
         return replace(graph, settings=replace(graph.settings, frames=recipe.range))
     return graph
 
 
-def _differences(recipe: Recipe, device: Device, color: str) -> list[Difference]:
+def _find_differences(recipe: Recipe, device: Device, color: str) -> list[EnvironmentDifference]:
     """What is not as it was, of what says so."""
     now = {
         "version": (recipe.version, VERSION),
@@ -155,7 +157,7 @@ def _differences(recipe: Recipe, device: Device, color: str) -> list[Difference]
         "driver": (recipe.driver, device.driver),
         "passes": (recipe.form or "", device.target.form),
     }
-    found = [Difference(what, then, here) for what, (then, here) in now.items() if then and then != here]
+    found = [EnvironmentDifference(what, then, here) for what, (then, here) in now.items() if then and then != here]
     if color != recipe.color:
-        found.append(Difference("color", recipe.color or _USUAL, color or _USUAL))
+        found.append(EnvironmentDifference("color", recipe.color or _USUAL, color or _USUAL))
     return found

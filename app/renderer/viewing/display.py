@@ -8,7 +8,7 @@ from typing import Protocol, get_args
 
 from ...color.management import color_mark
 from ..device import Device, DeviceTexture, PixelRect, TextureDepth
-from .look import Channels, Look, Meaning, Size, origin, to_panel
+from .look import Channels, Look, Meaning, Size, find_origin, to_panel
 from .view_programs import ColorView, ViewProgram, ViewPrograms
 
 ENLARGED = 0.8
@@ -161,7 +161,7 @@ def _place(program: ViewProgram, name: str, unit: int, picture: Drawable, panel:
     size, full_size = picture.size, picture.full_size
     program.set(name, unit)
     program.set(f"{name}_part", (*picture.start, *size))
-    program.set(f"{name}_origin", origin(look, panel, full_size))
+    program.set(f"{name}_origin", find_origin(look, panel, full_size))
     program.set(f"{name}_step", tuple(size[axis] / (full_size[axis] * look.zoom) for axis in (0, 1)))
     program.set(f"{name}_channels", picture.channels)
 
@@ -169,7 +169,7 @@ def _place(program: ViewProgram, name: str, unit: int, picture: Drawable, panel:
 def _find_enlarged(panel: Size, picture: Drawable, covered: PixelRect, look: Look) -> PixelRect | None:
     """The texels that cover these pixels of a panel, if they are clearly fewer."""
     spans: list[tuple[int, int]] = []
-    for axis, corner in enumerate(origin(look, panel, picture.full_size)):
+    for axis, corner in enumerate(find_origin(look, panel, picture.full_size)):
         step = picture.size[axis] / (picture.full_size[axis] * look.zoom)
         first, last = ((covered[axis] - corner) * step, (covered[axis] + covered[axis + 2] - corner) * step)
         low, high = max(0, math.floor(first) - 1), min(picture.size[axis], math.ceil(last) + 1)
@@ -182,7 +182,7 @@ def _find_enlarged(panel: Size, picture: Drawable, covered: PixelRect, look: Loo
 
 def _find_covered(panel: Size, pictures: list[Drawable], look: Look) -> PixelRect | None:
     """The pixels of the panel where there is any picture, as x, y, width, height."""
-    corners = [(origin(look, panel, picture.full_size), picture.full_size) for picture in pictures]
+    corners = [(find_origin(look, panel, picture.full_size), picture.full_size) for picture in pictures]
     low = [max(0, min((math.floor(corner[axis]) for corner, _ in corners), default=0)) for axis in (0, 1)]
     high = [
         min(panel[axis], max((math.ceil(corner[axis] + size[axis] * look.zoom) for corner, size in corners), default=0))

@@ -56,7 +56,7 @@ class Look:
     surround: Color = (0.12, 0.12, 0.12)
 
 
-def origin(look: Look, panel: Size, picture: Size) -> Point:
+def find_origin(look: Look, panel: Size, picture: Size) -> Point:
     """The panel point where the picture's upper left corner lies, on whole pixels."""
     x, y = (panel[axis] / 2 + look.pan[axis] - picture[axis] * look.zoom / 2 for axis in (0, 1))
     return float(round(x)), float(round(y))
@@ -64,16 +64,16 @@ def origin(look: Look, panel: Size, picture: Size) -> Point:
 
 def to_picture(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """The point of the picture, in full-size pixels, under a point of the panel."""
-    left, top = origin(look, panel, picture)
+    left, top = find_origin(look, panel, picture)
     return (point[0] - left) / look.zoom, (point[1] - top) / look.zoom
 
 
 def to_panel(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """Where a point of the picture, in full-size pixels, lies on the panel."""
-    left, top = origin(look, panel, picture)
+    left, top = find_origin(look, panel, picture)
     return point[0] * look.zoom + left, point[1] * look.zoom + top
 
 
-def fitted(panel: Size, picture: Size) -> float:
+def fit_zoom(panel: Size, picture: Size) -> float:
     """The zoom at which the whole picture fills the panel."""
     return min(panel[0] / picture[0], panel[1] / picture[1])

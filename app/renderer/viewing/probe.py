@@ -71,7 +71,9 @@ class Nonfinite(Struct, frozen=True):
     value: tuple[float, ...]
 
 
-def first_nonfinite(renderer: Renderer, graph: Graph, wanted: RenderRequest, port: Port) -> Iterator[Nonfinite | None]:
+def find_first_nonfinite(
+    renderer: Renderer, graph: Graph, wanted: RenderRequest, port: Port
+) -> Iterator[Nonfinite | None]:
     """Search what `port` shows and everything upstream of it, in order and without fusion.
 
     Yields None after every step, so that a caller can stop in between; what is found comes last. Raises the errors of
@@ -83,7 +85,7 @@ def first_nonfinite(renderer: Renderer, graph: Graph, wanted: RenderRequest, por
         firsts.setdefault(number, known)
     firsts.setdefault(plan.outputs[""], port)
     for number, one in firsts.items():
-        pixels = yield from _pixels(renderer, graph, replace(wanted, targets={"": one}))
+        pixels = yield from _render_pixels(renderer, graph, replace(wanted, targets={"": one}))
         broken = np.argwhere(~np.isfinite(pixels[..., : plan.surfaces[number].channels]).all(axis=2))
         if len(broken):
             row, column = (int(part) for part in broken[0])
@@ -93,7 +95,7 @@ def first_nonfinite(renderer: Renderer, graph: Graph, wanted: RenderRequest, por
         yield None
 
 
-def _pixels(renderer: Renderer, graph: Graph, wanted: RenderRequest) -> Generator[None, None, Array]:
+def _render_pixels(renderer: Renderer, graph: Graph, wanted: RenderRequest) -> Generator[None, None, Array]:
     plan = renderer.compile(graph, wanted, fusion=False)
     kept = renderer.runner.lease()
     try:

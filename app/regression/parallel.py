@@ -17,15 +17,15 @@ from threading import current_thread, main_thread
 from .. import renderer as engine
 from ..errors import RenderError
 from ..version import VERSION
+from .case_runner import RunOptions, run_case
 from .cases import Case
-from .results import Outcome, Session
-from .running import How, run_case
+from .results import Outcome, RegressionRun
 
-Hears = Callable[[Outcome], None]
+OutcomeListener = Callable[[Outcome], None]
 
 
 @dataclass(frozen=True)
-class _Done:
+class _CaseResult:
     """A case, and what it ran on."""
 
     outcome: Outcome
@@ -34,8 +34,13 @@ class _Done:
 
 
 def run_cases(
-    cases: Sequence[Case], how: How, *, jobs: int = 1, stop_early: bool = False, hears: Hears | None = None
-) -> Session:
+    cases: Sequence[Case],
+    how: RunOptions,
+    *,
+    jobs: int = 1,
+    stop_early: bool = False,
+    hears: OutcomeListener | None = None,
+) -> RegressionRun:
     """Run cases and tell of each as it ends. With `stop_early` the first failure is the last case to be told of.
 
     Raises DeviceError without OpenGL, OutputError for a folder that cannot be written.
@@ -44,7 +49,7 @@ def run_cases(
     found: dict[str, Outcome] = {}
     device, software = "", True
     crew = min(jobs, len(cases))
-    with closing(_shared(cases, how, crew) if crew > 1 else _alone(cases, how)) as made:
+    with closing(_run_shared(cases, how, crew) if crew > 1 else _run_alone(cases, how)) as made:
         for done in made:
             found[done.outcome.case.id], device, software = done.outcome, done.device, done.software
             if hears is not None:
@@ -57,22 +62,24 @@ def run_cases(
         if software or not how.deterministic
         else (f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on")
     )
-    return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, VERSION)
+    return RegressionRun(
+        ordered, device, time.perf_counter() - started, how.deterministic and software, remark, VERSION
+    )
 
 
-def _alone(cases: Iterable[Case], how: How) -> Generator[_Done, None, None]:
-    renderer = _renderer(how.deterministic)
+def _run_alone(cases: Iterable[Case], how: RunOptions) -> Generator[_CaseResult, None, None]:
+    renderer = _open_renderer(how.deterministic)
     for case in cases:
-        yield _done(case, renderer, how)
+        yield _run_and_describe(case, renderer, how)
 
 
-def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None, None]:
+def _run_shared(cases: Sequence[Case], how: RunOptions, jobs: int) -> Generator[_CaseResult, None, None]:
     # Processes that each used all cores would only get into each other's way.
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin, (threads,))
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _limit_threads, (threads,))
     try:
-        with _deaf():
-            waiting: list[Future[_Done]] = [pool.submit(_work, case, how) for case in cases]
+        with _ignore_interrupts():
+            waiting: list[Future[_CaseResult]] = [pool.submit(_run_in_worker, case, how) for case in cases]
         for done in as_completed(waiting):
             yield done.result()
     except BrokenProcessPool:
@@ -81,13 +88,13 @@ def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None
         pool.shutdown(cancel_futures=True)
 
 
-def in_this_process(case: Case, how: How) -> Outcome:
+def run_here(case: Case, how: RunOptions) -> Outcome:
     """What becomes of a case; the device stays open for the next one."""
-    return run_case(case, _renderer(how.deterministic), how)
+    return run_case(case, _open_renderer(how.deterministic), how)
 
 
 @contextmanager
-def _deaf() -> Iterator[None]:
+def _ignore_interrupts() -> Iterator[None]:
     """Processes that are started inside do not hear Ctrl-C, of which the one that started them takes care."""
     if current_thread() is not main_thread():
         yield
@@ -99,19 +106,19 @@ def _deaf() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _begin(threads: str) -> None:
+def _limit_threads(threads: str) -> None:
     os.environ.setdefault("LP_NUM_THREADS", threads)
 
 
-def _work(case: Case, how: How) -> _Done:
-    return _done(case, _renderer(how.deterministic), how)
+def _run_in_worker(case: Case, how: RunOptions) -> _CaseResult:
+    return _run_and_describe(case, _open_renderer(how.deterministic), how)
 
 
-def _done(case: Case, renderer: engine.Renderer, how: How) -> _Done:
-    return _Done(run_case(case, renderer, how), renderer.device.description, renderer.device.target.software)
+def _run_and_describe(case: Case, renderer: engine.Renderer, how: RunOptions) -> _CaseResult:
+    return _CaseResult(run_case(case, renderer, how), renderer.device.description, renderer.device.target.software)
 
 
 @cache
-def _renderer(deterministic: bool) -> engine.Renderer:
+def _open_renderer(deterministic: bool) -> engine.Renderer:
     """One device for all cases of a process; it ends with the process."""
     return engine.Renderer(engine.open_pinned() if deterministic else engine.open_device(), budget=0)

@@ -18,8 +18,8 @@ from ...graph import INPUTS, Graph, did_you_mean
 from ...graph.frames import Pattern
 from ...graph.paths import relocated, repointed
 from ...resources.sandbox import outside
-from ..jobs.sources import Hashes
-from .recipe import Recipe, Used, read_recipe
+from ..jobs.source_files import FileHashes
+from .recipe import Recipe, RecordedFile, read_recipe
 
 _FAR = "../../../"
 """Where the spelling of a path begins that leads too far away to be better than an absolute one."""
@@ -28,19 +28,19 @@ State = Literal["same", "changed", "missing"]
 
 
 @dataclass(frozen=True)
-class Found:
+class LocatedFile:
     """What became of a file: where it is now and its hash there, both "" for one that is missing.
 
     Of a sequence `path` is its pattern.
     """
 
-    used: Used
+    used: RecordedFile
     state: State
     path: str = ""
     digest: str = ""
 
 
-class Finder:
+class FileFinder:
     """Finds the files of a recipe: where `given` says, by owner; else beside the picture, in the current folder, and
     below the folders of `search`, there under other names too.
     """
@@ -48,27 +48,27 @@ class Finder:
     def __init__(self, recipe: Recipe, given: Mapping[str, str], search: Sequence[Path]) -> None:
         self._recipe, self._search = recipe, search
         self._texts = {owner: text for owner, (text, _) in find_path_texts(recipe.graph).items()}
-        self._given = {self._owner(name): path for name, path in given.items()}
+        self._given = {self._resolve_owner(name): path for name, path in given.items()}
         self._bases = (recipe.path.parent, Path(), *search, presets()[0].parent)
-        self._hashes = Hashes()
+        self._hashes = FileHashes()
         self._others: dict[str, str] | None = None
 
-    def all(self) -> tuple[Found, ...]:
+    def find_all(self) -> tuple[LocatedFile, ...]:
         """All of them. Raises InputError for what `given` names and is not there."""
         try:
-            return tuple(self._found(used) for used in self._recipe.used)
+            return tuple(self._find(used) for used in self._recipe.used)
         finally:
             self._hashes.close()
 
-    def likely(self) -> tuple[Found, ...]:
+    def find_likely(self) -> tuple[LocatedFile, ...]:
         """The files that have the right names at the likeliest places, without a look into them, which takes long."""
         return tuple(
-            Found(used, "same", path)
+            LocatedFile(used, "same", path)
             for used in self._recipe.used
-            if (path := next((path for path in self._candidates(used) if _is_there(used, path)), ""))
+            if (path := next((path for path in self._list_candidates(used) if _exists(used, path)), ""))
         )
 
-    def _owner(self, name: str) -> str:
+    def _resolve_owner(self, name: str) -> str:
         known = {used.owner.removeprefix(f"{INPUTS}."): used.owner for used in self._recipe.used}
         if name in known.values():
             return name
@@ -76,40 +76,40 @@ class Finder:
             raise UsageError(f"-i {name}=...: the picture was made of no file called that{did_you_mean(name, known)}")
         return known[name]
 
-    def _found(self, used: Used) -> Found:
+    def _find(self, used: RecordedFile) -> LocatedFile:
         first = ""
-        for path in self._candidates(used):
-            found = self._looked_at(used, path)
+        for path in self._list_candidates(used):
+            found = self._inspect(used, path)
             if found and found.state == "same":
                 return found
             first = first or (path if found else "")
             if used.owner in self._given and not found:
                 raise InputError(f"-i {used.owner.removeprefix(f'{INPUTS}.')}={path}: there is no such file")
-        if used.owner not in self._given and (path := self._by_content(used)):
-            return self._looked_at(used, path) or Found(used, "missing")
-        return (self._looked_at(used, first) if first else None) or Found(used, "missing")
+        if used.owner not in self._given and (path := self._find_by_content(used)):
+            return self._inspect(used, path) or LocatedFile(used, "missing")
+        return (self._inspect(used, first) if first else None) or LocatedFile(used, "missing")
 
-    def _looked_at(self, used: Used, path: str) -> Found | None:
+    def _inspect(self, used: RecordedFile, path: str) -> LocatedFile | None:
         """What is at a path, if there is anything; of a sequence, at that of one of its files or at its pattern."""
         if not used.frames:
             if not _may_be_read(path):
                 return None
-            digest = self._hashes.of(path)
-            return Found(used, "same" if digest == used.digest else "changed", path, digest)
+            digest = self._hashes.hash_file(path)
+            return LocatedFile(used, "same" if digest == used.digest else "changed", path, digest)
         pattern = Pattern.parse(path) or Pattern.parse(str(Path(path).with_name(used.pattern)))
         files = [pattern.name(frame) for frame in used.frames] if pattern else []
         if not pattern or not all(map(_may_be_read, files)):
             return None
-        digest = self._hashes.of_all(files)
-        return Found(used, "same" if digest == used.together else "changed", pattern.text, digest)
+        digest = self._hashes.hash_files(files)
+        return LocatedFile(used, "same" if digest == used.together else "changed", pattern.text, digest)
 
-    def _candidates(self, used: Used) -> Iterator[str]:
+    def _list_candidates(self, used: RecordedFile) -> Iterator[str]:
         """Where the file may be, the likeliest place first."""
         if used.owner in self._given:
             yield self._given[used.owner]
             return
         name = used.pattern or used.name
-        if text := self.text_of(used.owner):
+        if text := self.find_text(used.owner):
             yield from (str(Path(base, text).with_name(name)) for base in self._bases)
         yield from (str(base / name) for base in self._bases)
         for top in self._search:
@@ -117,7 +117,7 @@ class Finder:
                 if used.name in names:
                     yield str(Path(folder, name))
 
-    def _by_content(self, used: Used) -> str:
+    def _find_by_content(self, used: RecordedFile) -> str:
         """The path of a file with another name and the same content below the folders that were named, or ""."""
         if used.frames:
             return ""
@@ -127,33 +127,33 @@ class Finder:
             for top in self._search:
                 for folder, _, names in os.walk(top):
                     files = (str(Path(folder, name)) for name in names if Path(name).suffix.casefold() in endings)
-                    self._others |= {self._hashes.of(file): file for file in files if _may_be_read(file)}
+                    self._others |= {self._hashes.hash_file(file): file for file in files if _may_be_read(file)}
         return self._others.get(used.digest, "")
 
-    def text_of(self, owner: str) -> str:
+    def find_text(self, owner: str) -> str:
         """How the graph names the file of an owner; "" if it does not."""
-        return text_of(self._texts, owner)
+        return find_text(self._texts, owner)
 
 
-def text_of(texts: Mapping[str, str], owner: str) -> str:
+def find_text(texts: Mapping[str, str], owner: str) -> str:
     """The text by who names it; a node without a value stands for its only file."""
     return texts.get(owner) or next((text for name, text in texts.items() if name.rpartition(".")[0] == owner), "")
 
 
-def made_by(path: Path, catalogue: Mapping[str, type[Node]] | None = None) -> Graph:
+def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None = None) -> Graph:
     """The graph that made a picture, with the files it was made of where they are easy to find.
 
     Raises InputError, DocumentError: see `read_recipe`.
     """
     recipe = read_recipe(path, catalogue)
-    return pointed(recipe.graph, Finder(recipe, {}, ()).likely())
+    return relink_files(recipe.graph, FileFinder(recipe, {}, ()).find_likely())
 
 
-def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
+def relink_files(graph: Graph, found: Sequence[LocatedFile]) -> Graph:
     """The graph with what was found in place of what it names, seen from its own folder."""
     texts = {owner: text for owner, (text, _) in find_path_texts(graph).items()}
-    here = {item.used.owner: _spelled(item.path, graph.folder) for item in found if item.path}
-    moved = {text: path for owner, path in here.items() if (text := text_of(texts, owner))}
+    here = {item.used.owner: _spell_path(item.path, graph.folder) for item in found if item.path}
+    moved = {text: path for owner, path in here.items() if (text := find_text(texts, owner))}
     graph = repointed(graph, lambda text: moved.get(text, text))
     ends = dict(graph.inputs)
     for item in found:
@@ -166,7 +166,7 @@ def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
     return replace(graph, inputs=ends, settings=replace(graph.settings, color=color))
 
 
-def _spelled(path: str, folder: str) -> str:
+def _spell_path(path: str, folder: str) -> str:
     """How a graph in a folder names a file: relative if it is near."""
     full = os.path.abspath(path)  # noqa: PTH100
     near = relocated(os.path.relpath(full), "", folder) if _same_drive(full, folder) else full
@@ -177,7 +177,7 @@ def _same_drive(full: str, folder: str) -> bool:
     return Path(full).drive == Path(folder).absolute().drive == Path().absolute().drive
 
 
-def _is_there(used: Used, path: str) -> bool:
+def _exists(used: RecordedFile, path: str) -> bool:
     pattern = Pattern.parse(path) if used.frames else None
     return _may_be_read(pattern.name(used.frames[0]) if pattern else path)
 
@@ -187,7 +187,7 @@ def _may_be_read(path: str) -> bool:
     return Path(path).is_file() and os.access(path, os.R_OK) and not outside(path)
 
 
-def missing(found: Sequence[Found], path: Path) -> InputError | None:
+def describe_missing(found: Sequence[LocatedFile], path: Path) -> InputError | None:
     """What to say of files that are nowhere, if any are."""
     gone = [item.used for item in found if item.state == "missing"]
     if not gone:

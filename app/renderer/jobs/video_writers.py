@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 from ... import media
 from ..execution.decoding import Array
-from .destinations import Destination, Writing
+from .destinations import Destination, OutputSettings
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
 
-class Videos:
+class VideoWriters:
     """Opened when their first frame comes; what is not finished leaves nothing behind."""
 
-    def __init__(self, writing: Writing, rate: Callable[[], float | Fraction]) -> None:
+    def __init__(self, writing: OutputSettings, rate: Callable[[], float | Fraction]) -> None:
         self._writing, self._rate = writing, rate
         self._open: dict[Path, media.VideoWriter] = {}
 

@@ -7,27 +7,27 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Generic, TypeVar
 
-from ..execution.arrays import Arrays
+from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
-BEHIND = 2
+MAX_WAITING = 2
 """Frames whose results may wait to be written."""
 
-BEHIND_BYTES = 2**28
+MAX_WAITING_BYTES = 2**28
 """What they may take together; one frame may be larger."""
 
 Said = TypeVar("Said")
 
 
-class Behind(Generic[Said]):
+class WriteQueue(Generic[Said]):
     """Writes on one other thread, in order. `arrays` lend what results come in."""
 
     def __init__(self) -> None:
-        self.arrays = Arrays()
+        self.arrays = ArrayPool()
         self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
         self._writes: deque[tuple[Future[Said], int]] = deque()
 
-    def put(self, write: Callable[[Mapping[str, Array]], Said], outputs: Mapping[str, Array]) -> None:
+    def submit(self, write: Callable[[Mapping[str, Array]], Said], outputs: Mapping[str, Array]) -> None:
         """Have `write` called with outputs that `arrays` lent, which go back to them."""
 
         def work() -> Said:
@@ -38,12 +38,12 @@ class Behind(Generic[Said]):
 
         self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
 
-    def written(self) -> Iterator[Said]:
+    def collect_finished(self) -> Iterator[Said]:
         """What was said of writes that are through, after waiting while too many are not. Raises what they raised."""
         while self._writes and (self._writes[0][0].done() or self._is_full()):
             yield self._writes.popleft()[0].result()
 
-    def rest(self) -> Iterator[Said]:
+    def collect_all(self) -> Iterator[Said]:
         """The same of all that are left."""
         while self._writes:
             yield self._writes.popleft()[0].result()
@@ -54,4 +54,4 @@ class Behind(Generic[Said]):
 
     def _is_full(self) -> bool:
         nbytes = sum(size for _, size in self._writes)
-        return len(self._writes) > BEHIND or (len(self._writes) > 1 and nbytes > BEHIND_BYTES)
+        return len(self._writes) > MAX_WAITING or (len(self._writes) > 1 and nbytes > MAX_WAITING_BYTES)

@@ -1,8 +1,8 @@
 """The same bytes everywhere: what Mesa's software rasterizer may do differently from machine to machine is pinned.
 
-Passes are fragment shaders, intermediates have 32 bits (`Wanted.precision`), and the processor's instructions stop at
-SSE 4.1: a multiplication and an addition that newer ones do at once are rounded once instead of twice. The number
-of threads changes no bit; the width of vectors changes what the renderer calls itself.
+Passes are fragment shaders, intermediates have 32 bits (`RenderRequest.precision`), and the processor's instructions
+stop at SSE 4.1: newer ones multiply and add in one step, which rounds once instead of twice. The number of threads
+changes no bit; the width of vectors changes what the renderer calls itself.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _MESA = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 
 @contextmanager
-def pinned() -> Iterator[None]:
+def pin_driver() -> Iterator[None]:
     """Inside, an OpenGL context that is opened is the software rasterizer's where the system has one.
 
     The variables of the environment that say so are as before afterwards. A process that has opened a context already
@@ -64,5 +64,5 @@ def open_pinned(memory: int = 0) -> Device:
 
     `Device.target.software` says which it is.
     """
-    with pinned():
+    with pin_driver():
         return open_device("fragment", memory)

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 from ...compiler import Plan
 from ..execution.decoding import Array
-from .destinations import Destination, Writing
+from .destinations import Destination, OutputSettings
 
 if TYPE_CHECKING:
     from ...media.pictures.row_writer import ScanlineWriter
 
 
-def written_by_rows(files: Sequence[Destination]) -> frozenset[str]:
+def select_row_outputs(files: Sequence[Destination]) -> frozenset[str]:
     """The outputs that every file can take by rows: those of EXRs of one layer."""
     found, rest = set[str](), set[str]()
     for file in files:
@@ -23,7 +23,7 @@ def written_by_rows(files: Sequence[Destination]) -> frozenset[str]:
     return frozenset(found - rest)
 
 
-class Strips:
+class ScanlineWriters:
     """The files of a frame that are written by rows. Each is opened when its first rows come; what is not finished
     leaves nothing behind. `said` is the header of a file."""
 
@@ -31,7 +31,7 @@ class Strips:
         self,
         plan: Plan,
         files: Sequence[Destination],
-        writing: Writing,
+        writing: OutputSettings,
         said: Callable[[Destination], Mapping[str, Any]],
     ) -> None:
         names = plan.tiling.by_rows if plan.tiling else frozenset[str]()

@@ -19,15 +19,15 @@ from ..graph.frames import Pattern
 from ..media.layers import split_layer
 from ..media.pictures.stored import StoredPart, copy_picture
 from ..renderer import FrameRenderer, Renderer, RenderRequest
-from ..renderer.jobs.job import Writing, run_job
+from ..renderer.jobs.job import OutputSettings, run_job
 from .cases import Case, Golden
-from .judging import Parts, in_full, judged, unusable
-from .pictures import left, views_of
-from .results import Check, Outcome
+from .comparison import Parts, add_slow_measures, find_unusable, judge_picture
+from .pictures import leave_pictures, make_views
+from .results import Outcome, PictureCheck
 
 
 @dataclass(frozen=True)
-class How:
+class RunOptions:
     """How cases are run. `update` writes goldens that are missing or fail, `out` is a folder for what failed.
 
     `pictures` asks for views of what failed.
@@ -39,19 +39,19 @@ class How:
     deterministic: bool = True
 
 
-def run_case(case: Case, renderer: Renderer, how: How = How()) -> Outcome:
+def run_case(case: Case, renderer: Renderer, how: RunOptions = RunOptions()) -> Outcome:
     """What becomes of a case. A fault of the case is an outcome; OutputError is raised for `out` alone."""
     started = time.perf_counter()
     if case.skip:
         return Outcome(case, "skipped", case.skip)
     try:
-        outcome = _expected_to_fail(case, renderer, how) if case.error else _rendered(case, renderer, how)
+        outcome = _run_failing(case, renderer, how) if case.error else _run_rendering(case, renderer, how)
     except HalationError as fault:
         outcome = Outcome(case, "failed", str(fault))
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
-def _expected_to_fail(case: Case, renderer: Renderer, how: How) -> Outcome:
+def _run_failing(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     try:
         _render_only(case, renderer, how)
     except HalationError as fault:
@@ -62,11 +62,11 @@ def _expected_to_fail(case: Case, renderer: Renderer, how: How) -> Outcome:
     return Outcome(case, "failed", f"it should fail with '{case.error}', but it renders")
 
 
-def _rendered(case: Case, renderer: Renderer, how: How) -> Outcome:
+def _run_rendering(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     if not case.goldens:
         return _render_only(case, renderer, how)
-    graph = _graph(case)
-    wanted = _wanted(case, graph, how)
+    graph = _load_graph(case)
+    wanted = _make_request(case, graph, how)
     frames = case.frames or (renderer.frames(graph, wanted)[0],)
     with tempfile.TemporaryDirectory(prefix="halation-") as name:
         folders = [Path(name) / str(index) for index in range(len(case.goldens))]
@@ -75,11 +75,11 @@ def _rendered(case: Case, renderer: Renderer, how: How) -> Outcome:
         actual = [folder / golden.path.name for folder, golden in zip(folders, case.goldens, strict=True)]
         files = tuple((golden.output, path) for golden, path in zip(case.goldens, actual, strict=True))
         precision = "float" if case.precision == "float" else "half"
-        run_job(renderer, graph, wanted, Writing(files, case.view, precision=precision), frames)
-        checks, blessed = list[Check](), list[str]()
+        run_job(renderer, graph, wanted, OutputSettings(files, case.view, precision=precision), frames)
+        checks, blessed = list[PictureCheck](), list[str]()
         for frame in frames:
             for golden, path in zip(case.goldens, actual, strict=True):
-                check, said = _looked_at(case, graph, golden, _at(path, frame), frame, how)
+                check, said = _check_picture(case, graph, golden, _name_at_frame(path, frame), frame, how)
                 checks.append(check)
                 blessed += [said] if said else []
     faults = [check for check in checks if check.sentence]
@@ -90,50 +90,52 @@ def _rendered(case: Case, renderer: Renderer, how: How) -> Outcome:
     return Outcome(case, "blessed" if blessed else "passed", "; ".join(blessed), checks=tuple(checks))
 
 
-def _looked_at(case: Case, graph: Graph, golden: Golden, actual: Path, frame: int, how: How) -> tuple[Check, str]:
+def _check_picture(
+    case: Case, graph: Graph, golden: Golden, actual: Path, frame: int, how: RunOptions
+) -> tuple[PictureCheck, str]:
     """The verdict on one picture, and what was blessed."""
-    path = _at(golden.path, frame)
-    check, made, wanted = judged(case, actual, path, frame)
+    path = _name_at_frame(golden.path, frame)
+    check, made, wanted = judge_picture(case, actual, path, frame)
     if not check.sentence:
         return check, ""
     if how.update:
-        refusal = unusable(case, made) or _read_by(graph, case, path)
+        refusal = find_unusable(case, made) or _explain_conflict(graph, case, path)
         if not refusal:
             old = check.sentence.removeprefix(f"{path}: ") if wanted else "new"
             copy_picture(path, actual)
-            return judged(case, actual, path, frame)[0], f"{path}: {old}"
+            return judge_picture(case, actual, path, frame)[0], f"{path}: {old}"
         check = replace(check, sentence=f"{path} is not blessed: {refusal}")
     if how.pictures or how.out is not None:
-        check = _shown(check, case, graph, made, wanted)
+        check = _add_views(check, case, graph, made, wanted)
     if how.out is not None:
-        check = left(check, case, actual, made, wanted, how.out)
+        check = leave_pictures(check, case, actual, made, wanted, how.out)
     return check, ""
 
 
-def _shown(check: Check, case: Case, graph: Graph, made: Parts, wanted: Parts) -> Check:
+def _add_views(check: PictureCheck, case: Case, graph: Graph, made: Parts, wanted: Parts) -> PictureCheck:
     outputs = list(graph.outputs.values())
-    check = in_full(case, check, made, wanted)
-    return replace(check, views=views_of(check, made, wanted, case.view or (outputs[0].view if outputs else "")))
+    check = add_slow_measures(case, check, made, wanted)
+    return replace(check, views=make_views(check, made, wanted, case.view or (outputs[0].view if outputs else "")))
 
 
-def _render_only(case: Case, renderer: Renderer, how: How) -> Outcome:
+def _render_only(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     """A case without goldens: it must render, in finite numbers, and not only black."""
-    graph = _graph(case)
-    wanted = _wanted(case, graph, how)
+    graph = _load_graph(case)
+    wanted = _make_request(case, graph, how)
     reel = FrameRenderer(renderer, graph, wanted)
     try:
         for frame in case.frames or (reel.frames[0],):
             pictures = reel.render(frame)
-            if not case.error and (said := _fault_of(case, graph, wanted, pictures)):
+            if not case.error and (said := _find_fault(case, graph, wanted, pictures)):
                 return Outcome(case, "failed", f"frame {frame}: {said}")
     finally:
         reel.close()
     return Outcome(case, "passed")
 
 
-def _fault_of(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping[str, Any]) -> str:
+def _find_fault(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping[str, Any]) -> str:
     letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
-    return unusable(
+    return find_unusable(
         case,
         {
             name: StoredPart(array, letters.get(array.shape[2], ("X",)), encoded=False)
@@ -142,7 +144,7 @@ def _fault_of(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping
     )
 
 
-def _graph(case: Case) -> Graph:
+def _load_graph(case: Case) -> Graph:
     """The graph with its values set. Raises GraphError, also for what `halation check` calls an error."""
     graph = reduce(_set, case.values.items(), document.load(case.graph))
     errors = [problem for problem in problems(graph) if problem.severity == "error"]
@@ -160,13 +162,13 @@ def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
         raise GraphError(f"set.{name}: {str(fault).removeprefix(f'{name}: ')}") from None
 
 
-def _wanted(case: Case, graph: Graph, how: How) -> RenderRequest:
+def _make_request(case: Case, graph: Graph, how: RunOptions) -> RenderRequest:
     targets: dict[str, Port] = {case.node: node_output(graph, case.node)} if case.node else {}
     precision = "float" if how.deterministic else None
     return RenderRequest(case.inputs, targets, case.size, case.scale, precision=precision)
 
 
-def _read_by(graph: Graph, case: Case, golden: Path) -> str:
+def _explain_conflict(graph: Graph, case: Case, golden: Path) -> str:
     """Why a golden must not be written: the graph reads that file."""
     read = [path for path, _, _ in find_named_files(graph, {})]
     read += [split_layer(item)[0] for item in case.inputs.values() if isinstance(item, str)]
@@ -175,6 +177,6 @@ def _read_by(graph: Graph, case: Case, golden: Path) -> str:
     return ""
 
 
-def _at(path: Path, frame: int) -> Path:
+def _name_at_frame(path: Path, frame: int) -> Path:
     pattern = Pattern.parse(str(path))
     return path if pattern is None else Path(pattern.name(frame))

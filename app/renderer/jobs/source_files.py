@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ...inputs.provider import MediaProvider
 
 
-class Source(Struct, frozen=True):
+class SourceFile(Struct, frozen=True):
     """A file that a frame reads.
 
     `owner` is who reads it: an input of the graph as `inputs.beauty`, a node for its pixels as `read`, another value
@@ -43,7 +43,7 @@ class Source(Struct, frozen=True):
     files: Mapping[int, str] = field(default_factory=dict[int, str])
 
 
-class Hashes:
+class FileHashes:
     """SHA-256 of files, computed on another thread, once for every version of a file."""
 
     def __init__(self) -> None:
@@ -52,16 +52,16 @@ class Hashes:
         self._chains: dict[str, tuple[tuple[str, ...], hashlib._Hash]] = {}
         self._lock = Lock()
 
-    def begin(self, sources: Sequence[Source]) -> None:
+    def begin(self, sources: Sequence[SourceFile]) -> None:
         """Begin with what will be asked for."""
         for path in {path for item in sources for path in (item.path, *item.files.values())}:
-            self._begun(path)
+            self._start(path)
 
-    def of(self, path: str) -> str:
+    def hash_file(self, path: str) -> str:
         """That of a file, sooner or later."""
-        return self._begun(path).result()
+        return self._start(path).result()
 
-    def of_all(self, files: Iterable[str]) -> str:
+    def hash_files(self, files: Iterable[str]) -> str:
         """That of the hashes of several files, in their order. A list that goes on takes no longer than what is new."""
         paths = tuple(files)
         with self._lock:
@@ -70,7 +70,7 @@ class Hashes:
                 known, digest = (), hashlib.sha256()
             digest = digest.copy()
             for path in paths[len(known) :]:
-                digest.update(self.of(path).encode())
+                digest.update(self.hash_file(path).encode())
             self._chains[paths[0]] = paths, digest
             return digest.hexdigest()
 
@@ -78,37 +78,37 @@ class Hashes:
         """Stop."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _begun(self, path: str) -> Future[str]:
+    def _start(self, path: str) -> Future[str]:
         key = (path, fingerprint(path))
         if key not in self._found:
             self._found[key] = self._pool.submit(content_hash, path)
         return self._found[key]
 
 
-class Sources:
+class SourceFinder:
     """Finds what the frames of a graph read."""
 
     def __init__(self, pictures: MediaProvider, graph: Graph, bound: Mapping[str, Picture]) -> None:
         self._pictures, self._graph, self._bound = pictures, graph, bound
         self._led: dict[str, dict[int, str]] = {}
 
-    def of(self, plan: Plan, frame: int, begin: int) -> tuple[Source, ...]:
+    def find(self, plan: Plan, frame: int, begin: int) -> tuple[SourceFile, ...]:
         """What a frame reads whose history begins at another one."""
         read: dict[str, list[Picture]] = {}
         for item in plan.uploads:
             if not item.picture.in_memory:
                 read.setdefault(item.node, []).append(item.picture)
         lead = range(begin, frame) if plan.memories else range(0)
-        found = {owner: self._pictured(owner, pictures, lead) for owner, pictures in read.items()}
-        for owner, path in self._others.items():
-            if owner.rpartition(".")[0] not in found and (file := self._file(path, frame)):
-                found[owner] = Source(owner, file, is_picture=False)
+        found = {owner: self._describe_pictures(owner, pictures, lead) for owner, pictures in read.items()}
+        for owner, path in self._other_files.items():
+            if owner.rpartition(".")[0] not in found and (file := self._find_file(path, frame)):
+                found[owner] = SourceFile(owner, file, is_picture=False)
         return tuple(found.values())
 
-    def _pictured(self, owner: str, pictures: Sequence[Picture], lead: range) -> Source:
+    def _describe_pictures(self, owner: str, pictures: Sequence[Picture], lead: range) -> SourceFile:
         layer = pictures[0].layer if owner.startswith(f"{INPUTS}.") else ""
-        source = Source(owner, pictures[0].path, layer)
-        path, missing = self._named.get(owner, ("", "error"))
+        source = SourceFile(owner, pictures[0].path, layer)
+        path, missing = self._picture_paths.get(owner, ("", "error"))
         sequence = media.find_sequence(path) if path else None
         if sequence is None or not (lead or len({picture.path for picture in pictures}) > 1):
             return source
@@ -119,9 +119,9 @@ class Sources:
         files = [*(led[frame] for frame in lead), *(picture.path for picture in pictures)]
         named = {sequence.pattern.frame(Path(file).name): file for file in files}
         ordered = {frame: named[frame] for frame in sorted(frame for frame in named if frame is not None)}
-        return Source(owner, source.path, layer, True, Path(sequence.pattern.text).name, ordered)
+        return SourceFile(owner, source.path, layer, True, Path(sequence.pattern.text).name, ordered)
 
-    def _file(self, path: str, frame: int) -> str:
+    def _find_file(self, path: str, frame: int) -> str:
         """The file of a frame, or "" if there is none."""
         try:
             file = self._pictures.at(path, frame, "nearest").path
@@ -130,12 +130,12 @@ class Sources:
         return file if Path(file).is_file() else ""
 
     @cached_property
-    def _named(self) -> dict[str, tuple[str, Missing]]:
+    def _picture_paths(self) -> dict[str, tuple[str, Missing]]:
         """The path of every picture, and what shows where a frame has no file, by who reads it."""
         return {owner: (path, missing) for path, owner, missing in find_named_files(self._graph, self._bound)}
 
     @cached_property
-    def _others(self) -> dict[str, str]:
+    def _other_files(self) -> dict[str, str]:
         """Files of nodes, which may be no pictures, or of which only the header is read, by who names them."""
         used = self._graph.upstream(OUTPUTS)
         named = {owner: path for owner, (_, path) in find_path_texts(self._graph).items()}
@@ -147,11 +147,13 @@ class Sources:
         }
 
 
-def said(source: Source, hashes: Hashes) -> dict[str, str]:
+def describe_source(source: SourceFile, hashes: FileHashes) -> dict[str, str]:
     """What a header says of a source."""
     layer = f":{source.layer}" if source.layer else ""
-    found = {f"halation:input:{source.owner}": f"{Path(source.path).name}{layer} sha256:{hashes.of(source.path)}"}
+    found = {
+        f"halation:input:{source.owner}": f"{Path(source.path).name}{layer} sha256:{hashes.hash_file(source.path)}"
+    }
     if source.files:
-        frames, digest = format_frames(tuple(source.files)), hashes.of_all(source.files.values())
+        frames, digest = format_frames(tuple(source.files)), hashes.hash_files(source.files.values())
         found[f"halation:frames:{source.owner}"] = f"{source.pattern} {frames} sha256:{digest}"
     return found

@@ -16,7 +16,7 @@ from ..graph.frames import parse_frames
 from .cases import Golden
 
 
-def parse(path: Path) -> dict[str, Any]:
+def parse_toml(path: Path) -> dict[str, Any]:
     """The tables of a TOML file. Raises DocumentError."""
     try:
         return tomllib.loads(read_text(path))
@@ -28,7 +28,7 @@ def parse(path: Path) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Table:
+class TomlTable:
     """A table of a file, and where it stands there. Raises DocumentError for what is not as it should be."""
 
     file: str
@@ -39,44 +39,44 @@ class Table:
         """What is wrong with a key."""
         return DocumentError(self.file, ".".join(filter(None, (self.path, key))), said)
 
-    def only(self, known: Sequence[str]) -> None:
+    def refuse_other_keys(self, known: Sequence[str]) -> None:
         """Refuse other keys than these."""
         for key in self.items:
             if key not in known:
                 raise self.fault(key, f"there is no such key{did_you_mean(key, known)}")
 
-    def over(self, defaults: Table) -> Table:
+    def merge_over(self, defaults: TomlTable) -> TomlTable:
         """This table, with what it lacks from another; tables in it are mixed too."""
         mixed = {**defaults.items, **self.items}
         for key, item in self.items.items():
             below = defaults.items.get(key)
             if isinstance(item, dict) and isinstance(below, dict) and key != "golden":
                 mixed[key] = {**below, **item}
-        return Table(self.file, self.path, mixed)
+        return TomlTable(self.file, self.path, mixed)
 
-    def without(self, key: str) -> Table:
+    def without(self, key: str) -> TomlTable:
         """This table less a key."""
-        return Table(self.file, self.path, {name: item for name, item in self.items.items() if name != key})
+        return TomlTable(self.file, self.path, {name: item for name, item in self.items.items() if name != key})
 
-    def table(self, key: str) -> Table:
+    def table(self, key: str) -> TomlTable:
         """A table in this one; an empty one if it is not there."""
         found: Any = self.items.get(key, {})
         if not isinstance(found, dict):
-            raise self.fault(key, f"a table is needed, as in [{self.path or key}]; this is {word(found)}")
-        return Table(self.file, ".".join(filter(None, (self.path, key))), cast("dict[str, Any]", found))
+            raise self.fault(key, f"a table is needed, as in [{self.path or key}]; this is {describe_value(found)}")
+        return TomlTable(self.file, ".".join(filter(None, (self.path, key))), cast("dict[str, Any]", found))
 
     def text(self, key: str) -> str:
         """A string; "" if it is not there."""
         found = self.items.get(key, "")
         if not isinstance(found, str):
-            raise self.fault(key, f"text in quotes is needed; this is {word(found)}")
+            raise self.fault(key, f"text in quotes is needed; this is {describe_value(found)}")
         return found
 
     def number(self, key: str, default: float, low: float | None, high: float | None) -> float:
         """A finite number within its limits."""
         found = self.items.get(key, default)
         if isinstance(found, bool) or not isinstance(found, int | float) or not math.isfinite(found):
-            raise self.fault(key, f"a number is needed; this is {word(found)}")
+            raise self.fault(key, f"a number is needed; this is {describe_value(found)}")
         if (low is not None and found < low) or (high is not None and found > high) or (key == "scale" and not found):
             raise self.fault(key, f"{found:g} is not within {low:g} and {high:g}")
         return float(found)
@@ -92,26 +92,30 @@ class Table:
         """Some of a few words."""
         found: Any = self.items.get(key, [])
         if not isinstance(found, list) or not all(isinstance(item, str) for item in cast("list[Any]", found)):
-            raise self.fault(key, f"a list is needed, such as [{', '.join(map(repr, known))}]; this is {word(found)}")
+            raise self.fault(
+                key, f"a list is needed, such as [{', '.join(map(repr, known))}]; this is {describe_value(found)}"
+            )
         for item in cast("list[str]", found):
             if item not in known:
                 raise self.fault(key, f"there is no '{item}'{did_you_mean(item, known)}")
         return tuple(cast("list[str]", found))
 
 
-def frames_of(table: Table) -> tuple[int, ...]:
+def read_frames(table: TomlTable) -> tuple[int, ...]:
     """`frame = 3`, or `frames = "1-24x2"` or a list; none stands for the first frame of the graph."""
     one, several = table.items.get("frame"), table.items.get("frames")
     if one is not None and several is not None:
         raise table.fault("frames", "give frame or frames, not both")
     if several is None:
         if one is not None and (isinstance(one, bool) or not isinstance(one, int)):
-            raise table.fault("frame", f"a whole number is needed; this is {word(one)}")
+            raise table.fault("frame", f"a whole number is needed; this is {describe_value(one)}")
         return () if one is None else (one,)
     if isinstance(several, list):
         listed = cast("list[Any]", several)
         if not listed or not all(isinstance(item, int) and not isinstance(item, bool) for item in listed):
-            raise table.fault("frames", f"whole numbers are needed, as in [1, 12, 24]; this is {word(listed)}")
+            raise table.fault(
+                "frames", f"whole numbers are needed, as in [1, 12, 24]; this is {describe_value(listed)}"
+            )
         return tuple(dict.fromkeys(listed))
     try:
         return parse_frames(table.text("frames"))
@@ -119,7 +123,7 @@ def frames_of(table: Table) -> tuple[int, ...]:
         raise table.fault("frames", str(fault)) from None
 
 
-def size_of(table: Table) -> tuple[int, int] | None:
+def read_size(table: TomlTable) -> tuple[int, int] | None:
     """`size = "480x270"` or `[480, 270]`."""
     found: Any = table.items.get("size")
     sides = found.lower().split("x") if isinstance(found, str) else found
@@ -132,7 +136,7 @@ def size_of(table: Table) -> tuple[int, int] | None:
     raise table.fault("size", 'write "WIDTHxHEIGHT" in pixels, such as "480x270"')
 
 
-def inputs_of(table: Table, folder: Path) -> dict[str, Any]:
+def read_inputs(table: TomlTable, folder: Path) -> dict[str, Any]:
     """Inputs by name: paths made complete, numbers and lists of them as they are."""
     found: dict[str, Any] = {}
     inputs = table.table("inputs")
@@ -144,11 +148,11 @@ def inputs_of(table: Table, folder: Path) -> dict[str, Any]:
         elif isinstance(item, list) and item and all(isinstance(part, int | float) for part in cast("list[Any]", item)):
             found[name] = tuple(map(float, cast("list[float]", item)))
         else:
-            raise inputs.fault(name, f"a file, a number or a list of numbers is needed; this is {word(item)}")
+            raise inputs.fault(name, f"a file, a number or a list of numbers is needed; this is {describe_value(item)}")
     return found
 
 
-def goldens_of(table: Table, folder: Path, case: str, graph: str) -> tuple[Golden, ...]:
+def read_goldens(table: TomlTable, folder: Path, case: str, graph: str) -> tuple[Golden, ...]:
     """`golden = "FILE"`, or a table of files by output; {case} and {graph} in a name stand for those."""
     several = isinstance(table.items.get("golden"), dict)
     named = table.table("golden") if several else table
@@ -162,7 +166,7 @@ def goldens_of(table: Table, folder: Path, case: str, graph: str) -> tuple[Golde
     return tuple(made)
 
 
-def word(item: object) -> str:
+def describe_value(item: object) -> str:
     """What a value of a file is, for a sentence."""
     match item:
         case bool():

@@ -13,7 +13,7 @@ SPARE = 3
 """Arrays that wait to be used again: one is filled while two are written."""
 
 
-class Arrays:
+class ArrayPool:
     """Lends arrays, and lends them again once they were given back. Any thread may give."""
 
     def __init__(self) -> None:
