@@ -67,7 +67,7 @@ _HOMES = MappingProxyType(
         "find_first_nonfinite": "viewing.probe",
         "fit_zoom": "viewing.look",
         "open_device": "opening",
-        "open_pinned": "pinned",
+        "open_pinned": "pinned_device",
         "to_panel": "viewing.look",
         "to_picture": "viewing.look",
     }

@@ -134,3 +134,11 @@ def test_the_wheel_has_a_working_command(built: Built, tmp_path: Path) -> None:
     code = "import sys; sys.argv = ['halation', 'nodes']; from halation.cli import main; sys.exit(main())"
     listing = built.run(code, tmp_path)
     assert all(path.stem in listing for path in (ROOT / "nodes").glob("[!_]*/[!_]*.py"))
+
+
+def test_what_the_renderer_exports_is_there() -> None:
+    """Its modules are loaded by name when they are wanted."""
+    from halation import renderer
+
+    assert all(getattr(renderer, name) is not None for name in renderer.__all__)
+    assert set(renderer.__all__) == set(renderer._HOMES)

@@ -313,8 +313,8 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
 def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
     """Where no software rasterizer is, the tests go on with what there is."""
     real = crew._open_renderer(True).device
-    device = structs.replace(real, target=structs.replace(real.target, renderer="GPU 9000", software=False))
-    monkeypatch.setattr(crew, "_renderer", lambda _: Renderer(device, budget=0))
+    device = real.with_target(structs.replace(real.target, renderer="GPU 9000", software=False))
+    monkeypatch.setattr(crew, "_open_renderer", lambda _: Renderer(device, budget=0))
     suite(ALL)
     cli("--update")
     result = cli("--report", "report.html", "--json")
