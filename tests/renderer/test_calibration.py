@@ -32,7 +32,7 @@ def counted(monkeypatch):
         seen.append(device.target.renderer)
         return FormTimings(1.0 / len(seen), 0.25)
 
-    monkeypatch.setattr(calibration, "measured", fake)
+    monkeypatch.setattr(calibration, "measure_forms", fake)
     return seen
 
 
