@@ -58,34 +58,34 @@ def is_software(renderer: str) -> bool:
 
 
 def choose_form(
-    renderer: str, version: int, asked: Form | None, measure: Callable[[], FormTimings | None]
+    renderer: str, version: int, requested: Form | None, measure: Callable[[], FormTimings | None]
 ) -> FormChoice:
     """The form of passes on a device. `measure` is called only where neither a person nor the table says.
 
     Raises DeviceError for compute passes on an OpenGL without them.
     """
     number = f"{version / 100:.1f}"
-    if asked == "compute" and version < COMPUTE:
+    if requested == "compute" and version < COMPUTE:
         raise DeviceError(
             f"{renderer} offers OpenGL {number}, but compute passes need {COMPUTE / 100:.1f}: use fragment passes"
         )
-    if asked:
-        return FormChoice(asked, "asked for")
+    if requested:
+        return FormChoice(requested, "asked for")
     if version < COMPUTE:
         return FormChoice("fragment", f"by the table: OpenGL {number} has no compute passes")
     for words, form, why in _TABLE:
         if words.search(renderer):
             return FormChoice(form, f"by the table: {why}")
-    found = measure()
-    if found is None or not found.is_usable:
+    timings = measure()
+    if timings is None or not timings.is_usable:
         return FormChoice("compute", "by the table: nothing could be measured, and blurs load less in compute passes")
-    form = "compute" if found.compute <= found.fragment else "fragment"
-    return FormChoice(form, f"measured: {_compare_timings(found, form)}")
+    form = "compute" if timings.compute <= timings.fragment else "fragment"
+    return FormChoice(form, f"measured: {_compare_timings(timings, form)}")
 
 
-def _compare_timings(found: FormTimings, form: Form) -> str:
-    better, worse = sorted((found.compute, found.fragment))
-    other = "fragment" if form == "compute" else "compute"
+def _compare_timings(timings: FormTimings, form: Form) -> str:
+    better, worse = sorted((timings.compute, timings.fragment))
+    other_form = "fragment" if form == "compute" else "compute"
     if math.isinf(worse):
-        return f"the driver refuses {other} passes"
-    return f"{better * 1e3:.2f} ms against {worse * 1e3:.2f} in {other} passes"
+        return f"the driver refuses {other_form} passes"
+    return f"{better * 1e3:.2f} ms against {worse * 1e3:.2f} in {other_form} passes"

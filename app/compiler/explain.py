@@ -26,9 +26,9 @@ def explain(plan: Plan) -> str:
         layer = f":{picture.layer}" if picture.layer else ""
         lines.append(f"upload    {_surface(upload.surface, surface)}  {upload.node} <- {picture.path}{layer}")
     for index, one in enumerate(plan.passes):
-        made = ", ".join(_surface(number, plan.surfaces[number]) for number in one.targets)
+        written = ", ".join(_surface(number, plan.surfaces[number]) for number in one.targets)
         read = " ".join(f"#{number}" for number in one.textures) or "-"
-        lines.append(f"pass {index:<4} {made}  {_label(one)}  reads {read}")
+        lines.append(f"pass {index:<4} {written}  {_label(one)}  reads {read}")
     for name, number in plan.outputs.items():
         lines.append(f"output    #{number}  {name}")
     lines.append(f"frames    {frames_text(plan)}")
@@ -136,9 +136,9 @@ def write_dot(plan: Plan) -> str:
     return "\n".join([*lines, "}"])
 
 
-def _label(one: Pass) -> str:
+def _label(pass_: Pass) -> str:
     """What a pass does: one function, or all that were fused, with the nodes they came from."""
-    return f"{' + '.join(one.functions)}  [{', '.join(one.nodes)}]"
+    return f"{' + '.join(pass_.functions)}  [{', '.join(pass_.nodes)}]"
 
 
 def _surface(number: int, surface: Surface) -> str:

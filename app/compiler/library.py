@@ -77,10 +77,10 @@ class Library(Record, frozen=True):
     def closure(self, names: tuple[str, ...], asker: str) -> tuple[Text, ...]:
         """The files and all they include, each once, includes first. `asker` is named in a ShaderError."""
         if names not in self._closures:
-            done: dict[str, Text] = {}
+            texts: dict[str, Text] = {}
             for name in names:
-                self._include(name, asker, (), done)
-            self._closures[names] = tuple(done.values())
+                self._include(name, asker, (), texts)
+            self._closures[names] = tuple(texts.values())
         return self._closures[names]
 
     def uses(self, shader: str, words: frozenset[str], asker: str) -> bool:
@@ -161,9 +161,9 @@ class Library(Record, frozen=True):
             raise ShaderError(asker, f"shaders/{name}.glsl", 1, "there is no such shader file")
         return self.texts[name]
 
-    def _include(self, name: str, asker: str, trail: tuple[str, ...], done: dict[str, Text]) -> None:
+    def _include(self, name: str, asker: str, trail: tuple[str, ...], texts: dict[str, Text]) -> None:
         """Add a file to `done`, after all that it includes. `trail` are the files that led to it."""
-        if name in done:
+        if name in texts:
             return
         text = self._text(name, asker)
         for include, line in text.includes.items():
@@ -171,8 +171,8 @@ class Library(Record, frozen=True):
             if circle or include not in self.texts:
                 fault = "goes in a circle" if circle else "names no shader file"
                 raise ShaderError(asker, text.file, line, f'#include "{include}.glsl" {fault}')
-            self._include(include, asker, (*trail, name), done)
-        done[name] = text
+            self._include(include, asker, (*trail, name), texts)
+        texts[name] = text
 
 
 class OverlaidTexts(Mapping[str, Text]):

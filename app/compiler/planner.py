@@ -157,11 +157,11 @@ def _schedule_region(
     library: Library,
 ) -> ScheduleRecord:
     """The passes of a plan for a region. Which part of a picture is read may depend on numbers, so it is found anew."""
-    made = {ref for ref, key in whole.keys.items() if key in there}
-    program = focus_program(whole.program, whole.passes, region, made)
+    known_refs = {ref for ref, key in whole.keys.items() if key in there}
+    program = focus_program(whole.program, whole.passes, region, known_refs)
     follows = before and before.passes is whole.passes and before.program.windows == program.windows
-    known = reschedule(before, program, library) if before and follows else None
-    return known or schedule(program, whole.passes, library, options.target, options.precision, options.halves)
+    followed = reschedule(before, program, library) if before and follows else None
+    return followed or schedule(program, whole.passes, library, options.target, options.precision, options.halves)
 
 
 def _plan_tiling(options: PlanOptions, scheduled: ScheduleRecord, library: Library) -> Tiling | None:

@@ -18,7 +18,7 @@ CHANNELS: Mapping[str, tuple[int, bool, str]] = {
 """What is drawn: channels, whether it is data, and the GLSL that computes it. Where nothing is, all is 0."""
 
 
-def vertex_text(library: str) -> str:
+def write_vertex_text(library: str) -> str:
     """The vertex shader: where every vertex is now, was and will be, in the world and in the picture."""
     inputs = "\n".join(f"in {_glsl(count)} {name};" for name, count in ATTRIBUTES.items())
     return f"""#version 410 core
@@ -44,14 +44,14 @@ void main() {{
 """
 
 
-def fragment_lines(library: str, wanted: list[str]) -> Iterator[str]:
+def write_fragment_lines(library: str, channels_written: list[str]) -> Iterator[str]:
     """The fragment shader, which writes the channels that are wanted, in order."""
     yield from ("#version 410 core", library, "uniform vec3 eye;", "uniform ivec2 grid;", "uniform float proxy;")
     yield _varyings("in")
-    for number, _ in enumerate(wanted):
+    for number, _ in enumerate(channels_written):
         yield f"layout(location = {number}) out vec4 o{number};"
     yield "void main() {"
-    for number, name in enumerate(wanted):
+    for number, name in enumerate(channels_written):
         channels, _, text = CHANNELS[name]
         whole = text if channels == 4 else f"vec4({text}, {', '.join(['0.0'] * (4 - channels))})"
         yield f"    o{number} = {whole};"

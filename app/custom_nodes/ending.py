@@ -10,7 +10,7 @@ from ..glsl.loops import COUNTER, MOST_ROUNDS
 _NAN = "uintBitsToFloat(0x7fc00000u)"
 
 
-def ended(text: str, entry: GlslFunction, prefix: str) -> str:
+def add_ending(text: str, entry: GlslFunction, prefix: str) -> str:
     """`text`, whose loops are counted, with a function around the one that is the node.
 
     It counts for every pixel anew. A pixel whose loops had to be left is NaN: a wrong number would be taken for a

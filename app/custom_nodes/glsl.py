@@ -13,12 +13,12 @@ from typing import Any, Literal, cast
 from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
 from msgspec import Struct
 
-from ..glsl import COMMENT, GlslFunction, Text, blanked, parse, unified
-from ..glsl.loops import guarded
+from ..glsl import COMMENT, GlslFunction, Text, blank_comments, parse, unify_lines
+from ..glsl.loops import guard_loops
 from .code import Code, CodeFault, CustomNode
-from .ending import ended
+from .ending import add_ending
 from .notes import Note, read_note
-from .passes import drawn
+from .passes import make_passes
 from .values import value_of
 
 _FORBIDDEN = re.compile(
@@ -45,13 +45,15 @@ class _Parameter(Struct, frozen=True):
 @lru_cache(KEPT)
 def glsl_node(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes. Raises CodeFault."""
-    source = unified(code.text)
-    plain = blanked(source)
+    source = unify_lines(code.text)
+    plain = blank_comments(source)
     text = parse("written", source, code.name)
-    if found := _FORBIDDEN.search(plain):
-        said = found[1] or f"#{found[2]}"
-        line = plain.count("\n", 0, found.start()) + 1
-        raise CodeFault(line, f"'{said}' has no place here: pictures are parameters, read as image or image_at(pixel)")
+    if forbidden := _FORBIDDEN.search(plain):
+        forbidden_word = forbidden[1] or f"#{forbidden[2]}"
+        line = plain.count("\n", 0, forbidden.start()) + 1
+        raise CodeFault(
+            line, f"'{forbidden_word}' has no place here: pictures are parameters, read as image or image_at(pixel)"
+        )
     if not text.all_functions:
         raise CodeFault(1, "there is no function in it: write one, such as vec4 tint(vec4 image) { return image; }")
     entry = text.all_functions[-1]
@@ -67,10 +69,10 @@ def glsl_node(code: Code) -> type[CustomNode]:
     if not outputs:
         outputs = {"out": Output(_picture(entry.result, Note(), entry.line, "the result"))}
     looks = {name for name in inputs if text.words & {f"{name}_{way}" for way in ("at", "near", "size")}}
-    return _class(code, source, text, entry, parameters, inputs, values, outputs, bool(looks))
+    return _make_class(code, source, text, entry, parameters, inputs, values, outputs, bool(looks))
 
 
-def _class(
+def _make_class(
     code: Code,
     source: str,
     text: Text,
@@ -87,9 +89,9 @@ def _class(
     edges = {one.note.edge for one in parameters if one.note.edge}
     if len(edges) > 1:
         raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
-    renamed = _renamed(source, text, prefix)
-    if (safe := guarded(renamed)) != renamed:
-        renamed = ended(safe, entry, prefix)
+    renamed = _prefix_names(source, text, prefix)
+    if (safe := guard_loops(renamed)) != renamed:
+        renamed = add_ending(safe, entry, prefix)
     body: dict[str, Any] = {"__module__": __name__, "__doc__": _doc(source, entry), "__annotations__": {}}
     for one in parameters:
         if one.name in inputs:
@@ -103,18 +105,20 @@ def _class(
         edge = cast("Edge", next(iter(edges), "clamp"))
 
         def passes(self: Filter, draw: Draw) -> Mapping[str, Drawn]:
-            return drawn(self, draw, function, edge)
+            return make_passes(self, draw, function, edge)
 
         body["passes"] = passes
     base = Filter if looks else Pointwise
-    made = cast("type[CustomNode]", new_class(entry.name, (CustomNode, base), {}, lambda space: space.update(body)))
+    node_class = cast(
+        "type[CustomNode]", new_class(entry.name, (CustomNode, base), {}, lambda space: space.update(body))
+    )
     name = f"written/{digest}"
-    made.id, made.category = "glsl", "code"
-    made.values = dict(values)
-    made.function, made.shader = function, name
-    made.code, made.title = code, entry.name.replace("_", " ")
-    made.text = parse(name, renamed, code.file or f"the code of '{entry.name}'")
-    return made
+    node_class.id, node_class.category = "glsl", "code"
+    node_class.values = dict(values)
+    node_class.function, node_class.shader = function, name
+    node_class.code, node_class.title = code, entry.name.replace("_", " ")
+    node_class.text = parse(name, renamed, code.file or f"the code of '{entry.name}'")
+    return node_class
 
 
 def _parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Parameter]:
@@ -142,23 +146,23 @@ def _parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Param
 
 
 def _check(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> None:
-    seen = set[str]()
+    names = set[str]()
     for one in parameters:
-        if one.name in seen or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
-            why = "is there twice" if one.name in seen else "means something else here"
+        if one.name in names or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
+            why = "is there twice" if one.name in names else "means something else here"
             raise CodeFault(one.line, f"the name '{one.name}' {why}: choose another")
-        seen.add(one.name)
-    given = [one for one in parameters if one.out]
-    if given and entry.result != "void":
+        names.add(one.name)
+    outputs = [one for one in parameters if one.out]
+    if outputs and entry.result != "void":
         raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
-    if given and parameters[-len(given) :] != tuple(given):
-        raise CodeFault(given[0].line, "out parameters come last")
-    if not given and entry.result == "void":
+    if outputs and parameters[-len(outputs) :] != tuple(outputs):
+        raise CodeFault(outputs[0].line, "out parameters come last")
+    if not outputs and entry.result == "void":
         raise CodeFault(entry.line, f"'{entry.name}' makes nothing: return a vec4, or write an out parameter")
 
 
-def _socket(one: _Parameter) -> Socket:
-    return _picture(one.glsl, one.note, one.line, f"'{one.name}'")
+def _socket(parameter: _Parameter) -> Socket:
+    return _picture(parameter.glsl, parameter.note, parameter.line, f"'{parameter.name}'")
 
 
 def _picture(glsl: str, note: Note, line: int, what: str) -> Socket:
@@ -196,9 +200,9 @@ def _doc(source: str, entry: GlslFunction) -> str:
     return "\n".join(found).strip() or "Code of this graph."
 
 
-def _renamed(source: str, text: Text, prefix: str) -> str:
+def _prefix_names(source: str, text: Text, prefix: str) -> str:
     """The text with names of its own for all that it defines: what it is fused with may use the same ones."""
-    plain = blanked(source)
+    plain = blank_comments(source)
     names = {one.name for one in text.all_functions}
     names |= {name for found in _DEFINED.finditer(plain) for name in found.groups() if name}
     known = re.compile(rf"\b({'|'.join(sorted(map(re.escape, names), key=len, reverse=True))})\b")
@@ -213,14 +217,15 @@ def _entries(
     outputs: Mapping[str, Output],
 ) -> str:
     """For each output a function that is drawn: it reads its own pixel of every picture and calls the user's."""
-    taken = ", ".join(f"{values[one.name].glsl} {one.name}" for one in parameters if one.name in values)
-    given = [f"{one.name}_at(pixel)" if one.name in inputs else one.name for one in parameters if not one.out]
+    value_list = ", ".join(f"{values[one.name].glsl} {one.name}" for one in parameters if one.name in values)
+    argument_list = [f"{one.name}_at(pixel)" if one.name in inputs else one.name for one in parameters if not one.out]
     if "out" in outputs:
         glsl = outputs["out"].socket.glsl
-        return f"\n{glsl} {function}_out({taken}) {{ return {function}({', '.join(given)}); }}\n"
-    made = [one for one in parameters if one.out]
-    declared = " ".join(f"{one.glsl} {one.name};" for one in made)
-    call = f"{function}({', '.join([*given, *(one.name for one in made)])});"
+        return f"\n{glsl} {function}_out({value_list}) {{ return {function}({', '.join(argument_list)}); }}\n"
+    results = [one for one in parameters if one.out]
+    declared = " ".join(f"{one.glsl} {one.name};" for one in results)
+    call = f"{function}({', '.join([*argument_list, *(one.name for one in results)])});"
     return "".join(
-        f"\n{one.glsl} {function}_{one.name}({taken}) {{ {declared} {call} return {one.name}; }}\n" for one in made
+        f"\n{one.glsl} {function}_{one.name}({value_list}) {{ {declared} {call} return {one.name}; }}\n"
+        for one in results
     )

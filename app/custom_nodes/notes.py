@@ -76,15 +76,15 @@ def _read(item: str, note: Note) -> bool:
         return bool(note.default)
     if item.startswith('"') and item.endswith('"') and len(item) > 1:
         note.label = item[1:-1].strip()
-    elif found := _RANGE.fullmatch(item):
-        note.low, note.high = float(found[1]), float(found[2])
-    elif found := _LIMIT.fullmatch(item):
-        if found[1] == ">=":
-            note.minimum = float(found[2])
+    elif range_match := _RANGE.fullmatch(item):
+        note.low, note.high = float(range_match[1]), float(range_match[2])
+    elif range_match := _LIMIT.fullmatch(item):
+        if range_match[1] == ">=":
+            note.minimum = float(range_match[2])
         else:
-            note.maximum = float(found[2])
-    elif found := _OPTIONAL.fullmatch(item):
-        note.optional = float(found[1] or 0.0)
+            note.maximum = float(range_match[2])
+    elif range_match := _OPTIONAL.fullmatch(item):
+        note.optional = float(range_match[1] or 0.0)
     elif item.startswith("one of "):
         note.choices = tuple(word.strip() for word in item.removeprefix("one of ").split("|") if word.strip())
         return len(note.choices) > 1

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from halation.nodes import Draw, Drawn, Edge, Filter
 
 
-def drawn(node: Filter, draw: Draw, function: str, edge: Edge) -> Mapping[str, Drawn]:
+def make_passes(node: Filter, draw: Draw, function: str, edge: Edge) -> Mapping[str, Drawn]:
     """One draw for each output."""
     pictures = tuple(node.inputs.values())
     values = {name: getattr(node, name) for name in node.values}

@@ -65,8 +65,8 @@ def _default(glsl: str, name: str, text: str, line: int) -> Plain:
     if len(numbers) == 1 and length > 1:
         numbers *= length
     if len(numbers) != length or not all(abs(number) < 3.4e38 for number in numbers):
-        wanted = "a number" if length == 1 else f"{length} numbers, as (1, 0.5, 0)"
-        raise CodeFault(line, f"the default of '{name}' is '{text}': a {glsl} is {wanted}")
+        expected = "a number" if length == 1 else f"{length} numbers, as (1, 0.5, 0)"
+        raise CodeFault(line, f"the default of '{name}' is '{text}': a {glsl} is {expected}")
     if glsl == "int":
         if numbers[0] != int(numbers[0]):
             raise CodeFault(line, f"the default of '{name}' is '{text}': an int is a whole number")

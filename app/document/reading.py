@@ -27,9 +27,9 @@ from msgspec import Struct, field
 from ..custom_nodes import CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
-from ..graph.animation import adapted
+from ..graph.animation import adapt_animation
 from ..graph.names import did_you_mean, name_fault
-from ..graph.values import coerced, expected
+from ..graph.values import coerce, expected
 from ..resources.sandbox import outside
 from . import limits, records
 from .animation import read_animation
@@ -271,7 +271,7 @@ class _BodyReader(Struct):
         values: dict[str, Plain] = {}
         for name, given in raw.items():
             if name in declared:
-                plain = coerced(declared[name], given)
+                plain = coerce(declared[name], given)
                 if plain is None:
                     fault = f"expected {expected(declared[name])}, got {word(given)}"
                     raise DocumentError(self.file, member(member(at, "values"), name), fault)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from msgspec import Struct
 
-from .text import blanked
+from .text import blank_comments
 
 COUNTER = "halation_rounds"
 """The variable that counts: `lib/rounds.glsl` declares it."""
@@ -59,13 +59,13 @@ class _Broken(Exception):
     """The braces or brackets do not close: what is to be done with it is up to the driver."""
 
 
-def guarded(source: str, most: int = MOST_ROUNDS) -> str:
+def guard_loops(source: str, most: int = MOST_ROUNDS) -> str:
     """The text with loops that might not end leaving when they have made more than `most` rounds.
 
     Lines stay where they are, comments go. The same text without comments if all loops surely end.
     """
-    code = blanked(source)
-    plain = _DIRECTIVE.sub(_masked, code)
+    code = blank_comments(source)
+    plain = _DIRECTIVE.sub(_mask, code)
     try:
         loops = tuple(_loops(plain, _constants(code), 0, len(plain), 1.0))
     except (_Broken, RecursionError):
@@ -94,7 +94,7 @@ def _loops(code: str, constants: Mapping[str, float], start: int, end: int, oute
             opened = code.find("(", after)
             if opened < 0 or code[after:opened].strip():
                 raise _Broken
-            after = _closing(code, opened)
+            after = _find_closing(code, opened)
             header = code[opened + 1 : after - 1]
         first = _skip(code, after)
         braced = code[first : first + 1] == "{"
@@ -109,7 +109,7 @@ def _loops(code: str, constants: Mapping[str, float], start: int, end: int, oute
             ended = re.compile(r"\s*while\s*\(").match(code, last)
             if not ended:
                 raise _Broken
-            at = _closing(code, ended.end() - 1)
+            at = _find_closing(code, ended.end() - 1)
 
 
 def _rounds(header: str, body: str, constants: Mapping[str, float], code: str) -> float | None:
@@ -150,38 +150,38 @@ def _changes(name: str, body: str, code: str) -> bool:
 
 def _constants(code: str) -> dict[str, float]:
     """What the text gives a name to: constants and macros that are numbers, unless the name is used for more."""
-    found: dict[str, float] = {}
+    constants: dict[str, float] = {}
     seen: set[str] = set()
     for match in _NAMED.finditer(code):
-        name, value = match[1] or match[3], _value(match[2] or match[4], found)
+        name, value = match[1] or match[3], _value(match[2] or match[4], constants)
         again = name in seen or re.search(rf"(?<!const )\b(?:int|uint|float)\s+{name}\b", code)
         seen.add(name)
         if value is None or again:
-            found.pop(name, None)
+            constants.pop(name, None)
         else:
-            found[name] = value
-    return found
+            constants[name] = value
+    return constants
 
 
 def _value(text: str, constants: Mapping[str, float]) -> float | None:
     """What an expression of numbers and constants is worth."""
     plain = re.sub(r"\bfloat\s*(?=\()", "", text).strip()
     try:
-        return _evaluated(ast.parse(_NUMBER.sub(r"\1", plain), mode="eval").body, constants)
+        return _evaluate(ast.parse(_NUMBER.sub(r"\1", plain), mode="eval").body, constants)
     except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
         return None
 
 
-def _evaluated(node: ast.expr, constants: Mapping[str, float]) -> float:
+def _evaluate(node: ast.expr, constants: Mapping[str, float]) -> float:
     match node:
         case ast.Constant(value=int() | float() as number):
             return number
         case ast.Name(id=name):
             return constants[name]
         case ast.UnaryOp(op=ast.USub(), operand=inner):
-            return -_evaluated(inner, constants)
+            return -_evaluate(inner, constants)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
-            return _OPERATORS[type(op)](_evaluated(left, constants), _evaluated(right, constants))
+            return _OPERATORS[type(op)](_evaluate(left, constants), _evaluate(right, constants))
         case _:
             raise ValueError
 
@@ -190,7 +190,7 @@ def _statement(code: str, at: int) -> int:
     """The end of the statement that begins at a place."""
     at = _skip(code, at)
     if code[at : at + 1] == "{":
-        return _closing(code, at)
+        return _find_closing(code, at)
     word = re.compile(r"\w*").match(code, at)
     assert word is not None
     match word[0]:
@@ -198,7 +198,7 @@ def _statement(code: str, at: int) -> int:
             opened = code.find("(", at)
             if opened < 0:
                 raise _Broken
-            end = _statement(code, _closing(code, opened))
+            end = _statement(code, _find_closing(code, opened))
             rest = re.compile(r"\s*else\b").match(code, end) if word[0] == "if" else None
             return _statement(code, rest.end()) if rest else end
         case "do":
@@ -210,7 +210,7 @@ def _statement(code: str, at: int) -> int:
     return ended + 1
 
 
-def _closing(code: str, opened: int) -> int:
+def _find_closing(code: str, opened: int) -> int:
     """The place after the bracket that closes the one at a place."""
     one, depth = code[opened], 0
     other = {"(": ")", "{": "}"}[one]
@@ -228,6 +228,6 @@ def _skip(code: str, at: int) -> int:
     return at
 
 
-def _masked(match: re.Match[str]) -> str:
+def _mask(match: re.Match[str]) -> str:
     """As many spaces, lines as they were."""
     return re.sub(r"[^\n]", " ", match[0])

@@ -98,33 +98,33 @@ def _function(match: re.Match[str], code: str) -> GlslFunction:
         depth += {"{": 1, "}": -1}.get(code[end], 0)
         end += 1
     used = frozenset(_WORD.findall(code, match.end(), end))
-    taken: list[tuple[str, str]] = []
-    given: list[tuple[str, str]] = []
+    parameters: list[tuple[str, str]] = []
+    outputs: list[tuple[str, str]] = []
     for part in _QUALIFIER.sub("", inside).split(","):
         found = _PARAMETER.match(part.strip())
         if found is not None and found[2] != "void":
             way, glsl, called, array = found.groups(default="")
-            (given if way else taken).append((glsl + array, called))
+            (outputs if way else parameters).append((glsl + array, called))
     line = code.count("\n", 0, match.start(2)) + 1
-    return GlslFunction(name, result, tuple(taken), tuple(given), match.start(), end, line, used)
+    return GlslFunction(name, result, tuple(parameters), tuple(outputs), match.start(), end, line, used)
 
 
-def blanked(source: str) -> str:
+def blank_comments(source: str) -> str:
     """Code whose comments are spaces of the same height: lines and columns stay.
 
     A brace in a sentence is no code then, and no driver sees letters beyond ASCII.
     """
-    return COMMENT.sub(_blank, unified(source))
+    return COMMENT.sub(_blank, unify_lines(source))
 
 
-def unified(source: str) -> str:
+def unify_lines(source: str) -> str:
     """The text with line ends of one kind."""
     return source.replace("\r\n", "\n").replace("\r", "\n").removeprefix("\ufeff")
 
 
 def parse(name: str, source: str, file: str = "") -> Text:
     """Read a shader file's functions and includes. `file` is what messages call it."""
-    code = blanked(source)
+    code = blank_comments(source)
     functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
     by_name = MappingProxyType({one.name: one for one in functions})
     includes = {

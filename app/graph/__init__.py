@@ -5,7 +5,7 @@ from __future__ import annotations
 from .animation import ANIMATED, Animation
 from .color import color_settings
 from .conversion import conversion, make_socket
-from .evaluate_at_frame import animation_fault, is_animated, keyed_range, still, value_at
+from .evaluate_at_frame import animation_fault, evaluate_at_frame, find_key_range, is_animated, value_at
 from .expressions import Expression
 from .graph import Graph, Group, Item, declared, signature
 from .keys import Interpolation, Key, Keys, Outside
@@ -40,12 +40,12 @@ __all__ = [
     "conversion",
     "declared",
     "did_you_mean",
+    "evaluate_at_frame",
+    "find_key_range",
     "is_animated",
-    "keyed_range",
     "make_socket",
     "node_output",
     "problems",
     "signature",
-    "still",
     "value_at",
 ]

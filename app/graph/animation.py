@@ -10,7 +10,7 @@ from halation.nodes import Value
 from .expressions import Expression
 from .keys import Keys
 from .model import Port
-from .values import coerced, value_fault
+from .values import coerce, value_fault
 
 Animation = Keys | Expression
 
@@ -18,23 +18,23 @@ ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix"})
 """Types of values that can change over time."""
 
 
-def adapted(value: Value, animation: Animation) -> Animation:
+def adapt_animation(value: Value, animation: Animation) -> Animation:
     """The same with keys of the type that the value has: 1 becomes 1.0 where it takes numbers."""
     if isinstance(animation, Expression):
         return animation
-    keys = (replace(key, value=plain) for key in animation.keys if (plain := coerced(value, key.value)) is not None)
+    keys = (replace(key, value=plain) for key in animation.keys if (plain := coerce(value, key.value)) is not None)
     made = tuple(keys)
     return replace(animation, keys=made) if len(made) == len(animation.keys) else animation
 
 
-def moved(animation: Mapping[Port, Animation], old: str, new: str = "") -> dict[Port, Animation]:
+def move_animation(animation: Mapping[Port, Animation], old: str, new: str = "") -> dict[Port, Animation]:
     """All `animation` after a node or control was renamed, or a node removed if `new` is empty."""
     found: dict[Port, Animation] = {}
     for port, item in animation.items():
         if port.node == old and not new:
             continue
         here = Port(new, port.socket) if port.node == old else port
-        found[here] = item.renamed(old, new) if new and isinstance(item, Expression) else item
+        found[here] = item.rename(old, new) if new and isinstance(item, Expression) else item
     return found
 
 

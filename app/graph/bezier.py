@@ -16,7 +16,7 @@ Segment = tuple[Point, Point, Point, Point]
 _STEPS = 100
 
 
-def limited(first: Point, last: Point, right: Point, left: Point) -> Segment:
+def limit_handles(first: Point, last: Point, right: Point, left: Point) -> Segment:
     """The segment from `first` to `last` with handles as offsets: shortened to end inside, their directions kept.
 
     A handle that points away from the segment stands upright.

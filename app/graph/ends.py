@@ -7,8 +7,8 @@ from typing import Any, Literal, Protocol
 
 from .model import Port
 from .names import check_name, pick
-from .notes import moved_keys, moved_layout, renamed, without
-from .relink import moved_links
+from .notes import move_keys, move_layout, rename_key, without
+from .relink import move_links
 
 EndSection = Literal["inputs", "outputs", "controls"]
 
@@ -36,7 +36,7 @@ def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> di
         ends, links = others, {end: start for end, start in graph.links.items() if port not in (end, start)}
     else:
         check_name(new, section[:-1], others)
-        ends, links = renamed(ends, old, new), moved_links(graph.links, {port: Port(section, new)})
+        ends, links = rename_key(ends, old, new), move_links(graph.links, {port: Port(section, new)})
     place, new_place = f"{section}.{old}", f"{section}.{new}" if new else ""
-    ui, extra = moved_layout(graph.ui, place, new_place), moved_keys(graph.extra, place, new_place)
+    ui, extra = move_layout(graph.ui, place, new_place), move_keys(graph.extra, place, new_place)
     return {section: ends, "links": links, "ui": ui, "extra": extra}

@@ -12,20 +12,20 @@ from ..errors import GraphError
 from .animation import ANIMATED, Animation, unfit
 from .expressions import Expression
 from .graph import Graph, Group, declared
-from .keys import Keys, rounded
+from .keys import Keys, round_keys
 from .model import Port, Settings
 from .names import did_you_mean
-from .values import coerced, expected
+from .values import coerce, expected
 
 CHANNELS = {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
 
 
-def still(graph: Graph, frame: int) -> Graph:
+def evaluate_at_frame(graph: Graph, frame: int) -> Graph:
     """The graph at a frame: every animated value, in groups too, is set to what it is then.
 
     Raises GraphError for an expression that has no value there, or that needs itself.
     """
-    return _Instant(frame, graph.settings).of(graph)
+    return _FrameEvaluation(frame, graph.settings).of(graph)
 
 
 def value_at(graph: Graph, port: Port, frame: int) -> Plain:
@@ -40,10 +40,10 @@ def is_animated(graph: Graph) -> bool:
     )
 
 
-def keyed_range(graph: Graph) -> tuple[int, int]:
+def find_key_range(graph: Graph) -> tuple[int, int]:
     """From frame 1 to the last key, groups included."""
     keyed = [item for item in graph.animation.values() if isinstance(item, Keys) and item.keys]
-    inner = (keyed_range(item.graph)[1] for item in graph.nodes.values() if isinstance(item, Group))
+    inner = (find_key_range(item.graph)[1] for item in graph.nodes.values() if isinstance(item, Group))
     return 1, max([1, *(math.ceil(item.keys[-1].frame) for item in keyed), *inner])
 
 
@@ -57,9 +57,9 @@ def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | Non
             return None
         for name in animation.names:
             try:
-                named(graph, name)
+                find_named_value(graph, name)
             except GraphError as error:
-                raise animation.blamed(name, f"{error}") from None
+                raise animation.blame_name(name, f"{error}") from None
     except GraphError as error:
         return str(error) if f"{port}" in str(error) else f"{port}: {error}"
     return None
@@ -68,7 +68,7 @@ def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | Non
 def loop_faults(graph: Graph) -> Iterator[tuple[Port, str]]:
     """Expressions that need themselves."""
     reads = {
-        port: [named(graph, name)[0] for name in item.names if _is_there(graph, name)]
+        port: [find_named_value(graph, name)[0] for name in item.names if _is_there(graph, name)]
         for port, item in graph.animation.items()
         if isinstance(item, Expression)
     }
@@ -84,7 +84,7 @@ def loop_faults(graph: Graph) -> Iterator[tuple[Port, str]]:
                 todo.extend(reads.get(other, ()))
 
 
-def named(graph: Graph, name: str) -> tuple[Port, int | None]:
+def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     """The value, and the channel of it, that an expression calls `glow`, `bloom.intensity` or `move.offset.x`.
 
     Raises GraphError with a suggestion.
@@ -111,7 +111,7 @@ def named(graph: Graph, name: str) -> tuple[Port, int | None]:
     return port, channel
 
 
-class _Instant:
+class _FrameEvaluation:
     """One frame."""
 
     def __init__(self, frame: int, settings: Settings) -> None:
@@ -161,7 +161,7 @@ class _Values:
         return fitted(port, value, made, self._frame)
 
     def _named(self, name: str) -> Plain:
-        port, channel = named(self._graph, name)
+        port, channel = find_named_value(self._graph, name)
         found = self.at(port)
         return found[channel] if channel is not None and isinstance(found, tuple) else found
 
@@ -174,10 +174,10 @@ def fitted(port: Port, value: Value, made: Plain, frame: int) -> Plain:
     if isinstance(value.default, tuple) and isinstance(made, int | float):
         made = (float(made),) * len(value.default)
     elif value.type == "int" and isinstance(made, float):
-        made = int(rounded(made))
+        made = int(round_keys(made))
     elif value.type == "bool" and isinstance(made, int | float):
         made = made != 0
-    plain = coerced(value, made)
+    plain = coerce(value, made)
     if plain is None:
         raise GraphError(f"{port} at frame {frame} is {made!r}: it takes {expected(value)}", node=port.node)
     if isinstance(plain, bool | str):
@@ -189,7 +189,7 @@ def fitted(port: Port, value: Value, made: Plain, frame: int) -> Plain:
 
 def _is_there(graph: Graph, name: str) -> bool:
     try:
-        named(graph, name)
+        find_named_value(graph, name)
     except GraphError:
         return False
     return True

@@ -12,14 +12,14 @@ from halation.nodes import Node, Plain, Pointwise, Socket, Value
 from msgspec import structs
 
 from ..errors import GraphError
-from .animation import ANIMATED, Animation, adapted, moved, unfit
+from .animation import ANIMATED, Animation, adapt_animation, move_animation, unfit
 from .conversion import conversion
 from .ends import EndSection, move_end
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
-from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
-from .relink import moved_links, relinked
-from .values import coerced, value_fault
+from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
+from .relink import move_links, relink
+from .values import coerce, value_fault
 from .walk import Wired, loop_sentence, route
 
 
@@ -115,7 +115,7 @@ class Graph(Wired[Item]):
             return str(error)
         return None if start is None or end is None else conversion(start, end)
 
-    def bypass(self, id: str, wanted: Socket | Value | None) -> Port | None:
+    def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
         """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
         face = signature(self.node(id))
         ports = (
@@ -128,7 +128,7 @@ class Graph(Wired[Item]):
                 start = self.source(source)
             except GraphError:
                 continue
-            if source.node != id and (wanted is None or start is None or conversion(start, wanted) is None):
+            if source.node != id and (target is None or start is None or conversion(start, target) is None):
                 return source
         return None
 
@@ -153,15 +153,15 @@ class Graph(Wired[Item]):
         for target, source in self.links.items() if heal else ():
             if source.node == id != target.node and (instead := self._instead(id, target)):
                 links[target] = instead
-        kept = {name: control for name, control in self.controls.items() if control.target.node != id}
+        controls = {name: control for name, control in self.controls.items() if control.target.node != id}
         return self._with(
             nodes=without(self.nodes, id),
             links=links,
-            controls=kept,
+            controls=controls,
             muted=self.muted - {id},
-            animation=moved(self.animation, id),
-            ui=moved_layout(self.ui, id),
-            extra=moved_keys(self.extra, f"nodes.{id}"),
+            animation=move_animation(self.animation, id),
+            ui=move_layout(self.ui, id),
+            extra=move_keys(self.extra, f"nodes.{id}"),
         )
 
     def rename(self, old: str, new: str) -> Self:
@@ -178,13 +178,13 @@ class Graph(Wired[Item]):
             for name, item in self.controls.items()
         }
         return self._with(
-            nodes=renamed(self.nodes, old, new),
-            links=moved_links(self.links, moves),
+            nodes=rename_key(self.nodes, old, new),
+            links=move_links(self.links, moves),
             controls=controls,
             muted={new if id == old else id for id in self.muted},
-            animation=moved(self.animation, old, new),
-            ui=moved_layout(self.ui, old, new),
-            extra=moved_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
+            animation=move_animation(self.animation, old, new),
+            ui=move_layout(self.ui, old, new),
+            extra=move_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
         )
 
     def replace(self, id: str, item: Item) -> Self:
@@ -195,19 +195,19 @@ class Graph(Wired[Item]):
         """
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
-        links = relinked(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
-        kept = {
+        links = relink(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
+        controls = {
             name: control
             for name, control in self.controls.items()
             if control.target.node != id or face.anything or control.target.socket in face.values
         }
-        extra = self.extra if type(before) is type(item) else moved_keys(self.extra, f"nodes.{id}")
+        extra = self.extra if type(before) is type(item) else move_keys(self.extra, f"nodes.{id}")
         kept_animation = {
             port: animation
             for port, animation in self.animation.items()
             if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
         }
-        return after._with(links=links, controls=kept, animation=kept_animation, extra=extra)
+        return after._with(links=links, controls=controls, animation=kept_animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
         """A graph where the node passes its first input through, or works again."""
@@ -242,10 +242,10 @@ class Graph(Wired[Item]):
         """
         if isinstance(value, Animation):
             return self.animate(port, value)
-        wanted = declared(self.node(port.node), port.socket, port.node)
-        if fault := value_fault(wanted, value):
+        declaration = declared(self.node(port.node), port.socket, port.node)
+        if fault := value_fault(declaration, value):
             raise GraphError(f"{port}: {fault}")
-        plain = coerced(wanted, value)
+        plain = coerce(declaration, value)
         assert plain is not None
         return self.put(port, plain)
 
@@ -268,7 +268,7 @@ class Graph(Wired[Item]):
         value = declared(self.node(port.node), port.socket, port.node)
         if fault := unfit(port, value, animation):
             raise GraphError(fault)
-        return self._with(animation={**self.animation, port: adapted(value, animation)})
+        return self._with(animation={**self.animation, port: adapt_animation(value, animation)})
 
     def set_control(self, name: str, value: object) -> Self:
         """A graph where the value behind a control is set."""
@@ -327,14 +327,14 @@ class Graph(Wired[Item]):
     def rename_control(self, old: str, new: str) -> Self:
         """A graph where a control has another name; expressions follow."""
         after = self._move_end("controls", old, new)
-        return after if old in self.nodes else after._with(animation=moved(self.animation, old, new))
+        return after if old in self.nodes else after._with(animation=move_animation(self.animation, old, new))
 
     # --- inside ------------------------------------------------------------------------------------------------
 
     def _with(self, **changes: Any) -> Self:
         if "links" in changes and "routes" in self.ui:
             ends = {str(target) for target in changes["links"]}
-            changes["ui"] = linked_routes(changes.get("ui", self.ui), ends)
+            changes["ui"] = keep_linked_routes(changes.get("ui", self.ui), ends)
         return dataclasses.replace(self, **changes)
 
     def _instead(self, id: str, target: Port) -> Port | None:

@@ -73,7 +73,7 @@ class Keys:
     outside: Outside = "hold"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "keys", _ordered(self.keys))
+        object.__setattr__(self, "keys", _sort_keys(self.keys))
 
     @cached_property
     def frames(self) -> tuple[float, ...]:
@@ -166,7 +166,7 @@ class Keys:
         def there(key: Key) -> Key:
             frame = about + (key.frame - about) * factor
             left, right = ((side[0] * factor, *side[1:]) if side else () for side in (key.left, key.right))
-            place = float(rounded(frame)) if whole else round(frame, _DECIMALS)
+            place = float(round_keys(frame)) if whole else round(frame, _DECIMALS)
             return replace(key, frame=place, left=left, right=right)
 
         return self._changed(frames, there)
@@ -246,7 +246,7 @@ class Keys:
         """The four points (frame, channels) from the key of that place to the next."""
         start, end = self.keys[place], self.keys[place + 1]
         first, last = (start.frame, *start.parts), (end.frame, *end.parts)
-        return bezier.limited(first, last, *self._arms(place, limit=False))
+        return bezier.limit_handles(first, last, *self._arms(place, limit=False))
 
     def _arms(self, place: int, limit: bool = True) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """The handles that lie in the segment after the key of that place."""
@@ -255,7 +255,7 @@ class Keys:
         right = start.handle("right") or (third, *(third * slope for slope in self.slopes(start.frame)))
         left = end.handle("left") or (-third, *(-third * slope for slope in self.slopes(end.frame)))
         if limit and len(right) == len(left):
-            _, one, two, _ = bezier.limited((start.frame, *start.parts), (end.frame, *end.parts), right, left)
+            _, one, two, _ = bezier.limit_handles((start.frame, *start.parts), (end.frame, *end.parts), right, left)
             return (
                 tuple(b - a for a, b in zip((start.frame, *start.parts), one, strict=True)),
                 tuple(b - a for a, b in zip((end.frame, *end.parts), two, strict=True)),
@@ -283,14 +283,14 @@ class Keys:
         return parts if isinstance(self.keys[0].value, tuple) else parts[0]
 
 
-def rounded(number: float) -> int:
+def round_keys(number: float) -> int:
     """The nearest whole number; halves go away from zero."""
     down = math.floor(abs(number))
     away = down + (abs(number) - down >= 0.5)
     return -away if number < 0 else away
 
 
-def _ordered(keys: Iterable[Key]) -> tuple[Key, ...]:
+def _sort_keys(keys: Iterable[Key]) -> tuple[Key, ...]:
     found = {key.frame: key for key in keys}
     return tuple(found[frame] for frame in sorted(found))
 
@@ -304,7 +304,7 @@ def _lifted(key: Key, lift: Plain) -> Plain:
     parts = tuple(part + more for part, more in zip(key.parts, lifts, strict=True))
     if isinstance(key.value, tuple):
         return parts
-    return rounded(parts[0]) if isinstance(key.value, int) else parts[0]
+    return round_keys(parts[0]) if isinstance(key.value, int) else parts[0]
 
 
 def _hermite(u: float, start: float, end: float, rise: float, fall: float) -> float:

@@ -15,12 +15,12 @@ def without(known: Mapping[K, T], key: K) -> dict[K, T]:
     return {name: item for name, item in known.items() if name != key}
 
 
-def renamed(known: Mapping[K, T], old: K, new: K) -> dict[K, T]:
+def rename_key(known: Mapping[K, T], old: K, new: K) -> dict[K, T]:
     """The mapping with one key changed, in the same order."""
     return {new if name == old else name: item for name, item in known.items()}
 
 
-def moved_layout(ui: Mapping[str, Any], old: str, new: str = "") -> Mapping[str, Any]:
+def move_layout(ui: Mapping[str, Any], old: str, new: str = "") -> Mapping[str, Any]:
     """`ui` after a node or end of the graph was renamed, or removed if `new` is empty.
 
     Ends are called as `ui["nodes"]` does: `inputs.beauty`.
@@ -39,7 +39,7 @@ def moved_layout(ui: Mapping[str, Any], old: str, new: str = "") -> Mapping[str,
     return _with_sections(ui, {"nodes": keys("nodes"), "routes": keys("routes"), "viewers": shown})
 
 
-def linked_routes(ui: Mapping[str, Any], links: Container[str]) -> Mapping[str, Any]:
+def keep_linked_routes(ui: Mapping[str, Any], links: Container[str]) -> Mapping[str, Any]:
     """`ui` without the routes of links that are no more."""
     routes = _section(ui, "routes")
     return _with_sections(ui, {"routes": {target: dots for target, dots in routes.items() if target in links}})
@@ -50,7 +50,7 @@ def without_route(ui: Mapping[str, Any], target: str) -> Mapping[str, Any]:
     return _with_sections(ui, {"routes": without(_section(ui, "routes"), target)})
 
 
-def moved_keys(extra: Mapping[str, Mapping[str, Any]], old: str, new: str = "") -> dict[str, Mapping[str, Any]]:
+def move_keys(extra: Mapping[str, Mapping[str, Any]], old: str, new: str = "") -> dict[str, Mapping[str, Any]]:
     """`extra` after the object at JSON path `old` was moved to `new`, or removed if that is empty."""
     inside = {path for path in extra if path == old or path.startswith(f"{old}.")}
     kept = {path: keys for path, keys in extra.items() if path not in inside}

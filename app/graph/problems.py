@@ -16,7 +16,7 @@ from .graph import Graph, Group, Item, signature
 from .model import Input, Port, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .rules import Rule, Severity
-from .unmerged import CONFLICTS, unmerged
+from .unmerged import CONFLICTS, find_unmerged
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops
 
@@ -55,11 +55,11 @@ def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tup
 
     `known` holds the installed node types, for suggestions. An input without file or default is none: it may be bound.
     """
-    found = list(_inside(graph, catalogue() if known is None else known, 0))
-    return tuple(sorted(found, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
+    problems_ = list(_inside(graph, catalogue() if known is None else known, 0))
+    return tuple(sorted(problems_, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
 
 
-def rechecked(
+def recheck(
     graph: Graph, before: Graph, found: tuple[Problem, ...], known: Mapping[str, type[Node]] | None = None
 ) -> tuple[Problem, ...]:
     """The same as `problems(graph, known)`, given what that `found` in a graph of `before`.
@@ -101,7 +101,7 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
         yield Problem(loop[0], "", loop_sentence(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
-    for node, socket, sentence, at in unmerged(graph.extra):
+    for node, socket, sentence, at in find_unmerged(graph.extra):
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
 
 
@@ -176,8 +176,8 @@ def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Proble
 def _values(id: str, item: Item) -> Iterator[Problem]:
     values = signature(item).values
     for name, value in values.items():
-        now = item.values.get(name, value.default) if isinstance(item, Group) else getattr(item, name)
-        if now is not value.default and (fault := value_fault(value, now)):
+        setting = item.values.get(name, value.default) if isinstance(item, Group) else getattr(item, name)
+        if setting is not value.default and (fault := value_fault(value, setting)):
             yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE)
     for name in item.values if isinstance(item, Group) else ():
         if name not in values:
@@ -218,12 +218,12 @@ def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
 
 def _default_fault(name: str, end: Input) -> str | None:
     channels = end.socket().channels
-    given = (end.default,) if isinstance(end.default, int | float) else end.default
-    found = numbers(given, 1) or numbers(given, channels)
-    if given is None or (found and all(map(math.isfinite, found))):
+    default = (end.default,) if isinstance(end.default, int | float) else end.default
+    fits = numbers(default, 1) or numbers(default, channels)
+    if default is None or (fits and all(map(math.isfinite, fits))):
         return None
-    wanted = "a number" if channels == 1 else f"a number or a list of {channels} numbers"
-    return f"input '{name}': the default {end.default!r} does not fit: {end.kind} takes {wanted}"
+    expected_form = "a number" if channels == 1 else f"a number or a list of {channels} numbers"
+    return f"input '{name}': the default {end.default!r} does not fit: {end.kind} takes {expected_form}"
 
 
 def _leftovers(graph: Graph) -> Iterator[Problem]:

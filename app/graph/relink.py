@@ -10,33 +10,33 @@ Fits = Callable[[Port, Port], bool]
 """Whether a link from the first port can feed the second."""
 
 
-def moved_links(links: Mapping[Port, Port], moves: Mapping[Port, Port]) -> dict[Port, Port]:
+def move_links(links: Mapping[Port, Port], moves: Mapping[Port, Port]) -> dict[Port, Port]:
     """All `links` with some ports replaced by others."""
     return {moves.get(target, target): moves.get(source, source) for target, source in links.items()}
 
 
-def relinked(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, fits: Fits) -> dict[Port, Port]:
+def relink(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, fits: Fits) -> dict[Port, Port]:
     """All `links` (target to source), those of node `id` moved from its `old` sockets to its `new` ones.
 
     A link stays on the socket of the same name if it fits there, else takes the first free one that fits, else goes.
     """
-    kept = {target: source for target, source in links.items() if id not in (target.node, source.node)}
+    other_links = {target: source for target, source in links.items() if id not in (target.node, source.node)}
     rank = {name: place for place, name in enumerate((*old.inputs, *old.values))}
     into = [(target, source) for target, source in links.items() if target.node == id != source.node]
     into.sort(key=lambda link: (rank.get(link[0].socket, len(rank)), link[0]))
     homeless: list[Port] = []
     for target, source in into:
         if fits(source, target):
-            kept[target] = source
+            other_links[target] = source
         else:
             homeless.append(source)
     for source in homeless:
         ends = (Port(id, name) for name in new.inputs)
-        if end := next((end for end in ends if end not in kept and fits(source, end)), None):
-            kept[end] = source
+        if end := next((end for end in ends if end not in other_links and fits(source, end)), None):
+            other_links[end] = source
     for target, source in links.items():
         if source.node == id != target.node:
             starts = (source, *(Port(id, name) for name in new.outputs))
             if start := next((start for start in starts if fits(start, target)), None):
-                kept[target] = start
-    return kept
+                other_links[target] = start
+    return other_links

@@ -13,7 +13,7 @@ CONFLICTS = "conflicts"
 _LONG = 40
 
 
-def unmerged(extra: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
+def find_unmerged(extra: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
     """Node, socket, sentence and JSON path of every conflict, given what a graph keeps.
 
     The node is a path through groups.

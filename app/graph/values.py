@@ -12,7 +12,7 @@ _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38
 
 
-def coerced(value: Value, given: object) -> Plain | None:
+def coerce(value: Value, given: object) -> Plain | None:
     """`given` as the plain type that `value` declares (an int serves as a float, a list as a tuple), else None.
 
     Ranges and choices are not looked at: see `value_fault`.
@@ -76,7 +76,7 @@ def expected(value: Value) -> str:
 
 def value_fault(value: Value, given: object) -> str | None:
     """Why `given` is no legal setting (type, hard range, choice, not finite), or None."""
-    plain = coerced(value, given)
+    plain = coerce(value, given)
     if plain is None:
         return f"{given!r} does not fit: it takes {expected(value)}"
     if isinstance(plain, str):

@@ -17,11 +17,11 @@ Steps = Mapping[str, Iterable[str]]
 
 def neighbors(names: Collection[str], end: str, pairs: Iterable[tuple[str, str]]) -> Mapping[str, frozenset[str]]:
     """For every name and `end`: the names that a pair leads to from there."""
-    found: dict[str, set[str]] = {name: set() for name in (*names, end)}
+    neighbors_by_node: dict[str, set[str]] = {name: set() for name in (*names, end)}
     for start, after in pairs:
-        if start in found and after in names:
-            found[start].add(after)
-    return MappingProxyType({name: frozenset(afters) for name, afters in found.items()})
+        if start in neighbors_by_node and after in names:
+            neighbors_by_node[start].add(after)
+    return MappingProxyType({name: frozenset(afters) for name, afters in neighbors_by_node.items()})
 
 
 def sort(steps: Steps) -> tuple[str, ...]:

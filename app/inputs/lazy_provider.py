@@ -35,12 +35,12 @@ class LazyResourceProvider:
     def frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
         """The first and last frame of a graph, without reading any file where it says so itself."""
         from ..compiler import find_named_files
-        from ..graph import keyed_range
+        from ..graph import find_key_range
 
         if graph.settings.frames:
             return graph.settings.frames
         if not inputs and not find_named_files(graph, {}):
-            return keyed_range(graph)
+            return find_key_range(graph)
         return self.pictures.frames(graph, self.bind(graph, inputs))
 
     def check_frames(self, graph: Graph, frames: range) -> None:

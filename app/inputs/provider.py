@@ -11,7 +11,7 @@ from halation.nodes import Kind
 
 from ..compiler import find_named_files
 from ..errors import InputError, UsageError
-from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
+from ..graph import INPUTS, OUTPUTS, Graph, Input, find_key_range
 from ..graph.frames import is_video
 from ..media.layers import split_layer
 from ..resources.picture import Picture
@@ -66,7 +66,7 @@ class MediaProvider:
         for path, _, _ in find_named_files(graph, bound):
             if (sequence := find_sequence(path)) and sequence.frames:
                 return sequence.frames[0], sequence.frames[-1]
-        return keyed_range(graph)
+        return find_key_range(graph)
 
     def rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
         """Frames per second: as the graph says, else those of the first video it reads, else the usual ones."""

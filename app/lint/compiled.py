@@ -12,7 +12,7 @@ from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
 
 from ..compiler import Request, examine, find_named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
-from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, keyed_range
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, find_key_range
 from ..graph.rules import Rule
 from ..resources.color_program import ColorProgram
 from ..resources.mesh import Mesh
@@ -83,7 +83,7 @@ class NotingProvider:
     def first_frame(self, graph: Graph) -> int:
         """The first frame of a graph. A file that is missing in a sequence is noted."""
         if not any(self._is_sequence(path) for path, _, _ in find_named_files(graph, {})):
-            return (graph.settings.frames or keyed_range(graph))[0]
+            return (graph.settings.frames or find_key_range(graph))[0]
         try:
             first, last = self.pictures.frames(graph, {})
             self.pictures.check_frames(graph, range(first, last + 1))

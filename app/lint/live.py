@@ -8,7 +8,7 @@ from dataclasses import replace
 from halation.nodes import Node, Trait
 
 from ..graph import Graph, Problem, problems
-from ..graph.problems import differ_in_nodes, rechecked
+from ..graph.problems import differ_in_nodes, recheck
 from .allowing import find_allowance
 from .rules import data, filtering, light
 from .sheet import GraphFacts, bodies, has_trait
@@ -29,7 +29,7 @@ def recheck_remarks(
 ) -> tuple[Problem, ...]:
     """The same as `remarks(graph)`, given what that found in a graph of `before`; quick while a value is dragged."""
     if differ_in_nodes(graph, before) and _same_roles(graph, before):
-        rechecked_problems = rechecked(graph, before, last_problems, types)
+        rechecked_problems = recheck(graph, before, last_problems, types)
         if rechecked_problems is last_problems:
             return last_problems
     return find_remarks(graph, types)

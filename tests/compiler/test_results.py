@@ -182,7 +182,7 @@ def test_a_picture_that_cannot_be_read_is_the_fault_of_its_input():
 def changed(before: Graph, after: Graph) -> set[str]:
     first = Upstream(before)
     old, new = first.hashes, Upstream(after).hashes
-    assert Upstream(after, known=first).hashes == new
+    assert Upstream(after, before=first).hashes == new
     return {path for path in old.keys() | new.keys() if old.get(path) != new.get(path)}
 
 

@@ -9,8 +9,8 @@ import pytest
 from conftest import Run, graph_of
 from halation.custom_nodes import Code, node_type
 from halation.errors import ShaderError
-from halation.glsl import blanked
-from halation.glsl.loops import COUNTER, guarded
+from halation.glsl import blank_comments
+from halation.glsl.loops import COUNTER, guard_loops
 from halation.renderer import Renderer, RenderRequest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -21,7 +21,7 @@ PICTURE = np.random.default_rng(7).random((3, 5, 4)).astype(np.float32)
 
 def checks(text: str) -> int:
     """How many loops are counted."""
-    return len(CHECK.findall(guarded(text)))
+    return len(CHECK.findall(guard_loops(text)))
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def checks(text: str) -> int:
 )
 def test_loops_that_say_how_often_they_run_are_left_alone(loop: str) -> None:
     text = f"#define N 8\nconst int M = 3 + 4;\nvoid f(int m) {{ int n = 0; {loop} }}"
-    assert guarded(text) == blanked(text)
+    assert guard_loops(text) == blank_comments(text)
 
 
 @pytest.mark.parametrize(
@@ -80,14 +80,16 @@ def test_loops_that_might_not_end_are_counted(loop: str) -> None:
     head = "#define K 8\n#undef K\n#define K m\nvoid change(inout int i) { i = 0; }\n"
     text = f"{head}void f(int m) {{ int n = 0; {loop} }}"
     assert checks(text) == 1
-    assert guarded(text).count("\n") == text.count("\n")
+    assert guard_loops(text).count("\n") == text.count("\n")
 
 
 def test_every_loop_of_a_nest_is_counted_once() -> None:
     nest = "if (a) while (b) for (int i = 0; i < 4; i++) do if (c) x++; else y++; while (d); else for (;;) { }"
     text = f"void f() {{ {nest} }}"
     assert checks(text) == 3
-    assert CHECK.sub("", guarded(text)).replace(" }", "").replace("{", "") == text.replace(" }", "").replace("{", "")
+    assert CHECK.sub("", guard_loops(text)).replace(" }", "").replace("{", "") == text.replace(" }", "").replace(
+        "{", ""
+    )
     thousands = "for (int i = 0; i < 3000; i++) "
     assert checks(f"void f() {{ {thousands} n++; }}") == 0
     assert checks(f"void f() {{ {thousands * 2} n++; }}") == 1
@@ -95,12 +97,12 @@ def test_every_loop_of_a_nest_is_counted_once() -> None:
 
 @pytest.mark.parametrize("text", ["void f() { for (", "while", "do", "void f() { while (a", "}{", "for (;;", ""])
 def test_text_that_is_no_code_stays(text: str) -> None:
-    assert guarded(text) == text
+    assert guard_loops(text) == text
 
 
 @given(st.text(st.sampled_from("whiledofr()[]{};,<>=+- \n#\\'\"/*0123456789i"), max_size=80))
 def test_any_text_keeps_its_lines(text: str) -> None:
-    assert guarded(text).count("\n") == blanked(text).count("\n")
+    assert guard_loops(text).count("\n") == blank_comments(text).count("\n")
 
 
 def test_code_without_an_end_is_not_a_number(run: Run) -> None:

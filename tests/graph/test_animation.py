@@ -18,10 +18,10 @@ from halation.graph import (
     Output,
     Port,
     Settings,
+    evaluate_at_frame,
+    find_key_range,
     is_animated,
-    keyed_range,
     problems,
-    still,
     value_at,
 )
 from halation.nodes.blur.gaussian_blur import GaussianBlur
@@ -42,7 +42,7 @@ def graph() -> Graph:
 
 
 def at(graph: Graph, port: Port, frame: int) -> object:
-    return getattr(still(graph, frame).nodes[port.node], port.socket)
+    return getattr(evaluate_at_frame(graph, frame).nodes[port.node], port.socket)
 
 
 def faults(graph: Graph) -> list[str]:
@@ -54,7 +54,7 @@ def test_keys_and_expressions_make_values(graph):
     assert [at(graph, STOPS, frame) for frame in (-3, 1, 3, 11, 20)] == [0.0, 0.0, 1.0, 5.0, 5.0]
     assert at(graph, MOVE, 3) == (2.0, graph.value(Port("blur", "sigma")))
     assert value_at(graph, MOVE, 11) == (10.0, graph.value(Port("blur", "sigma")))
-    assert is_animated(graph) and not is_animated(still(graph, 3)) and keyed_range(graph) == (1, 11)
+    assert is_animated(graph) and not is_animated(evaluate_at_frame(graph, 3)) and find_key_range(graph) == (1, 11)
 
 
 def test_time_is_in_seconds_since_the_first_frame(graph):
@@ -106,13 +106,13 @@ def test_a_circle_of_expressions(graph):
     graph = graph.animate(STOPS, Expression("grade.gain.r")).animate(GAIN, Expression("light.stops"))
     assert len([said for said in faults(graph) if "needs itself" in said]) == 2
     with pytest.raises(GraphError, match="needs itself"):
-        still(graph, 1)
+        evaluate_at_frame(graph, 1)
 
 
 def test_an_expression_without_a_value_says_where_and_when(graph):
     graph = graph.animate(STOPS, Expression("1 / (frame - 3)"))
     with pytest.raises(GraphError, match=r"light\.stops at frame 3"):
-        still(graph, 3)
+        evaluate_at_frame(graph, 3)
 
 
 def test_renaming_moves_keys_and_names(graph):
@@ -142,12 +142,12 @@ def test_groups_live_in_the_same_time(graph):
     """A group's body has animation of its own; what the group itself sets or animates comes first."""
     body = graph.animate(Port("blur", "sigma"), Keys((Key(1, 1.0, "linear"), Key(11, 11.0)))).animate(STOPS, RISING)
     outer = Graph(settings=Settings(frames=(5, 9))).add("group", Group(body))
-    inner = still(outer, 3).nodes["group"].graph
+    inner = evaluate_at_frame(outer, 3).nodes["group"].graph
     assert inner.value(Port("blur", "sigma")) == 3.0 and inner.value(STOPS) == 1.0
     for way, expected in ((7.0, 7.0), (Expression("frame * 2"), 6.0)):
-        made = still(outer.set(Port("group", "glow"), way), 3).nodes["group"].graph
+        made = evaluate_at_frame(outer.set(Port("group", "glow"), way), 3).nodes["group"].graph
         assert (made.value(Port("blur", "sigma")), made.value(STOPS)) == (expected, 1.0)
-    assert keyed_range(outer) == (1, 11)
+    assert find_key_range(outer) == (1, 11)
 
 
 def test_the_document_keeps_it(graph):

@@ -15,9 +15,9 @@ from expression_values import at, fault
 from halation.errors import GraphError
 from halation.graph.expressions import Expression, ExpressionError
 from halation.graph.expressions.functions import FUNCTIONS
-from halation.graph.expressions.noise import mixed
+from halation.graph.expressions.noise import mix_bits
 from halation.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
-from halation.graph.expressions.tokens import written
+from halation.graph.expressions.tokens import write_name
 
 
 @pytest.mark.parametrize(
@@ -155,7 +155,7 @@ def test_a_fault_of_another_expression_is_passed_on() -> None:
         Expression("2 + glow").at(1, 0, 24, other)
     assert found.value.text == "1/0"
     assert isinstance(found.value, GraphError)
-    blamed = Expression("2 + glow").blamed("glow", "no")
+    blamed = Expression("2 + glow").blame_name("glow", "no")
     assert (blamed.position, blamed.sentence) == (4, "no")
 
 
@@ -202,17 +202,17 @@ def test_names_and_renaming() -> None:
     text = " sin( bloom.intensity )+glow *bloom.intensity - sin(glow)+`my node`.x + frame + `frame`"
     expression = Expression(text)
     assert expression.names == ("bloom.intensity", "glow", "my node.x", "frame")
-    assert expression.renamed("bloom", "haze").text == text.replace("bloom", "haze")
-    assert expression.renamed("glow", "my glow").text == text.replace("glow", "`my glow`")
-    assert expression.renamed("sin", "x") == expression
-    assert expression.renamed("my node", "n").text == text.replace("`my node`", "n")
-    assert expression.renamed("frame", "f").text == text.replace("`frame`", "f")
-    assert expression.renamed("glow", "time").text == text.replace("glow", "`time`")
-    assert expression.renamed("bloom.intensity", "a.b").text == text.replace("bloom.intensity", "a.b")
-    assert Expression("blo.x + bloom.x + (1 + bloom").renamed("bloom", "y").text == "blo.x + y.x + (1 + y"
+    assert expression.rename("bloom", "haze").text == text.replace("bloom", "haze")
+    assert expression.rename("glow", "my glow").text == text.replace("glow", "`my glow`")
+    assert expression.rename("sin", "x") == expression
+    assert expression.rename("my node", "n").text == text.replace("`my node`", "n")
+    assert expression.rename("frame", "f").text == text.replace("`frame`", "f")
+    assert expression.rename("glow", "time").text == text.replace("glow", "`time`")
+    assert expression.rename("bloom.intensity", "a.b").text == text.replace("bloom.intensity", "a.b")
+    assert Expression("blo.x + bloom.x + (1 + bloom").rename("bloom", "y").text == "blo.x + y.x + (1 + y"
     for name in ("a b", "a`b", "frame", "2d", "x.and", "日本", "pi.x", "a-b.c d"):
-        assert Expression(f"1 + {written(name)} * 2").names == (name,)
-        assert Expression("1 + old").renamed("old", name).names == (name,)
+        assert Expression(f"1 + {write_name(name)} * 2").names == (name,)
+        assert Expression("1 + old").rename("old", name).names == (name,)
 
 
 def test_tokens_cover_the_text() -> None:
@@ -263,7 +263,7 @@ def test_noise_and_random() -> None:
 def test_the_hash_is_splitmix64() -> None:
     """The first numbers of the generator of Steele, Lea and Flood (2014) from the seed 1234567, as published."""
     step = 0x9E3779B97F4A7C15
-    assert [mixed(1234567 + count * step) for count in (1, 2, 3)] == [
+    assert [mix_bits(1234567 + count * step) for count in (1, 2, 3)] == [
         6457827717110365317,
         3203168211198807973,
         9817491932198370423,

@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 import pytest
 from halation.errors import GraphError
-from halation.graph.keys import Interpolation, Key, Keys, Outside, rounded
+from halation.graph.keys import Interpolation, Key, Keys, Outside, round_keys
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
@@ -143,7 +143,7 @@ def test_what_is_no_number_is_held() -> None:
 def test_between_whole_numbers_are_numbers() -> None:
     keys = keyed([0.0, 4.0], [-1, 1], "linear")
     assert [keys.at(frame) for frame in range(5)] == [-1.0, -0.5, 0.0, 0.5, 1.0]
-    assert [rounded(x) for x in (0.5, 1.5, 2.5, -0.5, -1.5, 0.49999999999999994, 2.4)] == [1, 2, 3, -1, -2, 0, 2]
+    assert [round_keys(x) for x in (0.5, 1.5, 2.5, -0.5, -1.5, 0.49999999999999994, 2.4)] == [1, 2, 3, -1, -2, 0, 2]
 
 
 def test_faults() -> None:

@@ -213,6 +213,6 @@ def test_nothing_else_is_ever_raised() -> None:
             assert all(math.isfinite(part) for part in (found if isinstance(found, tuple) else (found,)))
         except ExpressionError as error:
             assert 0 <= error.position <= len(text) and error.sentence
-        Expression(text).renamed("glow", "x y")
+        Expression(text).rename("glow", "x y")
         slowest = max(slowest, time.perf_counter() - start)
     assert good > 500 and slowest < 1.0

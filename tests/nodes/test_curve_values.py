@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation.document import dumps, loads
 from halation.graph import Graph, Port
-from halation.graph.values import coerced, value_fault
+from halation.graph.values import coerce, value_fault
 from halation.nodes import Curve, Filter, Image, Points, Stops, curve_at, ramp_at
 from hypothesis import given
 from hypothesis import strategies as st
@@ -66,7 +66,7 @@ def test_they_are_saved_and_read():
     found = loads(dumps(graph), catalogue=TOYS)
     assert found == graph
     assert found.value(Port("tint", "curve")) == (0.0, 0.5, 0.25, -1.0, 1.0, 2.0)
-    assert coerced(Tint.values["ramp"], [0, 0, 0, 0, "1"]) is None
+    assert coerce(Tint.values["ramp"], [0, 0, 0, 0, "1"]) is None
 
 
 points = st.lists(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from halation.document import dumps, loads
 from halation.graph import Graph
-from halation.graph.values import coerced, value_fault
+from halation.graph.values import coerce, value_fault
 from halation.nodes import Filter, Image, Light, LightKind, LightList, lights_of, numbers_of
 
 TWO = (
@@ -42,7 +42,7 @@ def test_what_is_no_list_of_lights_is_said(given, fault):
 
 def test_any_number_of_lights_will_do():
     value = Lamps.values["lights"]
-    assert coerced(value, []) == () and value_fault(value, ()) is None
+    assert coerce(value, []) == () and value_fault(value, ()) is None
     assert value_fault(value, numbers_of(TWO * 512)) is None
 
 

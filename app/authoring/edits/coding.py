@@ -13,7 +13,7 @@ from msgspec import structs
 from ...custom_nodes import Code, CodeFault, CustomNode, Language, node_type
 from ...document.code import describe_code, read_code
 from ...graph import Graph, Group, Item, Unknown
-from ...graph.values import coerced, value_fault
+from ...graph.values import coerce, value_fault
 from ...watch.code_files import code_file, code_items
 
 CODE = "glsl"
@@ -171,7 +171,7 @@ def _changed_values(item: Item) -> Mapping[str, Any]:
 def _keep_valid_values(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
     valid_values: dict[str, Plain] = {}
     for name, value in kind.values.items():
-        plain = coerced(value, values[name]) if name in values else None
+        plain = coerce(value, values[name]) if name in values else None
         if plain is not None and value_fault(value, plain) is None:
             valid_values[name] = plain
     return valid_values

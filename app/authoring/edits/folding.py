@@ -9,7 +9,7 @@ from pathlib import Path
 from ...document import limits
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
-from ...graph.notes import moved_layout
+from ...graph.notes import move_layout
 from . import timing
 from .routes import tidy_routes
 
@@ -133,7 +133,7 @@ def _put_group_body(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
     }
     ui = outer.ui
     for before, after in moves.items():
-        ui = moved_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
+        ui = move_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
     return tidy_routes(
         replace(outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, animation=animation, ui=ui)
     )

@@ -22,10 +22,10 @@ def rename_in_expression(animation: Animation, names: Mapping[str, str]) -> Anim
     for old, new in sorted(renames, key=lambda pair: -pair[0].count(".")):
         between = fresh_name("between", taken_names)
         taken_names.add(between)
-        animation = animation.renamed(old, between)
+        animation = animation.rename(old, between)
         waiting.append((between, new))
     for between, new in waiting:
-        animation = animation.renamed(between, new)
+        animation = animation.rename(between, new)
     return animation
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
-from ...graph.notes import moved_keys
+from ...graph.notes import move_keys
 from . import timing
 from .elements import list_elements, with_sections, without_entries
 from .folding import find_group
@@ -131,7 +131,7 @@ def _remove_group(graph: Graph, id: str) -> Graph:
         without_entries(graph, [id]),
         nodes={name: item for name, item in graph.nodes.items() if name != id},
         links={end: start for end, start in graph.links.items() if id not in (end.node, start.node)},
-        extra=moved_keys(graph.extra, f"nodes.{id}"),
+        extra=move_keys(graph.extra, f"nodes.{id}"),
     )
 
 

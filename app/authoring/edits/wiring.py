@@ -9,7 +9,7 @@ from halation.nodes import Kind, Node, Pointwise, Socket, Value
 
 from ...errors import GraphError
 from ...graph import Graph, Item, Port, conversion, make_socket, signature
-from ...graph.values import coerced, value_fault
+from ...graph.values import coerce, value_fault
 from ...graph.walk import loop_sentence, route
 from .elements import place
 from .routes import dots_on_link as dots_of
@@ -199,7 +199,7 @@ def replace_node(graph: Graph, id: str, kind: type[Node]) -> Graph:
     values = {}
     for name, value in kind.values.items():
         if name in before and before[name].type == value.type:
-            fitted_value = coerced(value, graph.value(Port(id, name)))
+            fitted_value = coerce(value, graph.value(Port(id, name)))
             if fitted_value is not None and value_fault(value, fitted_value) is None:
                 values[name] = fitted_value
     return graph.replace(id, kind(**values))

@@ -63,7 +63,7 @@ class PreviewRequest:
     def node_mark(self, path: str) -> object:
         """Something that changes when anything upstream of a node does."""
         if self.upstream is None or self.upstream.graph is not self.graph:
-            self.upstream = Upstream(self.graph, known=self.upstream)
+            self.upstream = Upstream(self.graph, before=self.upstream)
         return self.upstream.hashes.get(path), self.outside_version
 
 

@@ -22,12 +22,12 @@ from ...graph import (
     Port,
     Settings,
     animation_fault,
-    keyed_range,
+    find_key_range,
     signature,
     value_at,
 )
 from ...graph.graph import declared
-from ...graph.keys import rounded
+from ...graph.keys import round_keys
 from ..edits.elements import clean_text
 from ..edits.folding import GroupPath, body_at
 from ..state.history import Snapshot
@@ -61,7 +61,7 @@ class Animating(State):
 
     def seek(self, frame: float) -> None:
         """Look at a frame; it may lie outside of the range."""
-        wanted = min(max(rounded(frame), -MOST), MOST)
+        wanted = min(max(round_keys(frame), -MOST), MOST)
         if wanted != self._frame:
             self._frame = wanted
 
@@ -279,7 +279,7 @@ class Animating(State):
                 return self.measure(self.root, self.bindings)
             except HalationError:
                 pass
-        return keyed_range(self.root)
+        return find_key_range(self.root)
 
     def _set_settings(self, label: str, settings: Settings, merge: str) -> None:
         if settings != self.settings:
@@ -328,7 +328,7 @@ def _plain(value: object) -> Plain:
 
 def _whole(animation: Animation | None) -> tuple[int, ...]:
     frames = animation.frames if isinstance(animation, Keys) else ()
-    return tuple(sorted({rounded(frame) for frame in frames}))
+    return tuple(sorted({round_keys(frame) for frame in frames}))
 
 
 def _frames(animation: Mapping[Port, Animation], nodes: set[str] | None) -> Iterable[int]:

@@ -53,16 +53,16 @@ def emit(
 
 
 @singledispatch
-def _emit_root(root: Op, asked: _PassRequest) -> EmittedProgram:
+def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
     """A program that evaluates functions at each pixel.
 
     Uniforms are named as the text asks for them, so the parts are written before the declarations that precede them.
     """
-    program, group, target, formats = asked.program, asked.group, asked.target, asked.formats
+    program, group, target, formats = request.program, request.group, request.target, request.formats
     by_image = target.loads_images and len(group.reads) + len(group.writes) <= target.max_images
     names = ShaderNames(program, {ref: number for number, ref in enumerate(group.reads)}, target.form, by_image)
     _name_windows(names, group)
-    context = PassContext(program, group, names, asked.library)
+    context = PassContext(program, group, names, request.library)
     parts = write_parts(context)
     early, late, files, uniforms = include_files(context, parts)
     names.uniform("ivec2", root.size, "grid")
@@ -72,7 +72,7 @@ def _emit_root(root: Op, asked: _PassRequest) -> EmittedProgram:
         names.uniform("int", program.frame, "frame")
     texels = [
         _write_texel(names.shape(ref), result, half)
-        for ref, result, half in zip(group.writes, parts.results, asked.halves, strict=True)
+        for ref, result, half in zip(group.writes, parts.results, request.halves, strict=True)
     ]
     count = bodies.count_pixels(parts.convolution) if parts.convolution else forms.count_rows(context)
     if target.form == "compute":
@@ -85,7 +85,7 @@ def _emit_root(root: Op, asked: _PassRequest) -> EmittedProgram:
         *_declare_textures(names, group, target, formats),
         *_declare_targets(names, group, target, formats),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);",
-        *_write_half_rounding(target, asked.halves),
+        *_write_half_rounding(target, request.halves),
         *early,
         *parts.functions,
         *late,

@@ -72,7 +72,7 @@ def write_main(
     results = [f"texel{number}" for number in range(len(texels))]
     step = "pixel += along;" if convolve else "++pixel.y;"
     of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
-    made = [
+    pixel_function = [
         f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{",
         *body,
         *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)),
@@ -82,14 +82,14 @@ def write_main(
         lines += bodies.write_strip(names, convolve, count)
     for k in range(count):
         own = [f"{name}_{k}" for name in results]
-        given = [f"s{k}"] if convolve else []
-        lines.append(f"vec4 {', '.join(own)}; made({', '.join([*given, *own])}); {step}")
+        convolved_argument = [f"s{k}"] if convolve else []
+        lines.append(f"vec4 {', '.join(own)}; made({', '.join([*convolved_argument, *own])}); {step}")
     lines += ["pixel = first;", there]
     # All reads before all writes: only then are they known to read the same.
     for k in range(count):
         stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))
         lines.append(f"{' '.join(stores)} {step}")
-    return [*made, *lines, "}", "}"]
+    return [*pixel_function, *lines, "}", "}"]
 
 
 def _write_place(along: str, across: str, convolve: Convolve | None) -> str:

@@ -107,10 +107,10 @@ def convert(text: str, channels: int, glsl: str) -> str:
             "bool": f"({text} > 0.5)",
             "vec4": f"vec4(vec3({text}), 1.0)",
         }.get(glsl, f"{glsl}({text})")
-    wanted = glsl_channels(glsl)
-    if channels > wanted:
-        return f"({text}).{'rgba'[:wanted]}"
-    return f"{glsl}({text}, {', '.join(['0.0'] * (wanted - channels))})"
+    target_channels = glsl_channels(glsl)
+    if channels > target_channels:
+        return f"({text}).{'rgba'[:target_channels]}"
+    return f"{glsl}({text}, {', '.join(['0.0'] * (target_channels - channels))})"
 
 
 def glsl_channels(glsl: str) -> int:

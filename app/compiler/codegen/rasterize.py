@@ -8,7 +8,7 @@ from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Raster
 from ..library import Library
 from ..plan import Shader
-from ..raster import CHANNELS, fragment_lines, vertex_text
+from ..raster import CHANNELS, write_fragment_lines, write_vertex_text
 
 
 def write_raster(
@@ -17,8 +17,8 @@ def write_raster(
     """The vertex and fragment shader that write the channels that are read, and what their uniforms are set to."""
     text = library.closure(root.files, root.owner)[0]
     channels = [tuple(CHANNELS)[ref.output] for ref in group.writes]
-    lines = fragment_lines(text.body, channels)
-    shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, vertex_text(text.body))
+    lines = write_fragment_lines(text.body, channels)
+    shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, write_vertex_text(text.body))
     return shader, (
         ("cameras", root.cameras),
         ("motions", root.motions),

@@ -43,7 +43,7 @@ def fuse(
     ops = program.ops
     live = _find_live(program)
     readers = _find_readers(ops, live)
-    kept = set(program.kept_refs)
+    kept_refs = set(program.kept_refs)
     home: dict[int, int] = {}
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
@@ -57,7 +57,10 @@ def fuse(
         root = roots.pop() if len(roots) == 1 else index
         joins = op.is_pointwise or (gathers and op.is_inlinable)
         joins = (
-            joins and root != index and not kept.intersection(outputs) and _are_read_at_own_pixel(ops, outputs, readers)
+            joins
+            and root != index
+            and not kept_refs.intersection(outputs)
+            and _are_read_at_own_pixel(ops, outputs, readers)
         )
         if enabled and joins:
             joined = _join_reads(reads[root], outputs, op)
@@ -72,29 +75,31 @@ def fuse(
         home[index], members[index], uniforms[index] = index, [index], op.uniform_floats
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
-        PassGroup(tuple(reversed(members[root])), tuple(reads[root]), tuple(_find_writes(ops, root, readers, kept)))
+        PassGroup(
+            tuple(reversed(members[root])), tuple(reads[root]), tuple(_find_writes(ops, root, readers, kept_refs))
+        )
         for root in sorted(members)
     )
 
 
 def _find_live(program: LoweredProgram) -> set[int]:
     """Operations that an output needs."""
-    found: set[int] = set()
+    live: set[int] = set()
     todo = [ref.op for ref in program.kept_refs]
     while todo:
         index = todo.pop()
-        if index not in found:
-            found.add(index)
+        if index not in live:
+            live.add(index)
             todo.extend(ref.op for ref in program.ops[index].reads())
-    return found
+    return live
 
 
 def _find_readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
-    found: dict[Ref, list[int]] = {}
+    readers: dict[Ref, list[int]] = {}
     for index in live:
         for ref in ops[index].reads():
-            found.setdefault(ref, []).append(index)
-    return found
+            readers.setdefault(ref, []).append(index)
+    return readers
 
 
 def _are_read_at_own_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
@@ -102,9 +107,9 @@ def _are_read_at_own_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers:
     return all(ops[reader].takes_producers for ref in outputs for reader in readers.get(ref, ()))
 
 
-def _join_reads(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
+def _join_reads(outer: Iterable[Ref], outputs: list[Ref], op: Op) -> dict[Ref, None]:
     """What a pass reads once `op` is part of it."""
-    return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
+    return dict.fromkeys([*(ref for ref in outer if ref not in outputs), *op.reads()])
 
 
 def count_tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
@@ -121,7 +126,7 @@ def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: 
     return same_size and len(members) < MAX_MEMBERS and inputs <= target.max_inputs
 
 
-def _find_writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:
+def _find_writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept_refs: set[Ref]) -> list[Ref]:
     """The root's outputs that somebody wants."""
     outputs = [Ref(root, number) for number in range(ops[root].outputs)]
-    return [ref for ref in outputs if ref in readers or ref in kept]
+    return [ref for ref in outputs if ref in readers or ref in kept_refs]

@@ -9,17 +9,17 @@ from ..target import Target
 from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables
 
 
-def fits(program: LoweredProgram, one: PassGroup, target: Target) -> bool:
+def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
     """True if a pass of pointwise operations is within the limits of a device, and still reads the fast way."""
-    reads, writes = len(one.reads), len(one.writes)
+    reads, writes = len(group.reads), len(group.writes)
     if target.loads_images and reads + writes > target.max_images:
         return False
     most = target.max_images if target.form == "compute" else target.max_targets
     return (
-        reads + count_tables(program.ops, one.members) <= target.max_inputs
+        reads + count_tables(program.ops, group.members) <= target.max_inputs
         and writes <= most
-        and len(one.members) <= MAX_MEMBERS
-        and sum(program.ops[index].uniform_floats for index in one.members) <= MAX_UNIFORMS
+        and len(group.members) <= MAX_MEMBERS
+        and sum(program.ops[index].uniform_floats for index in group.members) <= MAX_UNIFORMS
     )
 
 
@@ -29,6 +29,6 @@ def order_members(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ..
     return tuple(sorted(both, key=lambda index: (ops[index].is_pointwise, index)))
 
 
-def looks_around(ops: tuple[Op, ...], one: PassGroup, ref: Ref) -> bool:
+def looks_around(ops: tuple[Op, ...], group: PassGroup, ref: Ref) -> bool:
     """True if a pass reads more of a picture than its own pixel."""
-    return any(ref in ops[index].reads() for index in one.members if not ops[index].is_pointwise)
+    return any(ref in ops[index].reads() for index in group.members if not ops[index].is_pointwise)

@@ -27,8 +27,8 @@ def merge(
     program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Merge passes as far as `target` allows. They stay in an order in which each comes after what it reads."""
-    found = _PassMerger(program, passes, target).run()
-    return tuple(group.fused for group in found)
+    candidates = _PassMerger(program, passes, target).run()
+    return tuple(group.fused for group in candidates)
 
 
 def split_by_result(program: LoweredProgram, fused: PassGroup) -> tuple[PassGroup, ...]:
@@ -42,9 +42,9 @@ def _extract_part(program: LoweredProgram, fused: PassGroup, root: int) -> PassG
     needed, reads = {root}, set[Ref]()
     for index in reversed(fused.members):
         if index in needed:
-            found = set(program.ops[index].reads())
-            needed |= {ref.op for ref in found if ref not in fused.reads}
-            reads |= found
+            inputs = set(program.ops[index].reads())
+            needed |= {ref.op for ref in inputs if ref not in fused.reads}
+            reads |= inputs
     return PassGroup(
         tuple(index for index in fused.members if index in needed),
         tuple(ref for ref in fused.reads if ref in reads),
@@ -78,9 +78,9 @@ class _PassMerger:
         self.readers: dict[Ref, dict[int, None]] = {}
         self.met: dict[Ref, dict[int, None]] = {}
         """Of the readers, those that were looked at."""
-        for place, one in enumerate(passes):
-            size, reads, writes = self.ops[one.root].size, dict.fromkeys(one.reads), dict.fromkeys(one.writes)
-            self._enter(place, _MergeCandidate(place, one.members, reads, writes, size, self._is_open(one)))
+        for place, group in enumerate(passes):
+            size, reads, writes = self.ops[group.root].size, dict.fromkeys(group.reads), dict.fromkeys(group.writes)
+            self._enter(place, _MergeCandidate(place, group.members, reads, writes, size, self._is_open(group)))
 
     def run(self) -> list[_MergeCandidate]:
         for number in list(self.groups):
@@ -90,12 +90,12 @@ class _PassMerger:
                 number = self._widen(number)
         return sorted(self.groups.values(), key=lambda group: group.place)
 
-    def _is_open(self, one: PassGroup) -> bool:
+    def _is_open(self, group: PassGroup) -> bool:
         """True for what makes each pixel of its own: pointwise operations, and what looks around and is light."""
-        root = self.ops[one.root]
+        root = self.ops[group.root]
         if not root.is_inlinable:
             return False
-        return all(self.program.shape(ref).size == root.size for ref in one.writes)
+        return all(self.program.shape(ref).size == root.size for ref in group.writes)
 
     def _enter(self, number: int, group: _MergeCandidate) -> None:
         self.groups[number] = group
@@ -111,8 +111,8 @@ class _PassMerger:
 
     def _widen(self, number: int) -> int:
         """Merge a group with another one; the number of what they became, or -1 if there is none."""
-        for other in dict.fromkeys(self._partners(number)):
-            first, last = sorted((number, other), key=lambda one: self.groups[one].place)
+        for partner in dict.fromkeys(self._partners(number)):
+            first, last = sorted((number, partner), key=lambda one: self.groups[one].place)
             both = self._both(first, last)
             if both and fits(self.program, both.fused, self.target):
                 self._leave(first)
@@ -127,15 +127,15 @@ class _PassMerger:
         if not group.open:
             return
         for ref in reversed(group.reads):
-            if ref in self.maker and self._alike(group, self.maker[ref]):
+            if ref in self.maker and self._can_pair(group, self.maker[ref]):
                 yield self.maker[ref]
         for ref in group.reads:
             if self.program.shape(ref).size == group.size:
                 latest = islice(reversed(self.met[ref]), MAX_READERS_TRIED)
-                yield from (other for other in latest if other != number and self._alike(group, other))
+                yield from (other for other in latest if other != number and self._can_pair(group, other))
 
-    def _alike(self, group: _MergeCandidate, other: int) -> bool:
-        return self.groups[other].open and self.groups[other].size == group.size
+    def _can_pair(self, group: _MergeCandidate, partner: int) -> bool:
+        return self.groups[partner].open and self.groups[partner].size == group.size
 
     def _both(self, first: int, last: int) -> _MergeCandidate | None:
         """Two groups as one, if there is a place where it can run."""

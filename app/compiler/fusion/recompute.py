@@ -20,34 +20,36 @@ def recompute(
     program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Leave out passes whose readers can do their work, where that costs fewer reads than it saves."""
-    kept = frozenset(program.kept_refs)
-    found = dict(enumerate(passes))
+    kept_refs = frozenset(program.kept_refs)
+    groups = dict(enumerate(passes))
     readers: dict[Ref, dict[int, None]] = {}
-    for number, one in found.items():
-        for ref in one.reads:
+    for number, group in groups.items():
+        for ref in group.reads:
             readers.setdefault(ref, {})[number] = None
     for number in range(len(passes)):
-        one = found[number]
-        if len(one.writes) != 1 or one.writes[0] in kept or not _is_cheap(program, one, library):
+        group = groups[number]
+        if len(group.writes) != 1 or group.writes[0] in kept_refs or not _is_cheap(program, group, library):
             continue
-        asking = {reader: found[reader] for reader in readers[one.writes[0]]}
-        if len(asking) > MAX_READERS or not all(
-            _can_compute(program, reader, one.writes[0]) for reader in asking.values()
+        group_readers = {reader: groups[reader] for reader in readers[group.writes[0]]}
+        if len(group_readers) > MAX_READERS or not all(
+            _can_compute(program, reader, group.writes[0]) for reader in group_readers.values()
         ):
             continue
-        made = {at: _merge_into_reader(program, one, reader) for at, reader in asking.items()}
-        more = sum(len(made[at].reads) - len(reader.reads) for at, reader in asking.items())
-        if more >= STORE_COST + len(one.reads) or not all(fits(program, reader, target) for reader in made.values()):
+        merged = {at: _merge_into_reader(program, group, reader) for at, reader in group_readers.items()}
+        added_reads = sum(len(merged[at].reads) - len(reader.reads) for at, reader in group_readers.items())
+        if added_reads >= STORE_COST + len(group.reads) or not all(
+            fits(program, reader, target) for reader in merged.values()
+        ):
             continue
-        found |= made
-        del found[number]
-        for read in one.reads:
-            readers[read] = {at: None for at in (*readers[read], *made) if at != number}
-    return tuple(found.values())
+        groups |= merged
+        del groups[number]
+        for read in group.reads:
+            readers[read] = {at: None for at in (*readers[read], *merged) if at != number}
+    return tuple(groups.values())
 
 
-def _is_cheap(program: LoweredProgram, one: PassGroup, library: Library) -> bool:
-    ops = [program.ops[index] for index in one.members]
+def _is_cheap(program: LoweredProgram, group: PassGroup, library: Library) -> bool:
+    ops = [program.ops[index] for index in group.members]
     return len(ops) <= MAX_RECOMPUTED and all(op.is_cheap(library) for op in ops)
 
 
@@ -59,9 +61,9 @@ def _can_compute(program: LoweredProgram, reader: PassGroup, ref: Ref) -> bool:
     return not root.is_pointwise or not looks_around(program.ops, reader, ref)
 
 
-def _merge_into_reader(program: LoweredProgram, one: PassGroup, reader: PassGroup) -> PassGroup:
+def _merge_into_reader(program: LoweredProgram, group: PassGroup, reader: PassGroup) -> PassGroup:
     """A pass that also does the work of one that it reads."""
-    reads = dict.fromkeys((*(ref for ref in reader.reads if ref not in one.writes), *one.reads))
+    reads = dict.fromkeys((*(ref for ref in reader.reads if ref not in group.writes), *group.reads))
     return PassGroup(
-        (*order_members(program.ops, one.members, reader.members[:-1]), reader.root), tuple(reads), reader.writes
+        (*order_members(program.ops, group.members, reader.members[:-1]), reader.root), tuple(reads), reader.writes
     )

@@ -63,33 +63,33 @@ class Anatomy:
 
 def take_apart(program: LoweredProgram) -> Anatomy:
     """Take a program apart."""
-    found = Anatomy(None)
-    found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(program.outputs.items()))
-    return found
+    parts = Anatomy(None)
+    parts.skeleton = (*(_walk(op, parts) for op in program.ops), tuple(program.outputs.items()))
+    return parts
 
 
-def _walk(item: Any, found: Anatomy) -> object:
+def _walk(item: Any, parts: Anatomy) -> object:
     if isinstance(item, UniformConstant):
-        found.places[id(item)] = len(found.numbers)
-        parts = item.value if isinstance(item.value, tuple) else (item.value,)
-        found.numbers += [float(part) for part in parts]
-        return UniformConstant, len(parts)
+        parts.places[id(item)] = len(parts.numbers)
+        values = item.value if isinstance(item.value, tuple) else (item.value,)
+        parts.numbers += [float(value) for value in values]
+        return UniformConstant, len(values)
     if isinstance(item, PictureShape):
-        found.sizes.append(item.size)
+        parts.sizes.append(item.size)
         return item.channels, item.data, item.size == (1, 1)
     if isinstance(item, Neighborhood):
         return Neighborhood  # it matters for parts of a picture alone, which a shader of this format never makes
     if isinstance(item, Struct):
         aside = item.compare_exclude if isinstance(item, Record) else ()
         names = (name for name in item.__struct_fields__ if name not in aside)
-        return type(item), tuple(_walk(getattr(item, name), found) for name in names)
+        return type(item), tuple(_walk(getattr(item, name), parts) for name in names)
     if isinstance(item, tuple):
-        return tuple(_walk(part, found) for part in cast("tuple[Any, ...]", item))
+        return tuple(_walk(part, parts) for part in cast("tuple[Any, ...]", item))
     return item
 
 
 @dataclass
-class Model:
+class LinearModel:
     """Every number as base + sum of slopes + sum of products of two knobs."""
 
     base: Anatomy
@@ -100,13 +100,13 @@ class Model:
     def predict(self, point: Point) -> list[float]:
         """The numbers at other values of the knobs."""
         away = {name: point.get(name, knob.base) - knob.base for name, knob in self.knobs.items()}
-        found = list(self.base.numbers)
+        numbers = list(self.base.numbers)
         for name, slopes in self.slopes.items():
-            found = [number + slope * away[name] for number, slope in zip(found, slopes, strict=True)]
-        for (one, other), slopes in self.products.items():
-            both = away[one] * away[other]
-            found = [number + slope * both for number, slope in zip(found, slopes, strict=True)]
-        return found
+            numbers = [number + slope * away[name] for number, slope in zip(numbers, slopes, strict=True)]
+        for (first, second), slopes in self.products.items():
+            both = away[first] * away[second]
+            numbers = [number + slope * both for number, slope in zip(numbers, slopes, strict=True)]
+        return numbers
 
     def text(self, place: int) -> str:
         """A number as GLSL."""
@@ -114,11 +114,11 @@ class Model:
         factors: dict[str, float] = {name: slopes[place] for name, slopes in self.slopes.items()}
         size = max(abs(whole), 1e-30)
         parts: list[str] = []
-        for (one, other), slopes in self.products.items():
+        for (first, second), slopes in self.products.items():
             if slope := slopes[place]:
-                a, b = self.knobs[one], self.knobs[other]
-                factors[one] -= slope * b.base
-                factors[other] -= slope * a.base
+                a, b = self.knobs[first], self.knobs[second]
+                factors[first] -= slope * b.base
+                factors[second] -= slope * a.base
                 whole += slope * a.base * b.base
                 size = max(size, abs(slope * a.base * b.base))
                 parts.append(f"{write_literal(slope)} * {a.text} * {b.text}")
@@ -140,10 +140,10 @@ def fit_slopes(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[flo
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):
         program = lowered({knob.name: knob.base + step * knob.step})
-        taken = take_apart(program) if program else None
-        if taken is None or taken.skeleton != base.skeleton or (taken.sizes != base.sizes and not knob.resizes):
+        sample = take_apart(program) if program else None
+        if sample is None or sample.skeleton != base.skeleton or (sample.sizes != base.sizes and not knob.resizes):
             return None
-        columns.append(taken.numbers)
+        columns.append(sample.numbers)
     slopes = [(one - start) / knob.step for one, start in zip(columns[0], base.numbers, strict=True)]
     for step, column in enumerate(columns, 1):
         if not are_close(column, [a + step * knob.step * b for a, b in zip(base.numbers, slopes, strict=True)]):
@@ -151,9 +151,9 @@ def fit_slopes(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[flo
     return slopes
 
 
-def are_close(found: Sequence[float], wanted: Sequence[float]) -> bool:
+def are_close(numbers: Sequence[float], references: Sequence[float]) -> bool:
     """True if numbers are equal but for rounding."""
-    pairs = zip(found, wanted, strict=True)
+    pairs = zip(numbers, references, strict=True)
     return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b), 1e-3) for a, b in pairs)
 
 

@@ -33,20 +33,20 @@ class IsfControl:
         return {"bool": bool, "int": round}.get(self.value.type, float)(parts[0])
 
 
-def identifier(name: str, taken: Iterable[str]) -> str:
+def make_identifier(name: str, used_names: Iterable[str]) -> str:
     """A name for GLSL that is not taken."""
     plain = _ODD.sub("_", name).strip("_") or "value"
     plain = f"x{plain}" if plain[0].isdigit() or plain.startswith(("gl_", "isf_", "IMG_")) else plain
-    found, again = plain, 1
-    while found in set(taken):
+    candidate, again = plain, 1
+    while candidate in set(used_names):
         again += 1
-        found = f"{plain}{again}"
-    return found
+        candidate = f"{plain}{again}"
+    return candidate
 
 
-def find_controls(graph: Graph, taken: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
+def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
     """The controls that may become inputs; and sentences on those that cannot."""
-    names, found, notes = set(taken), list[IsfControl](), list[str]()
+    names, controls, notes = set(used_names), list[IsfControl](), list[str]()
     for name, control in graph.controls.items():
         target = control.target
         item = graph.nodes.get(target.node)
@@ -60,10 +60,10 @@ def find_controls(graph: Graph, taken: Iterable[str]) -> tuple[list[IsfControl],
         if target in graph.animation or target in graph.links:
             notes.append(f"control '{name}' is no input: it is animated or linked")
             continue
-        called = identifier(name, names)
+        called = make_identifier(name, names)
         names.add(called)
-        found.append(_make_control(called, name, control.label or value.label or name, value, graph.value(target)))
-    return found, notes
+        controls.append(_make_control(called, name, control.label or value.label or name, value, graph.value(target)))
+    return controls, notes
 
 
 def _make_control(called: str, name: str, label: str, value: Value, rest: Plain) -> IsfControl:

@@ -21,7 +21,7 @@ from ..lowering.lower import lower
 from ..request import Request
 from ..target import NULL
 from .affine import Knob, Point
-from .controls import Section, find_controls, identifier
+from .controls import Section, find_controls, make_identifier
 from .model import FRAME, HEIGHT, WIDTH, IsfModel, ModelSearch
 from .passes import find_obstacles
 from .writing import IsfWriter
@@ -74,7 +74,7 @@ def export_isf(
     Its pictures become those of the shader, and its controls inputs where they change nothing but numbers, evenly.
     `size` is that of the picture where something holds for one size only.
     """
-    return _IsfExporter(graph, target, outside, size or graph.settings.size or SIZE).whole(doc)
+    return _IsfExporter(graph, target, outside, size or graph.settings.size or SIZE).export(doc)
 
 
 class _IsfExporter:
@@ -88,7 +88,7 @@ class _IsfExporter:
         self.controls, notes = find_controls(graph, self.pictures.values())
         self.notes = notes
 
-    def whole(self, doc: str) -> IsfExport:
+    def export(self, doc: str) -> IsfExport:
         """The shader, or why there is none."""
         program = self._lower_at({})
         passes = fuse(program, NULL, gathers=False)
@@ -98,12 +98,12 @@ class _IsfExporter:
             wrong.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
         if wrong:
             return IsfExport("", (), tuple(dict.fromkeys(wrong)))
-        found = ModelSearch(self._lower_at, self._knobs(), self.size).whole()
-        self._note(found)
+        model = ModelSearch(self._lower_at, self._knobs(), self.size).find()
+        self._note(model)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
-        inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & found.used]
-        writing = IsfWriter(found, self.library, self._sources(found.program), tuple(self.pictures.values()), self.size)
-        text, targets = writing.whole(self.first)
+        inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & model.used]
+        writing = IsfWriter(model, self.library, self._sources(model.program), tuple(self.pictures.values()), self.size)
+        text, targets = writing.write(self.first)
         count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
         if count > MAX_PICTURES:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
@@ -137,14 +137,14 @@ class _IsfExporter:
             HEIGHT: Knob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
         }
 
-    def _note(self, found: IsfModel) -> None:
+    def _note(self, model: IsfModel) -> None:
         """Say what the shader does not follow."""
         for control in self.controls:
-            if held := [knob.name for knob in control.knobs if knob.name in found.held]:
+            if held := [knob.name for knob in control.knobs if knob.name in model.held]:
                 self.notes.append(f"control '{held[0]}' keeps its value: it changes more than numbers")
-        if FRAME in found.held:
+        if FRAME in model.held:
             self.notes.append(f"it shows frame {self.first} at all times: more than numbers change with time")
-        if WIDTH in found.held:
+        if WIDTH in model.held:
             width, height = self.size
             self.notes.append(f"it is made for {width}x{height} pixels, and looks different at others: see --size")
 
@@ -171,7 +171,7 @@ def _picture_names(names: list[str]) -> dict[str, str]:
     """What a shader calls the pictures of a graph: the only one is `inputImage`, as in every filter."""
     if len(names) == 1:
         return {names[0]: "inputImage"}
-    found: dict[str, str] = {}
+    shader_names: dict[str, str] = {}
     for name in names:
-        found[name] = identifier(name, found.values())
-    return found
+        shader_names[name] = make_identifier(name, shader_names.values())
+    return shader_names

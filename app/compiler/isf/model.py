@@ -9,7 +9,7 @@ from halation.nodes import Size
 
 from ...errors import HalationError
 from ..ir import LoweredProgram, UniformConstant
-from .affine import Anatomy, Knob, Model, Point, are_close, find_length_formula, fit_slopes, take_apart
+from .affine import Anatomy, Knob, LinearModel, Point, are_close, find_length_formula, fit_slopes, take_apart
 
 WIDTH, HEIGHT, FRAME = "width", "height", "frame"
 
@@ -22,7 +22,7 @@ class IsfModel:
     """A program, and what its numbers and sizes are in a shader. `held` are the knobs that it does not follow."""
 
     program: LoweredProgram
-    model: Model
+    model: LinearModel
     sizes: Texts
     held: list[str] = field(default_factory=list[str])
 
@@ -50,7 +50,7 @@ class ModelSearch:
     size: Size
     held: list[str] = field(default_factory=list[str])
 
-    def whole(self) -> IsfModel:
+    def find(self) -> IsfModel:
         """Hold as few knobs as can be. Raises the errors of compiling at the values of the graph."""
         while True:
             try:
@@ -60,7 +60,7 @@ class ModelSearch:
                     raise
                 self._hold(next(reversed(self.knobs)))
                 continue
-            model = Model(take_apart(program), dict(self.knobs))
+            model = LinearModel(take_apart(program), dict(self.knobs))
             failed = self._fit(model)
             sizes: Texts | None = None
             if WIDTH in self.knobs and not failed:
@@ -81,11 +81,11 @@ class ModelSearch:
             return None
 
     def _hold(self, name: str) -> None:
-        for one in (WIDTH, HEIGHT) if name in (WIDTH, HEIGHT) else (name,):
-            self.held.append(one)
-            del self.knobs[one]
+        for held_name in (WIDTH, HEIGHT) if name in (WIDTH, HEIGHT) else (name,):
+            self.held.append(held_name)
+            del self.knobs[held_name]
 
-    def _fit(self, model: Model) -> str:
+    def _fit(self, model: LinearModel) -> str:
         """Find the slopes; the name of the first knob that has none."""
         for name, knob in self.knobs.items():
             slopes = fit_slopes(self._lower_at, model.base, knob)
@@ -94,43 +94,45 @@ class ModelSearch:
             model.slopes[name] = slopes
         return ""
 
-    def _multiply(self, model: Model) -> str:
+    def _multiply(self, model: LinearModel) -> str:
         """Find products of two knobs; the name of a knob that does not fit in with the others, if one does not."""
         names = [name for name in model.slopes if _matters(model, name)]
-        for at, one in enumerate(names):
-            for other in names[at + 1 :]:
-                a, b = model.knobs[one], model.knobs[other]
-                point = {one: a.base + a.step, other: b.base + b.step}
-                found = self._numbers(model, point)
-                if found is None:
-                    return one if one in (WIDTH, HEIGHT, FRAME) else other
+        for at, first in enumerate(names):
+            for second in names[at + 1 :]:
+                a, b = model.knobs[first], model.knobs[second]
+                point = {first: a.base + a.step, second: b.base + b.step}
+                numbers = self._numbers(model, point)
+                if numbers is None:
+                    return first if first in (WIDTH, HEIGHT, FRAME) else second
                 apart = model.predict(point)
-                if not are_close(found, apart):
+                if not are_close(numbers, apart):
                     area = a.step * b.step
-                    model.products[one, other] = [(x - y) / area for x, y in zip(found, apart, strict=True)]
+                    model.products[first, second] = [(x - y) / area for x, y in zip(numbers, apart, strict=True)]
         point = {name: model.knobs[name].far for name in names}
-        found = self._numbers(model, point) if names else None
-        return "" if not names or (found is not None and are_close(found, model.predict(point))) else names[-1]
+        numbers = self._numbers(model, point) if names else None
+        return "" if not names or (numbers is not None and are_close(numbers, model.predict(point))) else names[-1]
 
-    def _numbers(self, model: Model, point: Point) -> list[float] | None:
+    def _numbers(self, model: LinearModel, point: Point) -> list[float] | None:
         """The numbers at a point; None where something else is computed."""
         program = self._lower_at(point)
-        taken = take_apart(program) if program else None
-        return taken.numbers if taken is not None and taken.skeleton == model.base.skeleton else None
+        sample = take_apart(program) if program else None
+        return sample.numbers if sample is not None and sample.skeleton == model.base.skeleton else None
 
     def _sizes(self, base: Anatomy) -> Texts | None:
         """The sizes of all pictures as formulas; None if they have none."""
         steps = (0, 37, 91, 192)
-        found: list[Anatomy] = []
+        samples: list[Anatomy] = []
         for step in steps:
             program = self._lower_at({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
-            if program is None or (taken := take_apart(program)).skeleton != base.skeleton:
+            if program is None or (sample := take_apart(program)).skeleton != base.skeleton:
                 return None
-            found.append(taken)
+            samples.append(sample)
         texts: dict[Size, tuple[str, str]] = {}
         for at, size in enumerate(base.sizes):
             across, down = (
-                find_length_formula([self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in found])
+                find_length_formula(
+                    [self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in samples]
+                )
                 for axis in (0, 1)
             )
             if across is None or down is None or texts.get(size, (across, down)) != (across, down):
@@ -139,7 +141,7 @@ class ModelSearch:
         return texts
 
 
-def _matters(model: Model, name: str) -> bool:
+def _matters(model: LinearModel, name: str) -> bool:
     step = model.knobs[name].step
     numbers = zip(model.slopes[name], model.base.numbers, strict=True)
     return any(abs(slope * step) > 1e-7 * max(abs(number), 1e-3) for slope, number in numbers)

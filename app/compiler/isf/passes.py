@@ -59,8 +59,8 @@ class IsfNames(ShaderNames):
         if texts is None or glsl.endswith("]") or item.channels > 4:
             return super().constant(item, glsl)
         if glsl in ("int", "bool"):
-            one = "".join(texts)
-            return f"int(floor({one} + 0.5))" if glsl == "int" else f"({one} > 0.5)"
+            number = "".join(texts)
+            return f"int(floor({number} + 0.5))" if glsl == "int" else f"({number} > 0.5)"
         whole = f"vec{len(texts)}({', '.join(texts)})" if len(texts) > 1 else f"({''.join(texts)})"
         return convert(whole, len(texts), glsl)
 
@@ -76,8 +76,8 @@ def find_obstacles(
             op = program.ops[ref.op]
             picture = op.find_upload(ref.output)
             if picture and ref not in pictures and not op.owner.startswith("inputs."):
-                what = "a table of numbers" if picture.path == "numbers" else f"the file '{picture.path}'"
-                yield op.owner, f"reads {what}, which no shader can hold"
+                obstacle = "a table of numbers" if picture.path == "numbers" else f"the file '{picture.path}'"
+                yield op.owner, f"reads {obstacle}, which no shader can hold"
     for port in program.memories:
         yield port.node, "makes every frame of the one before"
 
@@ -108,14 +108,17 @@ def write_function(
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
-    known = {"frame": ("int", f"@FRAMEINDEX + {names.first}"), "proxy": ("float", write_literal(program.scale))}
+    optional_globals = {
+        "frame": ("int", f"@FRAMEINDEX + {names.first}"),
+        "proxy": ("float", write_literal(program.scale)),
+    }
     start = [
         "pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));",
         "grid = ivec2(RENDERSIZE);",
         "extent = grid;",
     ]
     declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
-    for name, (glsl, text) in known.items():
+    for name, (glsl, text) in optional_globals.items():
         if name in used:
             declared.append(f"{glsl} {name};")
             start.append(f"{name} = {text};")
@@ -164,8 +167,8 @@ def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ..
     own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
     own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
     own |= {name for _, name, _ in names.set} | {"made", *_GLOBALS}
-    known = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
-    return known.sub(lambda found: prefix + found[1], text).replace("@", "")
+    own_words = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
+    return own_words.sub(lambda found: prefix + found[1], text).replace("@", "")
 
 
 def _weight(weights: tuple[float, ...], first: int) -> str:

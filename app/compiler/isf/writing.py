@@ -23,7 +23,7 @@ _PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
 class IsfWriter:
     """The work in progress: passes drawn so far, by the buffers that they fill."""
 
-    found: IsfModel
+    model: IsfModel
     library: Library
     sources: Mapping[Ref, str]
     pictures: tuple[str, ...]
@@ -35,58 +35,60 @@ class IsfWriter:
     last: dict[Ref, int] = field(default_factory=dict[Ref, int])
     """The pass that reads a picture last."""
 
-    def whole(self, first: int) -> tuple[str, list[Section]]:
+    def write(self, first: int) -> tuple[str, list[Section]]:
         """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
-        program = self.found.program
+        program = self.model.program
         alone = fuse(program, NULL, gathers=False)
         passes = [(fused, output) for fused in alone for output in range(len(fused.writes))]
         self.last = {ref: index for index, (fused, _) in enumerate(passes) for ref in fused.reads}
         self.last[program.outputs["made"]] = len(passes)
         for fused, output in passes:
-            self._pass(fused, output, first)
+            self._write_pass(fused, output, first)
         self._show(program.outputs["made"])
         targets = self.targets
         lines = ["vec2 halation_canvas;", "", *self._display()]
-        lines += [line for name in self.pictures for line in _reader(name, "from_codes({})")]
-        drawn = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
-        lines += [line for name in drawn for line in _reader(name, "{}")]
+        lines += [line for name in self.pictures for line in _write_reader(name, "from_codes({})")]
+        buffer_names = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
+        lines += [line for name in buffer_names for line in _write_reader(name, "{}")]
         calls = [f"{'else ' if at else ''}if (PASSINDEX == {at}) {{ {call} }}" for at, call in enumerate(self.calls)]
         lines += ["", *self.blocks, "void main() {", *(calls if len(calls) > 1 else self.calls), "}"]
         return "\n".join(lines) + "\n", targets
 
-    def _pass(self, fused: PassGroup, output: int, first: int) -> None:
+    def _write_pass(self, fused: PassGroup, output: int, first: int) -> None:
         ref = fused.writes[output]
         names = IsfNames(
-            self.found.program,
+            self.model.program,
             {one: number for number, one in enumerate(fused.reads)},
             "fragment",
             False,
             seams=False,
-            texts=self.found.texts,
+            texts=self.model.texts,
             sized=self._find_size_text,
             first=first,
             readers={one: f"read_{self._name(one)}" for one in fused.reads},
         )
-        lines, made = write_function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)
+        lines, function_name = write_function(
+            self.model.program, fused, output, f"p{len(self.calls)}_", names, self.library
+        )
         self.blocks += [*lines, ""]
         size = self._size_of(ref)
-        self.calls.append(f"halation_canvas = {self._canvas(size)}; gl_FragColor = {made}();")
+        self.calls.append(f"halation_canvas = {self._canvas(size)}; gl_FragColor = {function_name}();")
         lengths: Section = {}
         if size != self.size:
-            across, down = self.found.sizes.get(size) or (write_literal(size[0]), write_literal(size[1]))
+            across, down = self.model.sizes.get(size) or (write_literal(size[0]), write_literal(size[1]))
             lengths = {"WIDTH": across.format("$WIDTH"), "HEIGHT": down.format("$HEIGHT")}
-        self.buffers[ref] = self._free(lengths)
+        self.buffers[ref] = self._choose_buffer(lengths)
         self.targets.append({"TARGET": self.buffers[ref], "FLOAT": True, **lengths})
 
-    def _free(self, lengths: Section) -> str:
+    def _choose_buffer(self, lengths: Section) -> str:
         """A buffer of this size that nobody reads any more, or another one: hosts read 16 pictures at most."""
-        now = len(self.targets)
-        taken = {name for ref, name in self.buffers.items() if self.last.get(ref, -1) >= now}
-        known = {
+        pass_number = len(self.targets)
+        used_buffers = {name for ref, name in self.buffers.items() if self.last.get(ref, -1) >= pass_number}
+        buffer_sizes = {
             str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets
         }
-        free = (name for name, size in known.items() if size == lengths and name not in taken)
-        return next(free, f"buffer{len(known) + 1}")
+        free = (name for name, size in buffer_sizes.items() if size == lengths and name not in used_buffers)
+        return next(free, f"buffer{len(buffer_sizes) + 1}")
 
     def _show(self, last: Ref) -> None:
         """The last pass is the picture."""
@@ -109,29 +111,29 @@ class IsfWriter:
 
     def _find_size_text(self, size: Uniform) -> tuple[str, str] | None:
         assert isinstance(size, tuple)
-        found = self.found.sizes.get((int(size[0]), int(size[1])))
-        if found is None:
+        formulas = self.model.sizes.get((int(size[0]), int(size[1])))
+        if formulas is None:
             return None
-        across, down = found
+        across, down = formulas
         return f"int({across.format('@halation_canvas.x')})", f"int({down.format('@halation_canvas.y')})"
 
     def _display(self) -> list[str]:
         """Between light and the display values of the format."""
         needed, lines = frozenset({"display_straight", "from_codes"}), list[str]()
         for text in reversed(self.library.closure(("lib/isf",), "export")):
-            kept = text.only(needed)
-            needed |= kept.words
-            lines = [line.rstrip() for line in kept.body.split("\n") if line.strip()] + lines
+            used = text.only(needed)
+            needed |= used.words
+            lines = [line.rstrip() for line in used.body.split("\n") if line.strip()] + lines
         return [*lines, "float halation_light(float code) { return srgb_decode(code); }"]
 
     def _name(self, ref: Ref) -> str:
         return self.sources.get(ref) or self.buffers[ref]
 
     def _size_of(self, ref: Ref) -> Size:
-        return self.found.program.ops[ref.op].shapes[ref.output].size
+        return self.model.program.ops[ref.op].shapes[ref.output].size
 
 
-def _reader(name: str, shown: str) -> list[str]:
+def _write_reader(name: str, template: str) -> list[str]:
     """A function that reads one pixel of a picture; rows of ours run from the top."""
     read = f"IMG_PIXEL({name}, vec2(float(at.x) + 0.5, IMG_SIZE({name}).y - float(at.y) - 0.5))"
-    return [f"vec4 read_{name}(ivec2 at) {{ return {shown.format(read)}; }}"]
+    return [f"vec4 read_{name}(ivec2 at) {{ return {template.format(read)}; }}"]

@@ -16,20 +16,20 @@ from .expand import zero_value
 def check_values(path: str, node: Node) -> None:
     """Raise GraphError for a value that no shader could take."""
     for name, value in node.values.items():
-        now = getattr(node, name)
-        if now is not value.default and (fault := value_fault(value, now)):
+        setting = getattr(node, name)
+        if setting is not value.default and (fault := value_fault(value, setting)):
             raise GraphError(f"{path}.{name}: {fault}")
 
 
 def input_constant(port: Port, end: Input) -> UniformConstant:
     """The constant of a graph input. Raises GraphError where it does not fit."""
-    given = end.default if isinstance(end.default, tuple) else (end.default,)
-    found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
-    if len(found) != len(given) or len(found) not in (1, end.width):
+    default = end.default if isinstance(end.default, tuple) else (end.default,)
+    numbers = tuple(part for part in default if isinstance(part, float | int) and math.isfinite(part))
+    if len(numbers) != len(default) or len(numbers) not in (1, end.width):
         raise GraphError(f"input '{port.socket}': the default {end.default!r} does not fit {end.kind}")
     if end.kind.is_planned:
-        return _read_object(end.kind, found)
-    return UniformConstant(found if len(found) > 1 else float(*found))
+        return _read_object(end.kind, numbers)
+    return UniformConstant(numbers if len(numbers) > 1 else float(*numbers))
 
 
 def limit_wire(wire: UniformConstant, value: Value, factor: float) -> UniformConstant:

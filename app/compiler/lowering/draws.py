@@ -74,7 +74,7 @@ class Recorder:
 
     def __init__(
         self,
-        fed: NodeInputs,
+        inputs: NodeInputs,
         node: Filter,
         size: Size,
         builder: Builder,
@@ -87,9 +87,9 @@ class Recorder:
         self.size, self.rate, self.start = size, rate, start
         self.reads_frame = False
         """Whether the node asked for the frame."""
-        self._owner, self._fed, self._node = fed.path, fed, node
+        self._owner, self._inputs, self._node = inputs.path, inputs, node
         self._builder, self._library, self._files = builder, library, files
-        self._blurs = BlurBuilder(builder, library, fed.path)
+        self._blurs = BlurBuilder(builder, library, inputs.path)
         self._memories = memories
         self._shader = node.shader
         self.remembered: dict[str, Ref] = {}
@@ -97,14 +97,14 @@ class Recorder:
     @property
     def frame(self) -> int:
         self.reads_frame = True
-        return self._fed.frame
+        return self._inputs.frame
 
     def size_of(self, pixels: Pixels) -> Size:
         operand = self._operand(pixels)
         return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
 
     def is_linked(self, socket: Socket) -> bool:
-        return socket.name in self._fed.linked
+        return socket.name in self._inputs.linked
 
     def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:
         operand = self._operand(socket) if frame is None else self._at(socket, frame)
@@ -146,10 +146,10 @@ class Recorder:
         **arguments: Argument,
     ) -> tuple[Drawn, ...]:
         shapes = tuple(self._shape(result, size or self.size) for result in results)
-        given = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
-        wanted = [result.glsl for result in results]
-        if given != wanted:
-            fault = f"'{function}' makes ({', '.join(given)}) but is drawn for ({', '.join(wanted)})"
+        made_types = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
+        drawn_types = [result.glsl for result in results]
+        if made_types != drawn_types:
+            fault = f"'{function}' makes ({', '.join(made_types)}) but is drawn for ({', '.join(drawn_types)})"
             raise ShaderError(self._owner, self._library.file(self._shader), 1, fault)
         op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
         first = self._builder.add(op)
@@ -264,20 +264,20 @@ class Recorder:
         return {name: DrawnPicture(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
-        made = self._pixels(image)
-        while made.size != (1, 1):
-            size = (math.ceil(made.size[0] / BLOCK), math.ceil(made.size[1] / BLOCK))
-            shape = PictureShape(size, made.shape.channels, data=True)
-            made = self._add(Reduce((shape,), self._owner, made.ref, operation))
-        return made
+        picture = self._pixels(image)
+        while picture.size != (1, 1):
+            size = (math.ceil(picture.size[0] / BLOCK), math.ceil(picture.size[1] / BLOCK))
+            shape = PictureShape(size, picture.shape.channels, data=True)
+            picture = self._add(Reduce((shape,), self._owner, picture.ref, operation))
+        return picture
 
     def history(self, first: Pixels, name: str = "") -> Drawn:
-        made, memory = self._pixels(first), self._memories.get(name)
+        picture, memory = self._pixels(first), self._memories.get(name)
         # A memory of another size is of another picture.
-        if memory is None or memory.shape != made.shape:
-            return made
+        if memory is None or memory.shape != picture.shape:
+            return picture
         return DrawnPicture(
-            self._builder.add(HistoryRead((made.shape,), self._owner, memory.key, memory.half)), made.shape
+            self._builder.add(HistoryRead((picture.shape,), self._owner, memory.key, memory.half)), picture.shape
         )
 
     def remember(self, pixels: Drawn, name: str = "") -> None:
@@ -330,12 +330,12 @@ class Recorder:
 
     def _operand(self, item: Pixels) -> Ref | UniformConstant:
         if isinstance(item, Socket):
-            return self._fed.inputs[item.name]
+            return self._inputs.inputs[item.name]
         assert isinstance(item, DrawnPicture)
         return item.ref
 
     def _at(self, socket: Socket, frame: int) -> Operand:
-        return self._fed.at_frames.get((socket.name, frame)) or self._fed.inputs[socket.name]
+        return self._inputs.at_frames.get((socket.name, frame)) or self._inputs.inputs[socket.name]
 
     def _pixels(self, item: Pixels) -> DrawnPicture:
         operand = self._operand(item)
@@ -352,7 +352,7 @@ class Recorder:
                 1,
                 f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
             )
-        found: list[Parameter] = []
+        parameters: list[Parameter] = []
         for (glsl, name), item in zip(signature.parameters, arguments.values(), strict=True):
             if isinstance(item, str):
                 operand = Choice(self._node.values[name].choices.index(item))
@@ -361,8 +361,8 @@ class Recorder:
             else:
                 assert isinstance(item, (float, int, tuple))
                 operand = UniformConstant(_check_plain(item))
-            found.append(Parameter(glsl, operand))
-        return tuple(found)
+            parameters.append(Parameter(glsl, operand))
+        return tuple(parameters)
 
 
 def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:

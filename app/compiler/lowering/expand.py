@@ -33,16 +33,16 @@ class FlatGraph(Struct):
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
         if port not in self.links:
             return None
-        found, seen = port, set[Port]()
-        while found in self.links:
-            if found in self.faults:
-                raise GraphError(self.faults[found], node=found.node)
-            if found in seen:
-                group = found.node.rpartition("/")[0]
+        source, visited = port, set[Port]()
+        while source in self.links:
+            if source in self.faults:
+                raise GraphError(self.faults[source], node=source.node)
+            if source in visited:
+                group = source.node.rpartition("/")[0]
                 raise GraphError(f"group '{group}' feeds itself: cut one link of the loop", node=group)
-            seen.add(found)
-            found = self.links[found]
-        return found
+            visited.add(source)
+            source = self.links[source]
+        return source
 
     def behind(self, end: Port) -> Port:
         """`source` without any check, for what has been followed before; the end itself if nothing feeds it."""
@@ -109,13 +109,13 @@ def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[st
     moves = before.animation is not after.animation and (before.animation or after.animation)
     if not same or moves or [*before.nodes] != [*after.nodes]:
         return None
-    found: dict[str, Node] = {}
+    changed: dict[str, Node] = {}
     for id, item in after.nodes.items():
         old = before.nodes[id]
         if item is old:
             continue
         if isinstance(item, Node) and type(item) is type(old):
-            found[prefix + id] = item
+            changed[prefix + id] = item
         elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
             try:
                 bodies = [_with_controls(group.graph, group.values) for group in (old, item)]
@@ -124,10 +124,10 @@ def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[st
                 return None
             if inner is None:
                 return None
-            found |= inner
+            changed |= inner
         else:
             return None
-    return found
+    return changed
 
 
 def _with_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
@@ -165,9 +165,9 @@ def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:
     for name, end in body.inputs.items():
         flat.inputs[Port(prefix + INPUTS, name)] = end
     for name, end in body.outputs.items():
-        shown, port = find_stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
-        if shown is not None:
-            flat.links[port] = Port(prefix + INPUTS, shown)
+        stand_in, port = find_stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
+        if stand_in is not None:
+            flat.links[port] = Port(prefix + INPUTS, stand_in)
         else:
             flat.inputs[port] = Input(end.kind, end.width, default=zero_value(end.socket(name)))
 

@@ -37,7 +37,8 @@ def add_convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Re
     picture, spread = builder.shape(image).size, builder.shape(kernel).size
     width, height = (pad_length(*lengths) for lengths in zip(picture, spread, strict=True))
     spectra = [
-        _transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner) for made in (image, kernel)
+        _transform(builder, _transform(builder, picture_, 0, width, owner), 1, height, owner)
+        for picture_ in (image, kernel)
     ]
     product = builder.add(
         Gather(
@@ -71,12 +72,12 @@ def plan_stages(length: int, filled: int) -> tuple[FourierStage, ...]:
         (radix for radix in terms if terms[radix] <= _MAX_READS),
         key=lambda radix: _STAGE_COST + terms[radix] + _cost(_find_radices(length // radix)),
     )
-    found = [FourierStage(first, 1, terms[first])]
+    stages = [FourierStage(first, 1, terms[first])]
     span = first
     for radix in _find_radices(length // first):
-        found.append(FourierStage(radix, span, radix))
+        stages.append(FourierStage(radix, span, radix))
         span *= radix
-    return tuple(found)
+    return tuple(stages)
 
 
 @cache
@@ -100,32 +101,32 @@ def _remove_primes(length: int) -> int:
 
 
 def _transform(
-    builder: Builder, made: Ref, axis: int, length: int, owner: str, wanted: tuple[int, int] | None = None
+    builder: Builder, picture: Ref, axis: int, length: int, owner: str, inverse: tuple[int, int] | None = None
 ) -> Ref:
     """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
-    passes = plan_stages(length, builder.shape(made).size[axis])
+    passes = plan_stages(length, builder.shape(picture).size[axis])
     for stage in passes:
-        size = builder.shape(made).size
-        first, count = wanted if wanted and stage is passes[-1] else (0, length)
+        size = builder.shape(picture).size
+        first, count = inverse if inverse and stage is passes[-1] else (0, length)
         size = (count, size[1]) if axis == 0 else (size[0], count)
         apart = length // stage.radix
-        begins = not wanted and stage is passes[0]
+        begins = not inverse and stage is passes[0]
         # The numbers that loops run to are part of the text, so that drivers unroll them.
         parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
         if begins:
             parameters += [Parameter("int", UniformConstant(number)) for number in (stage.radix, apart)]
         else:
             parameters += [Parameter("int", UniformConstant(number)) for number in (stage.span, apart, first)]
-            parameters.append(Parameter("float", UniformConstant(1.0 if wanted else -1.0)))
-        made = builder.add(
+            parameters.append(Parameter("float", UniformConstant(1.0 if inverse else -1.0)))
+        picture = builder.add(
             Gather(
                 (PictureShape(size, 4, data=True),),
                 owner,
                 _SHADER,
                 "fourier_first" if begins else "fourier_stage",
                 tuple(parameters),
-                accessors=(Accessor("image", "vec4", made),),
+                accessors=(Accessor("image", "vec4", picture),),
                 edge="black" if begins else "clamp",
             )
         )
-    return made
+    return picture

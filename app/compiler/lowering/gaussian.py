@@ -68,10 +68,10 @@ def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
         variance += (_DECIMATION_SIGMA * factor) ** 2
     if factor == 1:
         return BlurAxis((), 1, smooth)
-    found = _normalize([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
-    excess = _variance(found) + (variance + factor**2 / 3.0 - _variance(smooth)) / factor**2
-    near = [(before + after) / 2.0 for before, after in zip([0.0, *found], [*found[1:], 0.0], strict=False)]
-    sharp = [max((1.0 + excess) * one - excess * other, 0.0) for one, other in zip(found, near, strict=True)]
+    samples = _normalize([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
+    excess = _variance(samples) + (variance + factor**2 / 3.0 - _variance(smooth)) / factor**2
+    near = [(before + after) / 2.0 for before, after in zip([0.0, *samples], [*samples[1:], 0.0], strict=False)]
+    sharp = [max((1.0 + excess) * one - excess * other, 0.0) for one, other in zip(samples, near, strict=True)]
     return BlurAxis(tuple(steps), factor, _normalize(sharp))
 
 
@@ -82,28 +82,28 @@ def find_spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int,
     clamped or black comes to an end there, and its last pixels stand for all that follow. What repeats in whole blocks
     does so at any size. All else goes on as far as is ever read.
     """
-    found: list[tuple[int, int]] = []
+    spans: list[tuple[int, int]] = []
     if edge in ("clamp", "black"):
         first, end = 0, length
         for step in axis.steps:
             taps, start = decimation_weights(step)
             first = (first - start - len(taps) + 1) // step
             end = -((start + 1 - end) // step) + 1
-            found.append((first, end - first))
-        return found, edge
+            spans.append((first, end - first))
+        return spans, edge
     for step in axis.steps if edge in ("reflect", "wrap") else ():
         if length % step:
             break
         length //= step
-        found.append((0, length))
-    left = axis.steps[len(found) :]
-    if not left:
-        return found, edge
-    apron, total = math.prod(left) * (len(axis.weights) // 2 + 2), 1
-    for step in left:
+        spans.append((0, length))
+    remaining_steps = axis.steps[len(spans) :]
+    if not remaining_steps:
+        return spans, edge
+    apron, total = math.prod(remaining_steps) * (len(axis.weights) // 2 + 2), 1
+    for step in remaining_steps:
         total *= step
-        found.append((-apron // total, -(-(length + 2 * apron) // total)))
-    return found, "clamp"
+        spans.append((-apron // total, -(-(length + 2 * apron) // total)))
+    return spans, "clamp"
 
 
 def gaussian_weights(sigma: float) -> tuple[float, ...]:
@@ -114,25 +114,25 @@ def gaussian_weights(sigma: float) -> tuple[float, ...]:
     radius = int(4.0 * sigma + 0.5) if sigma >= 1.0 else math.ceil(4.0 * sigma)
     if sigma < 1.0:
         half = sigma * math.sqrt(2.0)
-        found = [math.erf((i + 0.5) / half) - math.erf((i - 0.5) / half) for i in range(-radius, radius + 1)]
+        weights = [math.erf((i + 0.5) / half) - math.erf((i - 0.5) / half) for i in range(-radius, radius + 1)]
     else:
-        found = [math.exp(-0.5 * (i / sigma) ** 2) for i in range(-radius, radius + 1)]
-    return _normalize(found)
+        weights = [math.exp(-0.5 * (i / sigma) ** 2) for i in range(-radius, radius + 1)]
+    return _normalize(weights)
 
 
 def decimation_weights(step: int) -> tuple[tuple[float, ...], int]:
     """Weights of a decimation by `step`, and where they start relative to the first pixel of each block."""
     sigma, middle = _DECIMATION_SIGMA * step, (step - 1) / 2
     reach = math.ceil(4.0 * sigma - middle)
-    found = [math.exp(-0.5 * ((i - middle) / sigma) ** 2) for i in range(-reach, step + reach)]
-    return _normalize(found), -reach
+    weights = [math.exp(-0.5 * ((i - middle) / sigma) ** 2) for i in range(-reach, step + reach)]
+    return _normalize(weights), -reach
 
 
-def _normalize(found: list[float]) -> tuple[float, ...]:
-    total = math.fsum(found)
-    return tuple(weight / total for weight in found)
+def _normalize(weights: list[float]) -> tuple[float, ...]:
+    total = math.fsum(weights)
+    return tuple(weight / total for weight in weights)
 
 
-def _variance(found: tuple[float, ...]) -> float:
+def _variance(weights: tuple[float, ...]) -> float:
     """Of normalized weights around their middle."""
-    return math.fsum(weight * (i - len(found) // 2) ** 2 for i, weight in enumerate(found))
+    return math.fsum(weight * (i - len(weights) // 2) ** 2 for i, weight in enumerate(weights))

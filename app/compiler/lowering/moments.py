@@ -8,7 +8,7 @@ from halation.nodes import Node
 from msgspec.structs import replace
 
 from ...errors import GraphError
-from ...graph import Graph, Port, is_animated, still
+from ...graph import Graph, Port, evaluate_at_frame, is_animated
 from .expand import FlatGraph, expand, find_changed_nodes
 
 Moment = tuple[str, int]
@@ -32,11 +32,11 @@ class Moments:
         """The graph at a frame."""
         key = frame if self._moves else 0
         if key not in self._flats:
-            graph = still(self._graph, frame)
+            graph = evaluate_at_frame(self._graph, frame)
             self._flats[key] = graph, expand(graph)
         return self._flats[key][1]
 
-    def follow(self, graph: Graph, before: int, now: int) -> Moments | None:
+    def follow(self, graph: Graph, frame_before: int, frame_after: int) -> Moments | None:
         """The same of a graph that differs in values of nodes only, which `changed` tells; else None.
 
         `now` is looked from instead of `before`. Where these are two frames, no node may look at others.
@@ -44,13 +44,13 @@ class Moments:
         after = Moments(graph)
         if after._moves != self._moves:
             return None
-        if before == now:
+        if frame_before == frame_after:
             after._feeding = self._feeding
-        elif len(self._flats) > 1 or any(map(looks_around, self.flat(before).nodes.values())):
+        elif len(self._flats) > 1 or any(map(looks_around, self.flat(frame_before).nodes.values())):
             return None
         for key, (old, flat) in self._flats.items():
-            frame = key if before == now or not self._moves else now
-            new = still(graph, frame)
+            frame = key if frame_before == frame_after or not self._moves else frame_after
+            new = evaluate_at_frame(graph, frame)
             changed = find_changed_nodes(old, new)
             if changed is None:
                 return None
@@ -78,7 +78,7 @@ class Moments:
         Raises GraphError for a node of unknown type, and for one that feeds itself.
         """
         order: list[Moment] = []
-        done: set[Moment] = set()
+        visited: set[Moment] = set()
         open_: set[str] = set()
         todo: list[tuple[Moment, bool]] = [((port.node, frame), False) for port in starts]
         while todo:
@@ -86,7 +86,7 @@ class Moments:
             path = moment[0]
             if leaving:
                 open_.discard(path)
-                done.add(moment)
+                visited.add(moment)
                 order.append(moment)
                 continue
             flat = self.flat(moment[1])
@@ -94,14 +94,14 @@ class Moments:
                 item = flat.unknown[path]
                 fault = item.fault or f"its type '{item.type}' is unknown to this version of Halation"
                 raise GraphError(f"node '{path}': {fault}", node=path)
-            if moment in done or path not in flat.nodes:
+            if moment in visited or path not in flat.nodes:
                 continue
             if path in open_:
                 raise GraphError(f"node '{path}' feeds itself: cut one link of the loop", node=path)
             open_.add(path)
             todo.append((moment, True))
             for source, frames in self.find_feeds(moment).values():
-                todo.extend(((source.node, at), False) for at in frames if (source.node, at) not in done)
+                todo.extend(((source.node, at), False) for at in frames if (source.node, at) not in visited)
         return order
 
     def _collect_feeds(self, moment: Moment) -> dict[str, Feed]:
@@ -109,12 +109,12 @@ class Moments:
         flat = self.flat(frame)
         node = flat.nodes[path]
         times = node.times(frame)
-        found: dict[str, Feed] = {}
+        feeds: dict[str, Feed] = {}
         for name in (*node.inputs, *node.values):
             source = flat.source(Port(path, name))
             if source is not None:
-                found[name] = (source, times.get(name, (frame,)))
-        return found
+                feeds[name] = (source, times.get(name, (frame,)))
+        return feeds
 
 
 def looks_around(node: Node) -> bool:

@@ -81,7 +81,7 @@ def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     management is `settings.config`.
     """
     flat = expand(graph)
-    found = {
+    texts = {
         f"{port}": (end.file, str(PurePath(flat.folders[port.node.removesuffix(INPUTS)], end.file)))
         for port, end in flat.inputs.items()
         if end.file
@@ -89,8 +89,8 @@ def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     for path, node in flat.nodes.items():
         for value in node.values.values():
             if value.type == "path" and (text := getattr(node, value.name)):
-                found[f"{path}.{value.name}"] = text, str(PurePath(flat.folders[path], text))
+                texts[f"{path}.{value.name}"] = text, str(PurePath(flat.folders[path], text))
     config = graph.settings.color.config
     if config and not config.startswith(BUILT_IN):
-        found[CONFIG] = config, color_settings(graph).config
-    return found
+        texts[CONFIG] = config, color_settings(graph).config
+    return texts

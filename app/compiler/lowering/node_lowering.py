@@ -143,10 +143,10 @@ class NodeLowering:
         """What the outputs of a muted or neutral node show; None if it has something to do."""
         node = inputs.node
         if inputs.path in self._context.flat.muted:
-            shown = {name: find_stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
+            sources = {name: find_stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {
                 name: inputs.inputs[source] if source else constants.of_nothing(node.outputs[name].socket)
-                for name, source in shown.items()
+                for name, source in sources.items()
             }
         neutral = None if inputs.wires or len(node.outputs) != 1 else node.identity()
         return dict.fromkeys(node.outputs, inputs.inputs[neutral]) if neutral else None
@@ -242,10 +242,10 @@ class NodeLowering:
             settings.rate,
             (settings.frames or (1, 1))[0],
         )
-        drawn = node.passes(recorder)
+        pictures = node.passes(recorder)
         step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
         step.reads_frame = recorder.reads_frame
-        results = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
+        results = pictures if isinstance(pictures, Mapping) else {next(iter(node.outputs)): pictures}
         for name, item in results.items():
             operand = item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
             step.results[Port(path, name), inputs.frame - context.frame] = operand

@@ -66,18 +66,18 @@ class PictureBuilder:
         """Upload a picture, or that frame of a sequence, at the size wanted."""
         picture, black = replace(picture, color=self._color), False
         if not picture.in_memory:
-            found = self._outside.at(picture.path, frame, missing)
-            picture, black = replace(picture, path=found.path, frame=found.number), found.black
+            frame_file = self._outside.at(picture.path, frame, missing)
+            picture, black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
-        wanted = self._scale(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
+        size = self._scale(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
         if black:
             socket = make_socket(picture.kind, picture.width)
-            return self.convert(UniformConstant(zero_value(socket)), socket, wanted, owner)
+            return self.convert(UniformConstant(zero_value(socket)), socket, size, owner)
         # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
         picture = replace(picture, pixels=None, by_rows=probed.by_rows)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
-        return self.fit(ref, wanted, owner)
+        return self.fit(ref, size, owner)
 
     def asset(self, picture: Picture, owner: str) -> Ref:
         """Upload a picture that belongs to a node, as it is."""

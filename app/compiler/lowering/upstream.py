@@ -22,16 +22,16 @@ class Upstream:
     found out anew.
     """
 
-    def __init__(self, graph: Graph, frame: int = 1, known: Upstream | None = None) -> None:
+    def __init__(self, graph: Graph, frame: int = 1, before: Upstream | None = None) -> None:
         self.graph, self.frame = graph, frame
         self.hashes: dict[str, str] = {}
-        follows = known and known.frame == frame and not is_animated(graph)
-        changed = find_changed_nodes(known.graph, graph) if known and follows else None
+        follows = before and before.frame == frame and not is_animated(graph)
+        changed = find_changed_nodes(before.graph, graph) if before and follows else None
         try:
-            if known is None or changed is None:
+            if before is None or changed is None:
                 self._find_all()
             else:
-                self._follow(known, changed)
+                self._follow(before, changed)
         except GraphError:
             self.hashes = {}
 
@@ -50,12 +50,12 @@ class Upstream:
         ]
         self._hash_ends()
 
-    def _follow(self, known: Upstream, changed: dict[str, Node]) -> None:
-        self.hashes = dict(known.hashes)
-        if not known.hashes:
+    def _follow(self, before: Upstream, changed: dict[str, Node]) -> None:
+        self.hashes = dict(before.hashes)
+        if not before.hashes:
             return
-        self._flat = replace(known._flat, nodes={**known._flat.nodes, **changed})
-        self._settings, self._reads, self._ends = known._settings, known._reads, known._ends
+        self._flat = replace(before._flat, nodes={**before._flat.nodes, **changed})
+        self._settings, self._reads, self._ends = before._settings, before._reads, before._ends
         reached = set(changed)
         for path, sources in self._reads.items():
             if path in reached or any(source and source.node in reached for source in sources):
@@ -68,13 +68,13 @@ class Upstream:
         try:
             return list(dict.fromkeys(path for path, _ in moments.order(paths, self.frame)))
         except GraphError:  # something is wrong somewhere: take what can be had
-            found: dict[str, None] = {}
+            paths_: dict[str, None] = {}
             for path in paths:
                 try:
-                    found |= dict.fromkeys(node for node, _ in moments.order((path,), self.frame))
+                    paths_ |= dict.fromkeys(node for node, _ in moments.order((path,), self.frame))
                 except GraphError:
                     continue
-            return list(found)
+            return list(paths_)
 
     def _sources(self, path: str) -> list[Port | None]:
         node = self._flat.nodes[path]

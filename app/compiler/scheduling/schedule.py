@@ -82,31 +82,34 @@ def schedule(
     return ScheduleRecord(program, passes, texels, fingerprints, keys, plan)
 
 
-def reschedule(known: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
+def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
     """The plan of a program that differs from the known one in numbers alone, else None.
 
     The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
     again, and keys found of all that comes after them.
     """
-    changed = find_changed_numbers(known.program, program)
+    changed = find_changed_numbers(before.program, program)
     if changed is None:
         return None
-    plan, target, numbers = known.plan, known.plan.target, {ref: number for number, ref in enumerate(known.texels)}
-    moved, finder = program.frame != known.program.frame, PassFingerprints(program, library, target, known.texels)
-    passes, fingerprints, surfaces, keys = [*plan.passes], [*known.fingerprints], [*plan.surfaces], dict(known.keys)
-    others = [
+    plan, target, numbers = before.plan, before.plan.target, {ref: number for number, ref in enumerate(before.texels)}
+    frame_changed, finder = (
+        program.frame != before.program.frame,
+        PassFingerprints(program, library, target, before.texels),
+    )
+    passes, fingerprints, surfaces, keys = [*plan.passes], [*before.fingerprints], [*plan.surfaces], dict(before.keys)
+    changed_passes = [
         number
-        for number, fused in enumerate(known.passes)
+        for number, fused in enumerate(before.passes)
         if not changed.isdisjoint(fused.members)
-        or (moved and any(name == "frame" for name, _ in passes[number].uniforms))
+        or (frame_changed and any(name == "frame" for name, _ in passes[number].uniforms))
     ]
-    for number in others:
-        fused = known.passes[number]
-        item = emit(program, fused, library, target, known.texels)
+    for number in changed_passes:
+        fused = before.passes[number]
+        item = emit(program, fused, library, target, before.texels)
         passes[number] = _make_pass(program, fused, item, numbers, library)
         fingerprints[number] = finder.of(fused)
     sources = [ref for ref in numbers if ref.op in changed]
-    for ref in update_keys(keys, program, sources, fingerprints, others):
+    for ref in update_keys(keys, program, sources, fingerprints, changed_passes):
         if ref in numbers:
             surfaces[numbers[ref]] = replace(surfaces[numbers[ref]], key=keys[ref])
     plan = replace(
@@ -115,9 +118,9 @@ def reschedule(known: ScheduleRecord, program: LoweredProgram, library: Library)
         uploads=tuple(_find_uploads(program, numbers)),
         passes=tuple(passes),
         cameras=program.cameras,
-        memories=_find_memories(program, keys, known.texels),
+        memories=_find_memories(program, keys, before.texels),
     )
-    return ScheduleRecord(program, known.passes, known.texels, tuple(fingerprints), keys, plan)
+    return ScheduleRecord(program, before.passes, before.texels, tuple(fingerprints), keys, plan)
 
 
 def _find_memories(
@@ -184,11 +187,11 @@ def _find_rounded(
     """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
     if not target.rounds_halves:
         return frozenset()
-    found = {ref for name, ref in program.outputs.items() if name in halves}
-    found -= {ref for name, ref in program.outputs.items() if name not in halves}
-    found -= {ref for fused in passes for ref in fused.reads}
-    found = {ref for ref in found if program.ops[ref.op].rounds_halves}
-    return frozenset(found.difference(program.memories.values()))
+    rounded = {ref for name, ref in program.outputs.items() if name in halves}
+    rounded -= {ref for name, ref in program.outputs.items() if name not in halves}
+    rounded -= {ref for fused in passes for ref in fused.reads}
+    rounded = {ref for ref in rounded if program.ops[ref.op].rounds_halves}
+    return frozenset(rounded.difference(program.memories.values()))
 
 
 def _depth(format: str) -> Depth:
@@ -231,9 +234,9 @@ def _assign_slots(
     ended = 0
     for ref in by_start:
         while ended < len(by_end) and last[by_end[ended]] < first[ref]:
-            gone = by_end[ended]
-            if gone in slots:
-                free.setdefault((program.size_on_device(gone), texels[gone]), []).append(slots[gone])
+            ended_ref = by_end[ended]
+            if ended_ref in slots:
+                free.setdefault((program.size_on_device(ended_ref), texels[ended_ref]), []).append(slots[ended_ref])
             ended += 1
         kind = (program.size_on_device(ref), texels[ref])
         if free.get(kind):
@@ -245,13 +248,13 @@ def _assign_slots(
 
 
 def _find_uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[Upload]:
-    found: list[Upload] = []
+    uploads: list[Upload] = []
     for ref, number in numbers.items():
         op = program.ops[ref.op]
         picture = op.find_upload(ref.output)
         if picture is not None:
-            found.append(Upload(number, picture, op.owner, _shape(program, ref).size))
-    return found
+            uploads.append(Upload(number, picture, op.owner, _shape(program, ref).size))
+    return uploads
 
 
 def _make_pass(

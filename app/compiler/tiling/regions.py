@@ -17,30 +17,30 @@ from ..ir import LoweredProgram, Ref
 
 
 def find_regions(
-    program: LoweredProgram, passes: Sequence[PassGroup], wanted: Mapping[Ref, Region], there: Set[Ref] = frozenset()
+    program: LoweredProgram, passes: Sequence[PassGroup], requested: Mapping[Ref, Region], there: Set[Ref] = frozenset()
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
 
     A pass makes the same region of all that it writes. What is `there` stays whole, as does all that it was made of:
     so it is still what it was.
     """
-    found = dict(wanted)
+    regions = dict(requested)
     for fused in reversed(passes):
-        made = [ref for ref in fused.writes if ref in found]
-        if not made:
+        written = [ref for ref in fused.writes if ref in regions]
+        if not written:
             continue
-        known = all(ref in there for ref in made)
-        size = program.shape(made[0]).size
-        whole = known or any(program.ops[index].is_indivisible for index in fused.members)
-        region = Region.whole(size) if whole else _unite([found[ref] for ref in made])
-        found |= {
+        is_there = all(ref in there for ref in written)
+        size = program.shape(written[0]).size
+        whole = is_there or any(program.ops[index].is_indivisible for index in fused.members)
+        region = Region.whole(size) if whole else _unite([regions[ref] for ref in written])
+        regions |= {
             ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
             for ref in fused.writes
         }
         for ref, part in _find_reads(program, fused, region).items():
-            part = Region.whole(program.shape(ref).size) if known else part
-            found[ref] = found[ref].union(part) if ref in found else part
-    return found
+            part = Region.whole(program.shape(ref).size) if is_there else part
+            regions[ref] = regions[ref].union(part) if ref in regions else part
+    return regions
 
 
 def focus_program(
@@ -51,15 +51,17 @@ def focus_program(
     The parts that it makes may be larger, where something else reads an output. What is remembered is whole, and so is
     what is `there` already.
     """
-    wanted: dict[Ref, Region] = {}
+    requested: dict[Ref, Region] = {}
     for ref in program.outputs.values():
         width, height = program.shape(ref).size
-        wanted[ref] = Region.of(clip_span(region.across, width, "clamp"), clip_span(region.down, height, "clamp"))
-    wanted |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
-    found = find_regions(program, passes, wanted, there)
-    made = {ref for fused in passes for ref in fused.writes}
-    kept = {ref for ref in found if ref not in made and (ref in there or program.ops[ref.op].is_memory)}
-    parts = {ref: part for ref, part in found.items() if ref not in kept and part.size != program.shape(ref).size}
+        requested[ref] = Region.of(clip_span(region.across, width, "clamp"), clip_span(region.down, height, "clamp"))
+    requested |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
+    regions = find_regions(program, passes, requested, there)
+    written = {ref for fused in passes for ref in fused.writes}
+    whole_refs = {ref for ref in regions if ref not in written and (ref in there or program.ops[ref.op].is_memory)}
+    parts = {
+        ref: part for ref, part in regions.items() if ref not in whole_refs and part.size != program.shape(ref).size
+    }
     return replace(program, windows=MappingProxyType(parts))
 
 
@@ -76,7 +78,7 @@ def _find_reads(program: LoweredProgram, fused: PassGroup, region: Region) -> di
 
 
 def _unite(regions: list[Region]) -> Region:
-    found = regions[0]
+    union = regions[0]
     for region in regions[1:]:
-        found = found.union(region)
-    return found
+        union = union.union(region)
+    return union

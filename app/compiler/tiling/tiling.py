@@ -81,9 +81,9 @@ def plan_tiling(
     return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why, work.by_rows)
 
 
-def plan_tile(tiling: Tiling, stage: TileStage, number: int, made: Mapping[int, StoredResult]) -> Plan:
+def plan_tile(tiling: Tiling, stage: TileStage, number: int, stored: Mapping[int, StoredResult]) -> Plan:
     """How a tile of a stage is made; `made` is what the stages before made, by operation."""
-    ops = tuple(made.get(index, op) for index, op in enumerate(tiling.program.ops))
+    ops = tuple(stored.get(index, op) for index, op in enumerate(tiling.program.ops))
     program = replace(
         tiling.program,
         ops=ops,
@@ -119,9 +119,9 @@ def _find_excess(
 
 def _count_memory_bytes(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
     """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
-    kept = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
+    kept_bytes = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
     read = sum(_nbytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
-    return max(kept - read, 0)
+    return max(kept_bytes - read, 0)
 
 
 def _find_outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[Ref]:
@@ -236,14 +236,14 @@ class _StagePlanner:
         tile = size
         usual = max(USUAL_BYTES, 2 * self._measure_textures(passes, outputs, size, (MIN_TILE, MIN_TILE))[1])
         while True:
-            found, textures = self._measure_textures(passes, outputs, size, tile)
-            nbytes = self._measure_pictures(passes, outputs, found, tile) + textures
-            fits = self._fits(found, textures, nbytes, usual)
+            windows, textures = self._measure_textures(passes, outputs, size, tile)
+            nbytes = self._measure_pictures(passes, outputs, windows, tile) + textures
+            fits = self._fits(windows, textures, nbytes, usual)
             if fits or whole or max(tile) <= MIN_TILE:
                 break
-            tile = _halve_tile(tile, self._too_wide(found))
-        if not fits and (self.target.memory or any(self._too_wide(found))):
-            self._refuse(found, nbytes)
+            tile = _halve_tile(tile, self._too_wide(windows))
+        if not fits and (self.target.memory or any(self._too_wide(windows))):
+            self._refuse(windows, nbytes)
         self.nbytes = max(self.nbytes, nbytes)
         if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MAX_TILES:
             owner, memory = self.program.ops[next(iter(outputs.values())).op].owner, self.target.memory
@@ -262,29 +262,33 @@ class _StagePlanner:
         self, passes: Sequence[PassGroup], outputs: dict[str, Ref], size: Size, tile: Size
     ) -> tuple[list[dict[Ref, Region]], int]:
         """The windows of tiles of this size, and what textures take at most."""
-        found = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
-        programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in found)
-        return found, max(peak_bytes(program, passes, self.texels) for program in programs)
+        windows = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
+        programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in windows)
+        return windows, max(peak_bytes(program, passes, self.texels) for program in programs)
 
     def _find_passes(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
         """The passes that make pictures of what stages before made; `own` is the stage's own one."""
-        found: set[int] = set()
+        numbers_found: set[int] = set()
         todo = list(refs)
         numbers = {id(fused): number for number, fused in enumerate(self.passes)}
         while todo:
             ref = todo.pop()
             fused = self.makers.get(ref)
-            if fused is None or numbers[id(fused)] in found or (ref in self.held and fused is not own):
+            if fused is None or numbers[id(fused)] in numbers_found or (ref in self.held and fused is not own):
                 continue
-            found.add(numbers[id(fused)])
+            numbers_found.add(numbers[id(fused)])
             todo.extend(fused.reads)
-        return tuple(self.passes[number] for number in sorted(found))
+        return tuple(self.passes[number] for number in sorted(numbers_found))
 
     def _find_windows(self, passes: Sequence[PassGroup], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
         return find_regions(self.program, passes, dict.fromkeys(refs, region))
 
     def _measure_pictures(
-        self, passes: Sequence[PassGroup], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
+        self,
+        passes: Sequence[PassGroup],
+        outputs: Mapping[str, Ref],
+        windows_by_tile: Sequence[Mapping[Ref, Region]],
+        tile: Size,
     ) -> int:
         """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
 
@@ -293,7 +297,7 @@ class _StagePlanner:
         """
         held = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
         rows = {
-            ref: max(windows[ref].height for windows in found if ref in windows)
+            ref: max(windows[ref].height for windows in windows_by_tile if ref in windows)
             for ref in held
             if self.target.memory and (picture := self.program.ops[ref.op].find_upload(ref.output)) and picture.by_rows
         }
@@ -304,26 +308,27 @@ class _StagePlanner:
             total += _nbytes(self.program, self.texels, ref) * min(rows.get(ref, height), height) // height
         return total
 
-    def _fits(self, found: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
+    def _fits(self, windows: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
         """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
         fits = nbytes <= self.target.memory if self.target.memory else textures <= usual
-        return fits and self._too_wide(found) == (False, False)
+        return fits and self._too_wide(windows) == (False, False)
 
-    def _too_wide(self, found: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
+    def _too_wide(self, windows_by_tile: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
         """Whether a window is wider, or higher, than the device can hold."""
         most = self.target.max_size
-        regions = [region for windows in found for region in windows.values()]
+        regions = [region for windows in windows_by_tile for region in windows.values()]
         return any(region.width > most for region in regions), any(region.height > most for region in regions)
 
-    def _refuse(self, found: Sequence[Mapping[Ref, Region]], nbytes: int) -> None:
+    def _refuse(self, windows_by_tile: Sequence[Mapping[Ref, Region]], nbytes: int) -> None:
         """Raise DeviceError: even the smallest tiles are too large."""
-        sizes = {ref: region.width * region.height for windows in found for ref, region in windows.items()}
+        sizes = {ref: region.width * region.height for windows in windows_by_tile for ref, region in windows.items()}
         largest = max(sizes, key=lambda ref: sizes[ref])
         owner, memory = self.program.ops[largest.op].owner, self.target.memory
         if memory and nbytes > memory:
-            said = f"{size_text(nbytes)} of pictures must be held at once, but only {size_text(memory)} may be used"
+            shortage = f"{size_text(nbytes)} of pictures must be held at once, but only {size_text(memory)} may be used"
             raise DeviceError(
-                f"node '{owner}': {said}; give more with --memory, or render smaller with --scale or --size", node=owner
+                f"node '{owner}': {shortage}; give more with --memory, or render smaller with --scale or --size",
+                node=owner,
             )
         raise DeviceError(
             f"node '{owner}': for a few pixels it needs more than the {self.target.max_size} that "
@@ -360,7 +365,13 @@ def _halve_tile(tile: Size, too_wide: tuple[bool, bool]) -> Size:
     return (max(-(-width // 2), MIN_TILE), height) if across else (width, max(-(-height // 2), MIN_TILE))
 
 
-def _select_parts(program: LoweredProgram, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
+def _select_parts(
+    program: LoweredProgram, windows_by_tile: Sequence[Mapping[Ref, Region]]
+) -> tuple[Mapping[Ref, Region], ...]:
     """The regions of what is not whole for every tile."""
-    parts = {ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size}
-    return tuple(MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in found)
+    parts = {
+        ref for windows in windows_by_tile for ref, region in windows.items() if region.size != program.shape(ref).size
+    }
+    return tuple(
+        MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in windows_by_tile
+    )

@@ -12,8 +12,8 @@ from types import MappingProxyType
 
 from halation.nodes import ShaderText, Stage
 
-from ...glsl import blanked, words
-from ...glsl.loops import COUNTER, MOST_ROUNDS, guarded
+from ...glsl import blank_comments, words
+from ...glsl.loops import COUNTER, MOST_ROUNDS, guard_loops
 from ..code import Code, CodeFault
 from .header import PICTURES, Header
 
@@ -164,14 +164,17 @@ _TYPES: Mapping[str, str] = MappingProxyType(
 
 def shader_text(code: Code, header: Header) -> ShaderText:
     """The program of a shader. Raises CodeFault."""
-    fragment, vertex = (guarded(_translated(text, way)) for text, way in ((code.text, "in"), (code.vertex, "out")))
+    fragment, vertex = (guard_loops(_translate(text, way)) for text, way in ((code.text, "in"), (code.vertex, "out")))
     for text, file in ((fragment, code.name), (vertex, "its vertex shader")):
         if text.strip() and "isf_main" not in words(text):
             raise CodeFault(0, f"there is no void main() in {file}")
     if not fragment.strip():
         raise CodeFault(0, "there is no GLSL after the head: write a void main() that sets gl_FragColor")
     used = words(fragment, vertex)
-    declared = [*_uniforms(header, used), *(f"uniform sampler2D {renamed(name)};" for name in samplers(header, used))]
+    declared = [
+        *_uniforms(header, used),
+        *(f"uniform sampler2D {rename_word(name)};" for name in samplers(header, used)),
+    ]
     declared += [*_rectangles(header, used), f"int {COUNTER} = 0;"]
     where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
     where = "in vec2 isf_FragNormCoord;" if vertex.strip() else where
@@ -196,23 +199,23 @@ def samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
     """The pictures that the text reads, by the names that the head gives them."""
     pictures = (one.name for one in header.inputs if one.type in PICTURES)
     return tuple(
-        name for name in (*pictures, *header.buffers, *header.imported) if {renamed(name), *_around(name)} & used
+        name for name in (*pictures, *header.buffers, *header.imported) if {rename_word(name), *_around(name)} & used
     )
 
 
 def values(header: Header, used: frozenset[str]) -> tuple[str, ...]:
     """The other inputs that the text reads, by the names that the head gives them."""
-    return tuple(one.name for one in header.inputs if one.type not in PICTURES and renamed(one.name) in used)
+    return tuple(one.name for one in header.inputs if one.type not in PICTURES and rename_word(one.name) in used)
 
 
-def renamed(name: str) -> str:
+def rename_word(name: str) -> str:
     """What a name of the head is called in the program."""
     return f"isf_{name}" if name in LATER or name in QUALIFIERS else name
 
 
-def _translated(text: str, varying: str) -> str:
+def _translate(text: str, varying: str) -> str:
     """The text with the words of today, line by line; comments are blank."""
-    plain = _DIRECTIVE.sub(lambda found: " " * len(found[0]), blanked(text))
+    plain = _DIRECTIVE.sub(lambda found: " " * len(found[0]), blank_comments(text))
 
     def word(found: re.Match[str]) -> str:
         name = found["word"]
@@ -238,7 +241,7 @@ def _uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:
             yield f"uniform {glsl} {name};"
     types = {one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}
     for name in values(header, used):
-        yield f"uniform {types[name]} {renamed(name)};"
+        yield f"uniform {types[name]} {rename_word(name)};"
 
 
 def _around(name: str) -> tuple[str, str, str]:
@@ -248,7 +251,7 @@ def _around(name: str) -> tuple[str, str, str]:
 def _rectangles(header: Header, used: frozenset[str]) -> Iterator[str]:
     """What hosts know of pictures besides; no document says so, but shaders use it."""
     for name in samplers(header, used):
-        size = f"vec2(textureSize({renamed(name)}, 0))"
+        size = f"vec2(textureSize({rename_word(name)}, 0))"
         texts = (f"vec4(0.0, 0.0, {size})", size, "false")
         for word, text in zip(_around(name), texts, strict=True):
             if word in used:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any, NoReturn, cast
 
-from ...glsl import unified
+from ...glsl import unify_lines
 from ..code import CodeFault
 from .sizes import SizeError, SizeFormula, read_size
 
@@ -67,12 +67,12 @@ class Header:
 
 def read_header(text: str) -> Header:
     """Read the head of a shader. Raises CodeFault with the line where something is wrong."""
-    source = unified(text)
+    source = unify_lines(text)
     start = len(source) - len(source.lstrip())
     end = source.find("*/", start)
     if not source.startswith("/*", start) or end < 0:
         raise CodeFault(1, "this is no Interactive Shader Format: the file begins with /* {JSON} */, which is missing")
-    return _HeaderReader(source, start + 2, source[start + 2 : end]).header()
+    return _HeaderReader(source, start + 2, source[start + 2 : end]).read()
 
 
 class _HeaderReader:
@@ -83,7 +83,7 @@ class _HeaderReader:
         try:
             raw = json.loads(head, parse_constant=self._constant)
         except json.JSONDecodeError as fault:
-            raise CodeFault(self.first + fault.lineno - 1, f"the head is no JSON: {_said(fault.msg)}") from None
+            raise CodeFault(self.first + fault.lineno - 1, f"the head is no JSON: {_lower_first(fault.msg)}") from None
         except RecursionError:
             raise CodeFault(self.first, "the head is nested too deep") from None
         except ValueError:
@@ -92,21 +92,25 @@ class _HeaderReader:
             self._fail("the head is a JSON object, in braces")
         self.raw = cast(Section, raw)
 
-    def header(self) -> Header:
+    def read(self) -> Header:
         inputs = self._inputs()
         buffers: dict[str, Buffer] = {}
         self._old_buffers(buffers)
         passes = self._passes(buffers)
         imported = self._imported()
-        seen: set[str] = set()
+        used_names: set[str] = set()
         for name in (*(one.name for one in inputs), *buffers, *imported):
-            if name in seen:
+            if name in used_names:
                 self._fail(f"the name '{name}' is there twice", name)
-            seen.add(name)
-        known = {"WIDTH", "HEIGHT", *(one.name for one in inputs if one.type in ("float", "long", "bool", "event"))}
+            used_names.add(name)
+        size_names = {
+            "WIDTH",
+            "HEIGHT",
+            *(one.name for one in inputs if one.type in ("float", "long", "bool", "event")),
+        }
         for buffer in buffers.values():
             for formula in filter(None, (buffer.width, buffer.height)):
-                for name in sorted(formula.names - known):
+                for name in sorted(formula.names - size_names):
                     fault = f"the size '{formula.text}' of '{buffer.name}' reads '{name}', which is no number here"
                     self._fail(fault, buffer.name)
         credit = self._text(self.raw, "CREDIT")
@@ -140,30 +144,30 @@ class _HeaderReader:
         values, labels = self._list(raw, "VALUES"), self._list(raw, "LABELS")
         if not values and labels:
             values = list(range(len(labels)))
-        found: dict[str, int] = {}
+        numbers_by_label: dict[str, int] = {}
         for number, value in enumerate(values):
             if not _is_number(value) or value != int(value) or abs(value) >= 2**31:
                 self._fail(f"the VALUES of the input '{name}' are whole numbers, not {json.dumps(value)[:40]}", name)
-            said = str(labels[number]).strip() if number < len(labels) else ""
-            said = label = said or str(int(value))
+            written_label = str(labels[number]).strip() if number < len(labels) else ""
+            written_label = label = written_label or str(int(value))
             again = 1
-            while label in found:
+            while label in numbers_by_label:
                 again += 1
-                label = f"{said} ({again})"
-            found[label] = int(value)
-        return tuple((value, label) for label, value in found.items())
+                label = f"{written_label} ({again})"
+            numbers_by_label[label] = int(value)
+        return tuple((value, label) for label, value in numbers_by_label.items())
 
     def _numbers(self, raw: Section, key: str, name: str, length: int) -> tuple[float, ...]:
         """What is given as one number or a list of them; nothing where nothing is."""
-        given = raw.get(key)
-        if given is None:
+        entry = raw.get(key)
+        if entry is None:
             return ()
-        parts = cast("list[Any]", given) if isinstance(given, list) else [given]
+        parts = cast("list[Any]", entry) if isinstance(entry, list) else [entry]
         if length == 4 and len(parts) == 3:
             parts = [*parts, 1.0]
         if len(parts) != length or not all(_is_number(part) for part in parts):
-            wanted = "a number" if length == 1 else f"a list of {length} numbers"
-            self._fail(f"the {key} of the input '{name}' is {json.dumps(given)[:40]}: it is {wanted}", name)
+            expected = "a number" if length == 1 else f"a list of {length} numbers"
+            self._fail(f"the {key} of the input '{name}' is {json.dumps(entry)[:40]}: it is {expected}", name)
         return tuple(float(part) for part in parts)
 
     # --- passes ------------------------------------------------------------------------------------------------------
@@ -172,14 +176,14 @@ class _HeaderReader:
         items = self._list(self.raw, "PASSES")
         if len(items) > MAX_PASSES:
             self._fail(f"there are {len(items)} PASSES: {MAX_PASSES} are the most", "PASSES")
-        found: list[str] = []
+        targets: list[str] = []
         for item in items:
             raw = self._section(item, "PASSES")
             target = raw.get("TARGET")
-            found.append(self._name(target, "the TARGET of a pass") if target not in (None, "") else "")
-            if found[-1]:
-                self._buffer(buffers, found[-1], raw, bool(_flag(raw, "PERSISTENT")))
-        return tuple(found) or ("",)
+            targets.append(self._name(target, "the TARGET of a pass") if target not in (None, "") else "")
+            if targets[-1]:
+                self._buffer(buffers, targets[-1], raw, bool(_flag(raw, "PERSISTENT")))
+        return tuple(targets) or ("",)
 
     def _buffer(self, buffers: dict[str, Buffer], name: str, raw: Section, persistent: bool) -> None:
         """Several passes may draw into one buffer: what any of them says of it holds."""
@@ -194,25 +198,25 @@ class _HeaderReader:
 
     def _old_buffers(self, buffers: dict[str, Buffer]) -> None:
         """Version 1 names persistent buffers apart from passes."""
-        given = self.raw.get("PERSISTENT_BUFFERS") or []
-        if not isinstance(given, list | dict):
+        entries = self.raw.get("PERSISTENT_BUFFERS") or []
+        if not isinstance(entries, list | dict):
             self._fail("PERSISTENT_BUFFERS is a list or an object", "PERSISTENT_BUFFERS")
-        for item in cast("list[Any] | Section", given):
-            inner = cast(Section, given).get(item) if isinstance(given, dict) else None
+        for item in cast("list[Any] | Section", entries):
+            inner = cast(Section, entries).get(item) if isinstance(entries, dict) else None
             raw = cast(Section, inner) if isinstance(inner, dict) else {}
             self._buffer(buffers, self._name(item, "a persistent buffer"), raw, True)
 
     def _size(self, raw: Section, key: str, name: str) -> SizeFormula | None:
-        given = raw.get(key)
-        if given is None or given == "":
+        entry = raw.get(key)
+        if entry is None or entry == "":
             return None
-        if not isinstance(given, str) and not _is_number(given):
-            fault = f"the {key} of '{name}' is {json.dumps(given)[:40]}: it is a formula, such as \"$WIDTH/2.0\""
+        if not isinstance(entry, str) and not _is_number(entry):
+            fault = f"the {key} of '{name}' is {json.dumps(entry)[:40]}: it is a formula, such as \"$WIDTH/2.0\""
             self._fail(fault, name)
         try:
-            return read_size(str(given))
+            return read_size(str(entry))
         except SizeError as fault:
-            self._fail(f"the {key} of '{name}', '{str(given)[:60]}', cannot be read: {fault}", name)
+            self._fail(f"the {key} of '{name}', '{str(entry)[:60]}', cannot be read: {fault}", name)
 
     def _imported(self) -> dict[str, str]:
         given = self.raw.get("IMPORTED") or {}
@@ -250,25 +254,25 @@ class _HeaderReader:
         return cast(Section, item)
 
     def _list(self, raw: Section, key: str) -> list[Any]:
-        found = raw.get(key)
-        if found is None:
+        entries = raw.get(key)
+        if entries is None:
             return []
-        if not isinstance(found, list):
+        if not isinstance(entries, list):
             self._fail(f"{key} is a list, in brackets", key)
-        return cast("list[Any]", found)
+        return cast("list[Any]", entries)
 
     def _text(self, raw: Section, key: str) -> str:
-        found = raw.get(key)
-        return found.strip() if isinstance(found, str) else ""
+        entry = raw.get(key)
+        return entry.strip() if isinstance(entry, str) else ""
 
-    def _name(self, name: Any, what: str) -> str:
+    def _name(self, name: Any, owner: str) -> str:
         if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
             self._fail(
-                f"{what} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
+                f"{owner} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
                 name if isinstance(name, str) else "",
             )
         if _TAKEN.fullmatch(name):
-            self._fail(f"{what} is called '{name}', which means something else: choose another name", name)
+            self._fail(f"{owner} is called '{name}', which means something else: choose another name", name)
         return name
 
 
@@ -281,5 +285,5 @@ def _flag(raw: Section, key: str) -> bool:
     return str(raw.get(key, raw.get(key.lower(), ""))).strip().lower() in ("true", "1", "1.0", "yes")
 
 
-def _said(message: str) -> str:
+def _lower_first(message: str) -> str:
     return message[:1].lower() + message[1:]

@@ -22,25 +22,25 @@ _TAKEN = frozenset({*dir(Temporal), LIGHT, "code", "title", "text", "inputs", "o
 def attributes(entries: Iterable[IsfInput]) -> dict[str, str]:
     """What the node calls each input: its name, with a `_` where that is taken."""
     names = [entry.name for entry in entries]
-    found: dict[str, str] = {}
+    attribute_names: dict[str, str] = {}
     for name in names:
         called = name.lstrip("_") or name
         while (
             called in _TAKEN
             or keyword.iskeyword(called)
-            or called in found.values()
+            or called in attribute_names.values()
             or (called != name and called in names)
         ):
             called += "_"
-        found[name] = called
-    return found
+        attribute_names[name] = called
+    return attribute_names
 
 
 def socket_of(entry: IsfInput) -> Socket:
     """The socket of a picture or of sound."""
     if entry.type != "image":
-        wanted = "its spectrum" if entry.type == "audioFFT" else "its samples"
-        doc = f"{entry.label or 'Sound'} as a picture, a row for each channel: {wanted}. Silent if unlinked."
+        content = "its spectrum" if entry.type == "audioFFT" else "its samples"
+        doc = f"{entry.label or 'Sound'} as a picture, a row for each channel: {content}. Silent if unlinked."
         return Field(0.0, own_size=True, doc=doc)
     if entry.name in REQUIRED:
         return Image(doc=entry.label)
@@ -60,7 +60,7 @@ def value_of(entry: IsfInput, name: str) -> tuple[Value, Any]:
         doc = "True for as long as it is on: key it for single frames." if entry.type == "event" else ""
         return Value(name, "bool", first[0] > 0.5, doc=doc, label=label), bool
     if entry.type == "color":
-        rgba = (*(_decoded(part) for part in first[:3]), first[3])
+        rgba = (*(_decode_light(part) for part in first[:3]), first[3])
         return Value(name, "color", rgba, length=4, label=label), tuple[float, float, float, float]
     if entry.type == "point2D":
         if is_position(entry):
@@ -85,7 +85,7 @@ def uniform_of(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
         return 0
     if isinstance(plain, tuple):
         if entry.type == "color":
-            return (*(_encoded(part) if display else part for part in plain[:3]), plain[3])
+            return (*(_encode_light(part) if display else part for part in plain[:3]), plain[3])
         return (plain[0], 1.0 - plain[1]) if is_position(entry) else plain
     return bool(plain) if entry.type in ("bool", "event") else plain
 
@@ -124,14 +124,14 @@ def _default(entry: IsfInput) -> tuple[float, ...]:
     return (min(max(0.0, low), high),)
 
 
-def _decoded(code: float) -> float:
+def _decode_light(code: float) -> float:
     """A display value of sRGB as light (IEC 61966-2-1)."""
     size = abs(code)
     light = size / 12.92 if size <= 0.04045 else ((size + 0.055) / 1.055) ** 2.4
     return light if code >= 0.0 else -light
 
 
-def _encoded(light: float) -> float:
+def _encode_light(light: float) -> float:
     """The inverse of `_decoded`."""
     size = abs(light)
     code = 12.92 * size if size <= 0.0031308 else 1.055 * size ** (1.0 / 2.4) - 0.055

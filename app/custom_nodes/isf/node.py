@@ -14,7 +14,7 @@ from halation.nodes import Draw, Drawn, Filter, Plain, ShaderText, Size, Tempora
 from ...errors import GraphError
 from ...glsl import parse, words
 from ..code import Code, CustomNode
-from .glsl import UNIFORMS, renamed, samplers, shader_text, values
+from .glsl import UNIFORMS, rename_word, samplers, shader_text, values
 from .header import PICTURES, Buffer, Header, read_header
 from .inputs import LIGHT, attributes, doc_of, number_of, socket_of, uniform_of, value_of
 from .sizes import SizeError
@@ -71,14 +71,14 @@ def isf_node(code: Code) -> type[CustomNode]:
         tuple(name for name in UNIFORMS if name in used or name == "RENDERSIZE"),
     )
     body: dict[str, Any] = {"__module__": __name__, "__doc__": doc_of(header.doc, called), "__annotations__": {}}
-    found: dict[str, Value] = {}
+    values_: dict[str, Value] = {}
     for entry in header.inputs:
         name = called[entry.name]
         if entry.type in PICTURES:
             body[name] = socket_of(entry)
         else:
-            found[name], body["__annotations__"][name] = value_of(entry, name)
-            body[name] = found[name].default
+            values_[name], body["__annotations__"][name] = value_of(entry, name)
+            body[name] = values_[name].default
     body[LIGHT], body["__annotations__"][LIGHT] = _LIGHT.default, Literal[_LIGHTS]
 
     def passes(self: Filter, draw: Draw) -> Drawn:
@@ -87,14 +87,14 @@ def isf_node(code: Code) -> type[CustomNode]:
     body["passes"] = passes
     base = Temporal if any(buffer.persistent for buffer in header.buffers.values()) else Filter
     title = PurePath(code.file).stem or "shader"
-    made = cast("type[CustomNode]", new_class("Shader", (CustomNode, base), {}, lambda space: space.update(body)))
+    node_class = cast("type[CustomNode]", new_class("Shader", (CustomNode, base), {}, lambda space: space.update(body)))
     digest = blake2b(repr((code.text, code.vertex, code.file)).encode(), digest_size=8).hexdigest()
-    made.id, made.category = "isf", "code"
-    made.values = {**found, LIGHT: _LIGHT}
-    made.function, made.shader = "isf_read", f"written/isf{digest}"
-    made.code, made.title = code, title
-    made.text = parse(made.shader, _AROUND, "what stands around shaders")
-    return made
+    node_class.id, node_class.category = "isf", "code"
+    node_class.values = {**values_, LIGHT: _LIGHT}
+    node_class.function, node_class.shader = "isf_read", f"written/isf{digest}"
+    node_class.code, node_class.title = code, title
+    node_class.text = parse(node_class.shader, _AROUND, "what stands around shaders")
+    return node_class
 
 
 class _Drawing:
@@ -121,10 +121,12 @@ class _Drawing:
             buffer = self.header.buffers.get(target)
             size = sizes.get(target, self.draw.size)
             held = _BYTES if buffer and not buffer.floating else _FLOATS
-            known = self._known(index, size) | {renamed(name): self.uniforms[name] for name in self.shader.values}
+            known = self._find_uniforms(index, size) | {
+                rename_word(name): self.uniforms[name] for name in self.shader.values
+            }
             made = self.draw.program(
                 self.shader.text,
-                {renamed(name): pictures[name] for name in self.shader.samplers},
+                {rename_word(name): pictures[name] for name in self.shader.samplers},
                 known | {"isf_range": held},
                 size=size,
                 result=_result(buffer),
@@ -140,26 +142,26 @@ class _Drawing:
 
     def _pictures(self, sizes: dict[str, Size]) -> dict[str, Drawn]:
         """What every sampler reads before the first pass."""
-        found: dict[str, Drawn] = {}
+        pictures: dict[str, Drawn] = {}
         for name in self.shader.samplers:
             if buffer := self.header.buffers.get(name):
                 # What is not drawn yet is black; what it is as large as matters only where it comes back.
                 size = sizes[name] if buffer.persistent else (1, 1)
-                found[name] = self.draw("isf_nothing", size=size, result=_result(buffer))
+                pictures[name] = self.draw("isf_nothing", size=size, result=_result(buffer))
                 if buffer.persistent:
-                    found[name] = self.draw.history(found[name], name)
+                    pictures[name] = self.draw.history(pictures[name], name)
             elif path := self.header.imported.get(name):
                 picture = self.draw.asset((PurePath(self.shader.folder) / path).as_posix(), self.shader.folder)
-                found[name] = self.draw.point("isf_read", image=picture, light="display")
+                pictures[name] = self.draw.point("isf_read", image=picture, light="display")
             else:
                 socket = self.node.inputs[self.shader.called[name]]
                 if socket.channels == 1:
-                    found[name] = self.draw.point("isf_sound", sound=socket)
+                    pictures[name] = self.draw.point("isf_sound", sound=socket)
                 else:
-                    found[name] = self.draw.point("isf_read", image=socket, light=self.light)
-        return found
+                    pictures[name] = self.draw.point("isf_read", image=socket, light=self.light)
+        return pictures
 
-    def _known(self, index: int, size: Size) -> dict[str, Uniform]:
+    def _find_uniforms(self, index: int, size: Size) -> dict[str, Uniform]:
         """What the format itself tells a shader: time counts frames, never a clock."""
         frame, rate = self.draw.frame - self.draw.start, self.draw.rate
         found: dict[str, Uniform] = {

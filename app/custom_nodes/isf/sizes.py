@@ -63,16 +63,16 @@ class SizeFormula:
     def pixels(self, values: Mapping[str, float]) -> int:
         """The length, rounded down, at least 1. Raises SizeError where there is none."""
         try:
-            found = float(self._run(values))
+            length = float(self._run(values))
         except ZeroDivisionError:
             raise SizeError("it divides by 0") from None
         except (ArithmeticError, ValueError):
             raise SizeError("it has no value") from None
-        if not math.isfinite(found):
+        if not math.isfinite(length):
             raise SizeError("it is not finite")
         # What is whole but for rounding is meant to be whole.
-        whole = round(found)
-        return max(1, whole if abs(found - whole) <= 1e-9 * max(1.0, abs(found)) else math.floor(found))
+        whole = round(length)
+        return max(1, whole if abs(length - whole) <= 1e-9 * max(1.0, abs(length)) else math.floor(length))
 
 
 def read_size(text: str) -> SizeFormula:
@@ -87,8 +87,8 @@ class _SizeParser:
 
     def __init__(self, text: str) -> None:
         self.text = text
-        found = [match for match in _TOKENS.finditer(text.strip()) if match[0].strip()]
-        self.left = [(str(match.lastgroup), str(match[match.lastgroup or 0])) for match in reversed(found)]
+        matches = [match for match in _TOKENS.finditer(text.strip()) if match[0].strip()]
+        self.left = [(str(match.lastgroup), str(match[match.lastgroup or 0])) for match in reversed(matches)]
         self.names: set[str] = set()
         self.depth = 0
 
@@ -102,7 +102,7 @@ class _SizeParser:
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise SizeError(f"it nests deeper than {MAX_DEPTH}")
-        run = self._chain(("+", "-"), lambda: self._chain(("*", "/", "%"), self._signed))
+        run = self._chain(("+", "-"), lambda: self._chain(("*", "/", "%"), self._read_signed))
         self.depth -= 1
         return run
 
@@ -123,7 +123,7 @@ class _SizeParser:
 
         return run
 
-    def _signed(self) -> Run:
+    def _read_signed(self) -> Run:
         minus = False
         while self._next() in ("-", "+"):
             minus ^= self.left.pop()[1] == "-"
@@ -133,7 +133,7 @@ class _SizeParser:
             self.depth += 1
             if self.depth > MAX_DEPTH:
                 raise SizeError(f"it nests deeper than {MAX_DEPTH}")
-            base = _raised(base, self._signed())
+            base = _raise_to(base, self._read_signed())
             self.depth -= 1
         return (lambda values: -base(values)) if minus else base
 
@@ -160,15 +160,17 @@ class _SizeParser:
         if word not in FUNCTIONS:
             raise SizeError(f"there is no function '{word}': use {', '.join(FUNCTIONS)}")
         self.left.pop()
-        given = [self._sum()]
+        arguments = [self._sum()]
         while self._next() == ",":
             self.left.pop()
-            given.append(self._sum())
+            arguments.append(self._sum())
         self._expect(")")
         call, count = FUNCTIONS[word]
-        if count not in (0, len(given)):
-            raise SizeError(f"'{word}' takes {count} numbers, not {len(given)}")
-        return lambda values: call(*[one(values) for one in given]) if len(given) > 1 or count else given[0](values)
+        if count not in (0, len(arguments)):
+            raise SizeError(f"'{word}' takes {count} numbers, not {len(arguments)}")
+        return lambda values: (
+            call(*[one(values) for one in arguments]) if len(arguments) > 1 or count else arguments[0](values)
+        )
 
     def _next(self) -> str:
         return self.left[-1][1] if self.left else ""
@@ -179,5 +181,5 @@ class _SizeParser:
         self.left.pop()
 
 
-def _raised(base: Run, power: Run) -> Run:
+def _raise_to(base: Run, power: Run) -> Run:
     return lambda values: math.pow(base(values), power(values))

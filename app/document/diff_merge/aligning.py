@@ -16,7 +16,7 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
 
 from ...graph import Graph, Group, Item, Port
-from ...graph.notes import moved_keys
+from ...graph.notes import move_keys
 from ..writing import dumps
 
 IdMapping = Mapping[str, str]
@@ -120,7 +120,7 @@ class _NodeDescription:
             },
             animation={Port(_ANY, port.socket): item for port, item in graph.animation.items() if port.node == id},
             muted=frozenset({_ANY} if id in graph.muted else ()),
-            extra=moved_keys(
+            extra=move_keys(
                 {path: keys for path, keys in graph.extra.items() if _is_part_of(path, id)},
                 f"nodes.{id}",
                 f"nodes.{_ANY}",

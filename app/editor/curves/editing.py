@@ -13,7 +13,7 @@ from typing import Literal
 from halation.nodes import Plain
 
 from ...graph import Animation, Interpolation, Key, Keys, Outside, Port
-from ...graph.keys import rounded
+from ...graph.keys import round_keys
 from .rows import Spot
 from .shapes import level, runs
 
@@ -81,7 +81,7 @@ def scaled(animation: Animations, spots: Collection[Spot], factor: float, about:
 
     def there(frame: float) -> float:
         at = about + (frame - about) * factor
-        return float(rounded(at)) if whole else round(at, 6)
+        return float(round_keys(at)) if whole else round(at, 6)
 
     made = {
         port: _keys(animation, port).scale(frames, factor, about, whole)
@@ -250,7 +250,7 @@ def _changed(key: Key, which: Collection[int], change: Callable[[float], float])
     parts = tuple(change(part) if place in which else part for place, part in enumerate(key.parts))
     if isinstance(key.value, tuple):
         return parts
-    return rounded(parts[0]) if isinstance(key.value, int) else parts[0]
+    return round_keys(parts[0]) if isinstance(key.value, int) else parts[0]
 
 
 def _flat(keys: Keys, place: int, side: int) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ...graph import Animation, Keys, Port
-from ...graph.keys import rounded
+from ...graph.keys import round_keys
 from ..toolkit.plane import View
 from .editing import KeyEdit, Limits, Side, moved, pulled, scaled
 from .rows import Spot
@@ -55,7 +55,7 @@ class KeyMove:
         """What has become of the keys; on whole frames if `snap`."""
         by = at[0] - self.start[0] if across else 0.0
         if snap and across:
-            by = rounded(self.grabbed + by) - self.grabbed
+            by = round_keys(self.grabbed + by) - self.grabbed
         return moved(self.base, self.spots, by, at[1] - self.start[1] if up else 0.0, limits)
 
 
@@ -75,7 +75,7 @@ class Scale:
         reach = self.grabbed - self.about
         to = self.grabbed + frame - self.start
         if snap:
-            to = float(rounded(to))
+            to = float(round_keys(to))
         factor = (to - self.about) / reach if abs(reach) > 1e-9 else 1.0
         return scaled(self.base, self.spots, factor, self.about, snap)
 

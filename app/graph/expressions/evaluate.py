@@ -12,7 +12,7 @@ from halation.nodes import Plain
 
 from ...errors import GraphError
 from .fault import ExpressionError
-from .functions import OPERATORS, ExpressionFunction, Made, NoValueError, applied
+from .functions import OPERATORS, ExpressionFunction, Made, NoValueError, apply
 
 
 class Scope(NamedTuple):
@@ -82,7 +82,7 @@ def call(text: str, position: int, function: ExpressionFunction, arguments: Sequ
 
     def run(scope: Scope) -> Made:
         try:
-            return applied(function.name, function.call, tuple([code(scope) for code in arguments]))
+            return apply(function.name, function.call, tuple([code(scope) for code in arguments]))
         except NoValueError as fault:
             raise ExpressionError(text, position, str(fault)) from None
 
@@ -98,7 +98,7 @@ def arithmetic(text: str, first: Code, steps: Sequence[Step]) -> Code:
         for name, call, position, code in rest:
             other = code(scope)
             try:
-                made = applied(name, call, (made, other))
+                made = apply(name, call, (made, other))
             except NoValueError as fault:
                 raise ExpressionError(text, position, str(fault)) from None
         return made

@@ -53,18 +53,18 @@ class Expression(Struct, frozen=True, dict=True):
         """Every other value that it reads, in order, each once."""
         return tuple(dict.fromkeys(token.name for token in self.tokens if token.kind == "name"))
 
-    def renamed(self, old: str, new: str) -> Expression:
+    def rename(self, old: str, new: str) -> Expression:
         """With another name of a node, of a control, or of a value as `node.value`; nothing else changes."""
-        from .tokens import segments, written
+        from .tokens import segments, write_name
 
         text, end = "", 0
         for token in self.tokens:
             if token.kind == "name" and (token.name == old or token.name.startswith(f"{old}.")):
                 rest = ".".join([new, *segments(token.text)[old.count(".") + 1 :]])
-                text, end = text + self.text[end : token.start] + written(rest), token.end
+                text, end = text + self.text[end : token.start] + write_name(rest), token.end
         return Expression(text + self.text[end:])
 
-    def blamed(self, name: str, sentence: str) -> ExpressionError:
+    def blame_name(self, name: str, sentence: str) -> ExpressionError:
         """An error that points at where the text first reads that name."""
         found = (token.start for token in self.tokens if token.kind == "name" and token.name == name)
         return ExpressionError(self.text, next(found, 0), sentence)

@@ -9,7 +9,7 @@ from types import MappingProxyType
 
 from msgspec import Struct
 
-from ..keys import rounded
+from ..keys import round_keys
 from .noise import noise, random
 
 Made = float | bool | tuple[float, ...]
@@ -34,7 +34,7 @@ class ExpressionFunction(Struct, frozen=True):
         return self.signature.partition("(")[0]
 
 
-def applied(name: str, call: Callable[..., float], given: tuple[Made, ...]) -> Made:
+def apply(name: str, call: Callable[..., float], given: tuple[Made, ...]) -> Made:
     """A function of numbers for numbers and lists: those go element by element, with single numbers for each.
 
     Raises NoValueError, which says for which numbers.
@@ -149,7 +149,7 @@ FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
             ExpressionFunction("sign(x)", "-1, 0 or 1", (1,), _sign),
             ExpressionFunction("floor(x)", "the whole number at or below x", (1,), math.floor),
             ExpressionFunction("ceil(x)", "the whole number at or above x", (1,), math.ceil),
-            ExpressionFunction("round(x)", "the nearest whole number, halves away from zero", (1,), rounded),
+            ExpressionFunction("round(x)", "the nearest whole number, halves away from zero", (1,), round_keys),
             ExpressionFunction("fract(x)", "x without its whole part", (1,), _fract),
             ExpressionFunction("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
             ExpressionFunction("min(a, b, ...)", "the smallest", _MANY, min),

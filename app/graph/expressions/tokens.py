@@ -54,7 +54,7 @@ def tokens(text: str) -> Iterator[Token]:
             yield Token(kind, found.start(), found.end(), word)
 
 
-def written(name: str) -> str:
+def write_name(name: str) -> str:
     """A dotted name as an expression has to write it: odd parts in backquotes."""
     parts = name.split(".")
     return ".".join(

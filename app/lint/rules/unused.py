@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from ...graph import INPUTS, OUTPUTS, Expression, Problem
-from ...graph.evaluate_at_frame import named
+from ...graph.evaluate_at_frame import find_named_value
 from ...graph.rules import Rule
 from ..sheet import Check, GraphFacts
 
@@ -70,7 +70,7 @@ def _wanted(sheet: GraphFacts) -> set[str]:
     """Nodes that expressions read values of, and those that a viewer shows."""
     graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
     found = {
-        named(graph, name)[0].node
+        find_named_value(graph, name)[0].node
         for item in graph.animation.values()
         if isinstance(item, Expression)
         for name in item.names

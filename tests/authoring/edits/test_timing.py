@@ -8,7 +8,7 @@ from halation.authoring.edits.clipboard import copy_elements
 from halation.authoring.session import Session
 from halation.document import dumps, loads
 from halation.errors import GraphError
-from halation.graph import Control, Expression, Graph, Keys, Output, Port, problems, still
+from halation.graph import Control, Expression, Graph, Keys, Output, Port, evaluate_at_frame, problems
 from toy_nodes import TOYS, Gain
 
 
@@ -34,7 +34,7 @@ def session() -> Session:
 
 def gains(graph: Graph, frame: int) -> list[object]:
     """The gain of every node, groups looked into, at a frame."""
-    found, todo = dict[str, object](), [still(graph, frame)]
+    found, todo = dict[str, object](), [evaluate_at_frame(graph, frame)]
     while todo:
         for id, item in todo.pop().nodes.items():
             if isinstance(item, Gain):
