@@ -27,7 +27,6 @@ from msgspec import Struct, field
 from ..custom_nodes import CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
-from ..graph.animation import adapt_animation
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerce, expected
 from ..resources.sandbox import outside
