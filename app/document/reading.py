@@ -27,6 +27,7 @@ from msgspec import Struct, field
 from ..custom_nodes import CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
+from ..graph.animation import adapt_animation
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerce, expected
 from ..resources.sandbox import outside
@@ -215,7 +216,7 @@ class _BodyReader(Struct):
             where = member(member(at, "animation"), target)
             port, animation = self.parse_port(target, where), read_animation(item, self.file, where)
             value = signature(nodes[port.node]).values.get(port.socket) if port.node in nodes else None
-            animations[port] = adapted(value, animation) if value else animation
+            animations[port] = adapt_animation(value, animation) if value else animation
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
 
