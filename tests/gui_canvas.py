@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from halation.authoring.commands import ReplaceGraph
 from halation.authoring.edits.elements import with_places
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
@@ -35,7 +36,7 @@ def show(ui, graph: Graph, zoom: float | None = 0.8) -> None:
     """Put a graph on the canvas, without pictures."""
     ui.editor.dialogs.open.clear()
     ui.editor.store.change(thumbnails=False)
-    ui.session.edit("Test", graph, ())
+    ui.session.apply(ReplaceGraph("Test", graph, ()))
     ui.editor.canvas.fit()
     ui.wait(4)
     ui.editor.canvas.zoom = zoom or ui.editor.canvas.zoom

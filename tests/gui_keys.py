@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gui_driver import Ui
+from halation.authoring.commands import AnimateValues, SetFrameRange
 from halation.graph import Expression, Key, Keys, Port
 
 
@@ -15,17 +16,21 @@ def animation(ui: Ui) -> Iterator[str]:
     ui.wait(4)
     yield "animation_none"
     intensity, gain = Port("bloom", "intensity"), Port("grade", "gain")
-    ui.session.set_frames(1, 48)
-    ui.session.animate_all(
-        {
-            intensity: Keys((Key(1, 0.2), Key(12, 0.9), Key(24, 0.9), Key(40, 0.1, "constant"))),
-            Port("bloom", "knee"): Keys(
-                (Key(5, 0.2, "bezier"), Key(20, 1.0, "bezier"), Key(30, 0.4, "linear")), "loop"
-            ),
-            gain: Keys((Key(1, (1.0,) * 4), Key(10, (1.5, 0.7, 0.8, 1.0), "linear"), Key(30, (0.8, 1.2, 1.4, 1.0)))),
-            Port("tone_map", "exposure"): Expression("0.3 + 0.1 * sin(time * tau)"),
-        },
-        "Animate",
+    ui.session.apply(SetFrameRange(1, 48))
+    ui.session.apply(
+        AnimateValues(
+            {
+                intensity: Keys((Key(1, 0.2), Key(12, 0.9), Key(24, 0.9), Key(40, 0.1, "constant"))),
+                Port("bloom", "knee"): Keys(
+                    (Key(5, 0.2, "bezier"), Key(20, 1.0, "bezier"), Key(30, 0.4, "linear")), "loop"
+                ),
+                gain: Keys(
+                    (Key(1, (1.0,) * 4), Key(10, (1.5, 0.7, 0.8, 1.0), "linear"), Key(30, (0.8, 1.2, 1.4, 1.0)))
+                ),
+                Port("tone_map", "exposure"): Expression("0.3 + 0.1 * sin(time * tau)"),
+            },
+            "Animate",
+        )
     )
     ui.session.seek(16)
     state = ui.editor.curves

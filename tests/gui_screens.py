@@ -9,6 +9,7 @@ from pathlib import Path
 from gui_driver import Ui
 from gui_keys import animation
 from halation import presets
+from halation.authoring.commands import AddComment, AddFrame, ArrangeElements, Disconnect, MakeGroup, ReplaceGraph
 from halation.authoring.recovery.recovery import RecoveryFile
 from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRender, RenderState
 from halation.document import save
@@ -58,7 +59,7 @@ def write_many_things(folder: Path) -> Path:
 
 def window(ui: Ui) -> Screens:
     """All panels at once, with a node selected."""
-    ui.session.arrange(ui.editor.canvas.sizes or {})
+    ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}))
     ui.editor.canvas.fit()
     ui.session.select(["bloom"])
     ui.settled()
@@ -75,7 +76,7 @@ def inspector(ui: Ui) -> Screens:
             )
         )
     )
-    ui.session.edit("Add", ui.session.graph.add("curves", Tint()).add("lamps", lamps))
+    ui.session.apply(ReplaceGraph("Add", ui.session.graph.add("curves", Tint()).add("lamps", lamps)))
     for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves", "lamps"):
         ui.session.select([id])
         ui.wait(3)
@@ -96,16 +97,16 @@ def inspector(ui: Ui) -> Screens:
     yield "inspector_bound"
     ui.session.bind("beauty", None)
     ui.session.select(["grade", "bloom"])
-    frame = ui.session.add_frame("Look", sizes=ui.editor.canvas.sizes or {})
+    frame = ui.session.apply(AddFrame("Look", sizes=ui.editor.canvas.sizes or {}))
     ui.session.select([f"frames.{frame}"])
     ui.wait(3)
     yield "inspector_frame"
-    comment = ui.session.add_comment((40.0, -160.0), "Check the highlights\nwith the client.")
+    comment = ui.session.apply(AddComment((40.0, -160.0), "Check the highlights\nwith the client."))
     ui.session.select([f"comments.{comment}"])
     ui.wait(3)
     yield "inspector_comment"
     ui.session.select(["grade", "bloom"])
-    ui.session.make_group("look")
+    ui.session.apply(MakeGroup("look"))
     ui.wait(3)
     yield "inspector_group"
     for _ in range(3):
@@ -222,7 +223,7 @@ def panels(ui: Ui) -> Screens:
     """Problems, log, history."""
     show(ui, "Problems")
     yield "problems_none"
-    ui.session.disconnect(Port("bloom", "image"))
+    ui.session.apply(Disconnect(Port("bloom", "image")))
     ui.editor.faults["Nowhere"] = "Traceback (most recent call last):\n  the details"
     ui.wait(4)
     yield "problems"

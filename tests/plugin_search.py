@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from halation.authoring.commands import AddGroupFile, AddNode
 from halation.authoring.session import Session
 from halation.custom_nodes.plugins import preset_paths
 from halation.editor.shared import entries
@@ -11,5 +12,5 @@ every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths(
 for query in ("soft glow", "acme glow", "acme dream"):
     print(entries.arrange_entries(every, query)[0].entries[0].title)
 session = Session()
-print(session.add_node("acme_glow.soft_glow"))
-print(session.add_group(next(path for path in preset_paths() if path.stem == "acme_dream")))
+print(session.apply(AddNode("acme_glow.soft_glow")))
+print(session.apply(AddGroupFile(next(path for path in preset_paths() if path.stem == "acme_dream"))))

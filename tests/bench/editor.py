@@ -28,6 +28,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 import numpy as np
 from gui_driver import Ui, drive, headless
 from halation import document
+from halation.authoring.commands import ArrangeElements
 from halation.authoring.preview import Preview, VisibleRegion
 from halation.editor.window.panels import DOCKED
 from halation.graph import Graph, Output, Port
@@ -88,7 +89,7 @@ def measure_frame(folder: Path) -> dict[str, float]:
     times_by_panel: dict[str, list[float]] = {}
 
     def body(ui: Ui) -> None:
-        ui.session.arrange(ui.editor.canvas.sizes or {})
+        ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}))
         ui.editor.canvas.fit()
         ui.settled()
         panels = ui.window._panels

@@ -32,7 +32,7 @@ def broken_later(self, *_):
     count[0] += 1
     if count[0] == 5:
         from halation.graph import Port
-        self.editor.session.set(Port("tone", "exposure"), 2.5)
+        self.editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
     if count[0] > 8:
         broken()
 
@@ -195,7 +195,7 @@ beat, heard = heartbeat.Heartbeat.beat, []
 
 def edited(self, editor):
     if not editor.session.dirty:
-        editor.session.set(Port("tone", "exposure"), 2.5)
+        editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
     beat(self, editor)
     said = [entry.sentence for entry in editor.log.entries]
     if any("unsaved work" in one for one in said):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from gui_canvas import chain, empty, show
+from halation.authoring.commands import AddComment, AddFrame, DropFiles, MakeGroup, SetValue
 from halation.graph import Port
 
 
@@ -142,7 +143,7 @@ def test_frames_take_along_what_lies_on_them(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom", "clip"))
         ui.session.select(("exposure", "bloom"))
-        frame = ui.session.add_frame("Light", sizes=ui.editor.canvas.sizes)
+        frame = ui.session.apply(AddFrame("Light", sizes=ui.editor.canvas.sizes))
         ui.wait(3)
         before = {key: ui.session.position(key) for key in ("exposure", "bloom", "clip")}
         x, y = ui.at(f"title frames.{frame}", (0.5, 0.5))
@@ -159,8 +160,8 @@ def test_frames_take_along_what_lies_on_them(gui) -> None:
 def test_renames_a_frame_and_writes_a_comment_in_place(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure"))
-        frame = ui.session.add_frame("", at=(0.0, 120.0))
-        comment = ui.session.add_comment((400.0, 200.0), "")
+        frame = ui.session.apply(AddFrame("", at=(0.0, 120.0)))
+        comment = ui.session.apply(AddComment((400.0, 200.0), ""))
         ui.wait(3)
         ui.double_click(f"title frames.{frame}", (0.3, 0.5))
         ui.wait(3)
@@ -180,7 +181,7 @@ def test_enters_and_leaves_groups(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom", "clip"))
         ui.session.select(("bloom",))
-        group = ui.session.make_group("glow")
+        group = ui.session.apply(MakeGroup("glow"))
         ui.wait(3)
         ui.double_click(f"title {group}", (0.3, 0.5))
         ui.wait(4)
@@ -246,7 +247,7 @@ def test_dropped_files_land_at_the_pointer(gui, tmp_path) -> None:
         ui.move(empty(ui))
         ui.wait(3)
         at = ui.editor.canvas.pointer
-        ui.session.drop_files([tmp_path / "a.exr"], ui.editor.canvas.pointer)
+        ui.session.apply(DropFiles([tmp_path / "a.exr"], ui.editor.canvas.pointer))
         ui.wait(3)
         (id,) = set(ui.session.graph.nodes) - {"exposure"}
         x, y = ui.session.position(id)
@@ -259,7 +260,7 @@ def test_fields_leave_the_wheel_and_the_right_button_to_the_canvas(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure"))
         port = Port("exposure", "stops")
-        ui.session.set(port, 2.0)
+        ui.session.apply(SetValue(port, 2.0))
         ui.move(f"widget {port}")
         ui.wait(2)
         zoom = ui.editor.canvas.zoom
@@ -308,7 +309,7 @@ def test_every_group_keeps_its_view(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
         ui.session.select(("bloom",))
-        group = ui.session.make_group("glow")
+        group = ui.session.apply(MakeGroup("glow"))
         ui.wait(3)
         before = ui.editor.canvas.center, ui.editor.canvas.zoom
         ui.session.enter(group)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gui_canvas import chain, empty, show
 from halation import presets
+from halation.authoring.commands import SetValue
 from halation.editor.canvas.brush import READABLE
 from halation.graph import Port
 
@@ -114,7 +115,7 @@ def test_a_picture_has_its_place_from_when_it_is_there(gui) -> None:
         assert "gray" not in shown, "it is part of a larger step"
         before = dict(ui.editor.canvas.sizes)
         for step in range(6):
-            ui.session.set(Port("gray", "saturation"), 0.1 * step, merge="drag")
+            ui.session.apply(SetValue(Port("gray", "saturation"), 0.1 * step, merge="drag"))
             ui.wait(2)
             assert ui.editor.canvas.sizes == before
         pins = ui.at("pin out gray.out"), ui.at("pin in gray.image")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
+from halation.authoring.commands import InsertNode, SetCode, SetValue, SpliceChain
 from halation.custom_nodes import CustomNode
 from halation.editor.problems.findings import list_problems
 from halation.editor.toolkit.keys import chord
@@ -33,8 +34,8 @@ def red(ui) -> float:
 def begin(ui, text: str = GAIN) -> None:
     """A node of code before the output, and the cursor at the beginning of its text."""
     ui.settled()
-    ui.session.insert("glsl", Port("outputs", "image"))
-    ui.session.set_code("code", text)
+    ui.session.apply(InsertNode("glsl", Port("outputs", "image")))
+    ui.session.apply(SetCode("code", text))
     ui.editor.dialogs.open.clear()
     ui.settled()
     ui.double_click("title code")
@@ -96,7 +97,7 @@ def test_typing_changes_the_picture(gui, path) -> None:
 def test_a_broken_line_is_marked_and_the_picture_stays(gui, path) -> None:
     def body(ui) -> None:
         begin(ui)
-        ui.session.set(Port("code", "k"), 3.0)
+        ui.session.apply(SetValue(Port("code", "k"), 3.0))
         ui.settled()
         links = ui.session.graph.links
         for line, sentence in (("uniform int x;", "'uniform' has no place here"), ("int y = wrong(1);", "wrong")):
@@ -146,7 +147,7 @@ def test_labels_and_colors_of_code_are_shown(gui, path) -> None:
         ui.click((x, y))
         ui.shot("code_color.png")
         ui.keys("Escape")
-        ui.session.set(Port("code", "shade"), (0.0, 1.0, 0.0, 1.0))
+        ui.session.apply(SetValue(Port("code", "shade"), (0.0, 1.0, 0.0, 1.0)))
         ui.until(lambda: red(ui) == 0.0)
 
     gui(body, path, size=SIZE)
@@ -160,7 +161,7 @@ def test_a_file_that_is_dropped_is_edited_and_saved(gui, path) -> None:
         ui.window._dropped.append(str(file))
         ui.until(lambda: "gain" in ui.session.graph.nodes)
         assert ui.session.code("gain").file == "gain.glsl"
-        ui.session.splice(["gain"], Port("outputs", "image"))
+        ui.session.apply(SpliceChain(["gain"], Port("outputs", "image")))
         ui.until(lambda: red(ui) == pytest.approx(0.5, abs=1e-3))
         file.write_text(GAIN.replace("= 2", "= 4"))
         ui.until(lambda: red(ui) == pytest.approx(1.0, abs=1e-3))

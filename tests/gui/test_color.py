@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from halation.authoring.commands import SetColorSettings, SetInput
 from halation.media import read_layer
 from halation.nodes import ColorSettings, Kind
 from house_config import HOUSE, write_house
@@ -49,8 +50,8 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         ui.wait(3)
         assert "field color config" in ui.editor.places and "field working space" in ui.editor.places
         before = middle(ui)
-        ui.session.set_color(config="house.ocio")
-        ui.session.set_color(working="scene_linear")
+        ui.session.apply(SetColorSettings(config="house.ocio"))
+        ui.session.apply(SetColorSettings(working="scene_linear"))
         ui.settled()
         color = ColorSettings(str(tmp_path / "house.ocio"), "scene_linear")
         expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color).array[18, 32, :3]
@@ -71,11 +72,11 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
 
 def test_the_space_of_a_file_is_said_and_can_be_chosen(gui, file) -> None:
     def body(ui) -> None:
-        ui.session.set_color(config="house.ocio")
+        ui.session.apply(SetColorSettings(config="house.ocio"))
         ui.session.select(("inputs.beauty",))
         ui.settled()
         before = middle(ui)
-        ui.session.set_input("beauty", color_space="house dim")
+        ui.session.apply(SetInput("beauty", color_space="house dim"))
         ui.settled()
         assert not np.allclose(middle(ui), before, rtol=0.05)
         ui.shot("color_input")
@@ -91,7 +92,7 @@ def test_a_broken_config_is_said_and_nothing_stops(gui, file, tmp_path) -> None:
     def body(ui) -> None:
         ui.settled()
         ui.session.select(())
-        ui.session.set_color(config="gone.ocio")
+        ui.session.apply(SetColorSettings(config="gone.ocio"))
         ui.wait(10)
         assert "there is no such color config" in ui.editor.coloring.fault
         ui.shot("color_broken")
@@ -100,7 +101,7 @@ def test_a_broken_config_is_said_and_nothing_stops(gui, file, tmp_path) -> None:
         write_house(tmp_path, "gone.ocio", HOUSE)
         ui.wait(10)
         assert not ui.editor.coloring.fault
-        ui.session.set_color(config="")
+        ui.session.apply(SetColorSettings(config=""))
         ui.settled()
 
     gui(body, file)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import ReplaceGraph, SetFrameRange, SetValue
 from halation.graph import Expression, Graph, Key, Keys, Port
 from toy_nodes import Gain, Soften
 
@@ -15,8 +16,8 @@ def start(ui, mode: str = "sheet") -> int:
     graph = graph.animate(GAIN, Keys((Key(1, 0.5), Key(11, 2.0), Key(21, 1.0))))
     graph = graph.animate(TINT, Keys((Key(1, (1.0, 0.0, 0.5, 1.0)), Key(11, (0.0, 1.0, 0.5, 1.0)))))
     graph = graph.animate(SIGMA, Expression("4 + sin(frame)"))
-    ui.session.edit("Add", graph)
-    ui.session.set_frames(1, 24)
+    ui.session.apply(ReplaceGraph("Add", graph))
+    ui.session.apply(SetFrameRange(1, 24))
     ui.editor.dialogs.open.clear()
     ui.editor.curves.mode = mode
     ui.ctx.window_focus("//Animation")
@@ -250,7 +251,7 @@ def test_a_double_click_puts_a_key_on_the_curve(gui) -> None:
 
 def test_an_empty_graph_is_asked_for_a_first_key(gui) -> None:
     def body(ui) -> None:
-        ui.session.edit("Add", Graph().add("one", Gain()))
+        ui.session.apply(ReplaceGraph("Add", Graph().add("one", Gain())))
         ui.editor.dialogs.open.clear()
         ui.ctx.window_focus("//Animation")
         ui.session.select(["one"])
@@ -260,7 +261,7 @@ def test_an_empty_graph_is_asked_for_a_first_key(gui) -> None:
         ui.wait(3)
         assert frames(ui) == (1.0,)
         ui.session.seek(10)
-        ui.session.set(GAIN, 3.0)
+        ui.session.apply(SetValue(GAIN, 3.0))
         ui.wait(3)
         assert "key one.gain 10" in ui.editor.places
 
@@ -274,7 +275,7 @@ def test_many_curves_are_drawn_and_moved(gui, mode: str) -> None:
         for place in range(50):
             keys = tuple(Key(1 + 5 * at, (at * 7 + place) % 5 / 2.0, ("smooth", "bezier")[at % 2]) for at in range(20))
             graph = graph.add(f"n{place}", Gain()).animate(Port(f"n{place}", "gain"), Keys(keys))
-        ui.session.edit("Add", graph)
+        ui.session.apply(ReplaceGraph("Add", graph))
         ui.editor.dialogs.open.clear()
         ui.editor.curves.mode = mode
         ui.ctx.window_focus("//Animation")

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
+from halation.authoring.commands import SetValue
 from halation.graph import Port
 
 HERE = Path(__file__).parents[1]
@@ -30,7 +31,7 @@ def test_what_is_saved_is_what_was_made(gui, look: Path) -> None:
 
     def body(ui) -> None:
         ui.session.select(["tone"])
-        ui.session.set(Port("tone", "exposure"), 1.5)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 1.5))
         ui.wait()
         assert ui.session.dirty
         ui.keys("Ctrl+S")
@@ -56,7 +57,7 @@ def test_opening_and_saving_unchanged_writes_the_same_text(gui, look: Path) -> N
 
 def test_closing_with_unsaved_work_asks_first(gui, look: Path) -> None:
     def body(ui) -> None:
-        ui.session.set(Port("tone", "exposure"), 1.0)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 1.0))
         ui.keys("Ctrl+Q")
         assert ui.editor.dialogs.question is not None and not ui.editor.commands.closing
         assert "look" in ui.editor.dialogs.question.sentence
@@ -103,7 +104,7 @@ def test_a_file_changed_by_another_program_is_loaded_again(gui, look: Path) -> N
         document.save(document.load(look).set(Port("tone", "exposure"), -2.0), look)
         ui.until(lambda: ui.session.graph.value(Port("tone", "exposure")) == -2.0)
         assert not ui.session.dirty
-        ui.session.set(Port("tone", "exposure"), 3.0)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 3.0))
         document.save(document.load(look).set(Port("tone", "exposure"), -1.0), look)
         ui.until(lambda: ui.editor.dialogs.question is not None)
         assert ui.session.graph.value(Port("tone", "exposure")) == 3.0
@@ -113,7 +114,7 @@ def test_a_file_changed_by_another_program_is_loaded_again(gui, look: Path) -> N
 
 def test_saving_over_what_another_program_wrote_asks_first(gui, look: Path) -> None:
     def body(ui) -> None:
-        ui.session.set(Port("tone", "exposure"), 3.0)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 3.0))
         ui.wait()
         theirs = document.load(look).set(Port("tone", "exposure"), -1.0)
         ui.editor.watcher.close()  # it does not notice in time
@@ -127,7 +128,7 @@ def test_saving_over_what_another_program_wrote_asks_first(gui, look: Path) -> N
         ui.editor.dialogs.question = None
         ui.wait()
         assert not ui.session.dirty
-        ui.session.set(Port("tone", "exposure"), 4.0)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 4.0))
         ui.keys("Ctrl+S")
         assert ui.editor.dialogs.question is None and not ui.session.dirty
 
@@ -140,7 +141,7 @@ def test_a_read_only_file_is_opened_and_not_replaced(gui, look: Path) -> None:
     text = look.read_text()
 
     def body(ui) -> None:
-        ui.session.set(Port("tone", "exposure"), 3.0)
+        ui.session.apply(SetValue(Port("tone", "exposure"), 3.0))
         ui.keys("Ctrl+S")
         assert "read-only" in ui.editor.log.entries[-1].sentence and ui.session.dirty
         assert look.read_text() == text
@@ -153,7 +154,7 @@ def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp
         "import sys, time; sys.path.append(sys.argv[1])\n"
         "from pathlib import Path\nfrom gui_driver import drive\nfrom halation.graph import Port\n"
         "def body(ui):\n"
-        "    ui.session.set(Port('tone', 'exposure'), 2.5)\n"
+        "    ui.session.apply(SetValue(Port('tone', 'exposure'), 2.5))\n"
         "    ui.until(lambda: list((Path(sys.argv[2]) / 'state' / 'recovery').glob('*.json')))\n"
         "    ui.wait(5); print('ready', flush=True); ui.until(lambda: False, 60)\n"
         "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))\n"

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation import document
+from halation.authoring.commands import AddComment, AddFrame, AddNode, ExposeValue, MakeGroup, ReplaceGraph, SetValue
 from halation.graph import Graph, Group, Output, Port, Settings
 from halation.media import write_picture
 from halation.nodes import Kind, catalogue
@@ -120,7 +121,7 @@ def test_what_is_typed_is_kept_when_something_else_is_selected(gui, file) -> Non
 
 def test_reset_switch_and_choice(gui, file) -> None:
     def body(ui) -> None:
-        ui.session.set(Port("tone_map", "bias"), 0.6)
+        ui.session.apply(SetValue(Port("tone_map", "bias"), 0.6))
         select(ui, "tone_map")
         ui.double_click("name tone_map.bias")
         assert value(ui, "tone_map.bias") == 0.85
@@ -192,7 +193,7 @@ def test_controls(gui, file) -> None:
 
 def test_several_nodes_are_changed_together(gui, file) -> None:
     def body(ui) -> None:
-        ui.session.set(Port("vignette", "amount"), 0.25)
+        ui.session.apply(SetValue(Port("vignette", "amount"), 0.25))
         steps = select(ui, "grade", "vignette")
         ui.click("field vignette.amount")
         ui.type("*0.5")
@@ -220,7 +221,7 @@ def test_names_ends_and_groups(gui, file) -> None:
         ui.type("128")
         assert ui.session.graph.settings.size == (128, 36)
         select(ui, "grade", "vignette")
-        id = ui.session.make_group()
+        id = ui.session.apply(MakeGroup())
         assert isinstance(ui.session.graph.nodes[id], Group)
         select(ui, id)
         ui.click(f"button enter {id}")
@@ -260,7 +261,7 @@ def test_files(gui, tmp_path: Path) -> None:
 def test_positions_are_put_on_the_picture(gui, file) -> None:
     def body(ui) -> None:
         graph = ui.session.graph.connect(Port("tone_map", "out"), Port("vignette", "image"))
-        ui.session.edit("Link", graph.connect(Port("vignette", "out"), Port("outputs", "image")))
+        ui.session.apply(ReplaceGraph("Link", graph.connect(Port("vignette", "out"), Port("outputs", "image"))))
         select(ui, "vignette")
         ui.settled()
         ui.click("button place vignette.center")
@@ -275,7 +276,7 @@ def test_positions_are_put_on_the_picture(gui, file) -> None:
 
 def test_curves_and_ramps(gui, file) -> None:
     def body(ui) -> None:
-        ui.session.edit("Add", ui.session.graph.add("tint", Tint()))
+        ui.session.apply(ReplaceGraph("Add", ui.session.graph.add("tint", Tint())))
         steps = select(ui, "tint")
         ui.drag(ui.at("field tint.curve", (0.5, 0.2)), ui.at("field tint.curve", (0.5, 0.55)))
         curve = value(ui, "tint.curve")
@@ -294,13 +295,15 @@ def test_curves_and_ramps(gui, file) -> None:
 def test_it_draws_every_node(gui, file) -> None:
     def body(ui) -> None:
         for id in catalogue():
-            node = ui.session.add_node(id)
-            ui.session.expose(Port(node, name)) if (name := next(iter(catalogue()[id].values), "")) else None
+            node = ui.session.apply(AddNode(id))
+            ui.session.apply(ExposeValue(Port(node, name))) if (
+                name := next(iter(catalogue()[id].values), "")
+            ) else None
             select(ui, node)
             assert not ui.editor.faults, id
-        ui.session.add_frame("around")
+        ui.session.apply(AddFrame("around"))
         select(ui, "frames.f1")
-        ui.session.add_comment((0.0, 0.0), "words")
+        ui.session.apply(AddComment((0.0, 0.0), "words"))
         select(ui, "comments.c1")
         select(ui)
         assert not ui.editor.faults
@@ -327,7 +330,7 @@ def test_the_graph_itself(gui, file) -> None:
         select(ui)
         ui.click("button remove inputs.depth")
         assert not ui.session.graph.inputs
-        ui.session.expose(Port("grade", "amount"))
+        ui.session.apply(ExposeValue(Port("grade", "amount")))
         ui.wait(3)
         ui.click("more controls.amount", fraction=(0.1, 0.5))
         ui.click("field controls.amount name")
@@ -341,7 +344,7 @@ def test_the_graph_itself(gui, file) -> None:
 def test_values_pass_the_clipboard(gui, file) -> None:
     def body(ui) -> None:
         select(ui, "grade")
-        ui.session.set(Port("grade", "gain"), (2.0, 1.0, 0.5, 1.0))
+        ui.session.apply(SetValue(Port("grade", "gain"), (2.0, 1.0, 0.5, 1.0)))
         ui.wait(3)
         ui.click("name grade.gain", button=1)
         ui.click("menu Copy Value")

@@ -35,13 +35,13 @@ def edited(self):
     editor = self._editor
     count += 1
     editor.recovery.interval = 0.5
-    editor.session.set(Port("tone", "exposure"), count / 1024)
+    editor.session.apply(SetValue(Port("tone", "exposure"), count / 1024))
     print("edited", count, time.time(), flush=True)
     if count % 7 == 0:
         editor.actions.run("file.save")
         assert not editor.session.dirty, [entry.sentence for entry in editor.log.entries]
         print("saved", count, time.time(), flush=True)
-        editor.session.set(Port("tone", "exposure"), (count + 0.5) / 1024)
+        editor.session.apply(SetValue(Port("tone", "exposure"), (count + 0.5) / 1024))
     update(self)
 
 FrameUpdater.update = edited

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import ReplaceGraph
 from halation.editor.fields.value_field import height_of
 from halation.graph import Graph, Port
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
@@ -15,7 +16,7 @@ def start(ui, *lights: Light) -> int:
     graph = Graph().add("lamps", node).add("tint", Tint())
     for id in ("convolve3x3", "vignette"):
         graph = graph.add(id, catalogue()[id]())
-    ui.session.edit("Add", graph)
+    ui.session.apply(ReplaceGraph("Add", graph))
     ui.editor.dialogs.open.clear()
     return select(ui, "lamps")
 

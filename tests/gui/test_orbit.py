@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation import document
+from halation.authoring.commands import AddNode
 from halation.editor.viewer.ground import SCENE, depth_at
 from halation.editor.viewer.orbit import Orbit
 from halation.editor.viewer.perspective import project, unproject
@@ -171,7 +172,7 @@ def test_without_a_scene_there_is_nothing_to_orbit(gui, path: Path) -> None:
         ui.click("button viewer.orbit")
         assert not ui.editor.viewer.orbiting
         ui.click("button viewer.orbit")
-        noise = ui.session.add_node("noise")
+        noise = ui.session.apply(AddNode("noise"))
         ui.session.view(Port(noise, "value"))
         ui.settled()
         assert "button viewer.orbit" not in ui.editor.places and not ui.editor.viewer.orbits

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import presets
+from halation.authoring.commands import Disconnect, SetValue
 from halation.graph import Port
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
@@ -49,8 +50,8 @@ def test_the_palette_runs_an_action(gui) -> None:
 def test_a_click_in_the_history_goes_there(gui) -> None:
     def body(ui) -> None:
         before = ui.session.graph
-        ui.session.set(Port("bloom", "intensity"), 0.5)
-        ui.session.set(Port("bloom", "intensity"), 0.9)
+        ui.session.apply(SetValue(Port("bloom", "intensity"), 0.5))
+        ui.session.apply(SetValue(Port("bloom", "intensity"), 0.9))
         tab(ui, "History")
         ui.shot("history.png")
         ui.click("history 0")
@@ -65,7 +66,7 @@ def test_a_click_on_a_problem_selects_the_node(gui) -> None:
     def body(ui) -> None:
         tab(ui, "Problems")
         assert "problem 0" not in ui.editor.places
-        ui.session.disconnect(Port("bloom", "image"))
+        ui.session.apply(Disconnect(Port("bloom", "image")))
         ui.until(lambda: "problem 0" in ui.editor.places)
         ui.shot("problems.png")
         ui.click("problem 0")
@@ -150,7 +151,7 @@ def test_every_dialog_opens_and_escape_closes_it(gui, theme: str, scale: float) 
 
 def test_questions_are_answered_by_click_and_key(gui, look: Path) -> None:
     def body(ui) -> None:
-        ui.session.set(Port("bloom", "intensity"), 0.5)
+        ui.session.apply(SetValue(Port("bloom", "intensity"), 0.5))
         ui.keys("Ctrl+N")
         assert ui.editor.dialogs.question is not None
         ui.shot("question.png")
@@ -218,7 +219,7 @@ def test_recent_files_are_offered_and_forgotten(gui, look: Path) -> None:
 
 def test_unsaved_work_is_offered_again(gui, look: Path, tmp_path: Path) -> None:
     def crash(ui) -> None:
-        ui.session.set(Port("bloom", "intensity"), 0.875)
+        ui.session.apply(SetValue(Port("bloom", "intensity"), 0.875))
         ui.wait()
         ui.editor.recovery.close(keep=True)
 

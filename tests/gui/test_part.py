@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from halation.authoring.commands import SetValue
 from halation.authoring.preview import work as rounds
 from halation.document import save
 from halation.editor.window.status import _figures
@@ -109,7 +110,7 @@ def test_the_mouse_pans_and_zooms_while_a_part_is_shown(gui, tmp_path, resting):
         near(ui, *look)
         np.testing.assert_array_equal(picture(ui, "panned_whole.png"), panned)
         resting(1000.0)
-        ui.session.set(STOPS, 1.5)
+        ui.session.apply(SetValue(STOPS, 1.5))
         ui.wait(2)
         ui.until(lambda: ui.editor.preview.completing)
         ui.editor.viewer.fit()
@@ -128,7 +129,7 @@ def test_both_sides_are_compared_in_part(gui, tmp_path, resting, compare):
         ui.settled()
         near(ui)
         resting(1000.0)
-        ui.session.set(STOPS, 1.5)
+        ui.session.apply(SetValue(STOPS, 1.5))
         ui.wait(2)
         ui.until(lambda: ui.editor.preview.completing)
         assert ui.editor.preview.seen("A").partial and ui.editor.preview.seen("B").partial
@@ -146,7 +147,7 @@ def test_numbers_of_the_whole_picture_wait_for_it(gui, tmp_path, resting):
         ui.settled()
         near(ui)
         resting(1000.0)
-        ui.session.set(STOPS, 1.5)
+        ui.session.apply(SetValue(STOPS, 1.5))
         ui.wait(2)
         ui.until(lambda: ui.editor.preview.completing)
         ui.move("viewer panel")
@@ -165,7 +166,7 @@ def test_numbers_of_the_whole_picture_wait_for_it(gui, tmp_path, resting):
         assert [float(part) for part in copied.split(": ")[1].split()] == pytest.approx(numbers, abs=0.0)
         # How data is shown depends on all of it.
         ui.editor.viewer.meaning = "field"
-        ui.session.set(STOPS, 2.5)
+        ui.session.apply(SetValue(STOPS, 2.5))
         while ui.editor.preview.busy:
             ui.wait(1)
             assert not ui.editor.preview.seen("A").partial

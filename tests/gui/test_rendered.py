@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from exr_files import read
 from halation import document
+from halation.authoring.commands import SetValue
 from halation.color.transforms import to_display
 from halation.editor.window.dropped_files import take_files
 from halation.graph import Port
@@ -47,7 +48,7 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
     picture = rendered(tmp_path)
 
     def body(ui) -> None:
-        ui.session.set(Port("bloom", "intensity"), 0.1)
+        ui.session.apply(SetValue(Port("bloom", "intensity"), 0.1))
         answer(ui, picture, "Open its graph")
         assert "changes that are not saved" in ui.editor.dialogs.question.sentence
         ui.click("answer 1")

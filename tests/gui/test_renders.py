@@ -8,6 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
+from halation.authoring.commands import SetValue
 from halation.editor.window.dropped_files import take_files
 from halation.graph import Port
 from halation.presets import sample
@@ -92,7 +93,7 @@ def test_another_layer_for_depth_changes_what_is_shown(gui) -> None:
         known(ui)
         assert (pixels(ui)[..., 0] == before).all()
 
-        ui.session.set(Port(node, "depth_is"), "inverse")
+        ui.session.apply(SetValue(Port(node, "depth_is"), "inverse"))
         known(ui)
         assert pixels(ui)[..., 0] == pytest.approx(1.0 / before, rel=1e-5)
 
@@ -102,7 +103,7 @@ def test_another_layer_for_depth_changes_what_is_shown(gui) -> None:
 def test_a_layer_that_is_not_there_is_a_sentence(gui) -> None:
     def body(ui) -> None:
         node = drop(ui)
-        ui.session.set(Port(node, "depth_layer"), "Depht")
+        ui.session.apply(SetValue(Port(node, "depth_layer"), "Depht"))
         known(ui)
         said = ui.editor.preview.faults[node]
         assert "no layer 'Depht': did you mean 'Depth'?" in said

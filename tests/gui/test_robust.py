@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
+from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
 from halation.editor.shared.dialogs import Question
 from halation.graph import Port
@@ -81,7 +82,7 @@ def test_a_panel_may_fail_anywhere(gui, tmp_path: Path, place: str) -> None:
             ui.editor.faults.clear()
             ui.wait(2)
             assert not ui.editor.faults, name
-            ui.session.set(STOPS, number / 8)
+            ui.session.apply(SetValue(STOPS, number / 8))
             ui.session.save_as(path)
             assert document.load(path).value(STOPS) == number / 8
 
@@ -111,7 +112,7 @@ def test_a_dialog_that_fails_is_closed_and_keys_work_again(gui) -> None:
         ui.wait(4)
         assert not ui.editor.dialogs.any
         before = ui.session.value(STOPS)
-        ui.session.set(STOPS, 2.5)
+        ui.session.apply(SetValue(STOPS, 2.5))
         ui.move("Graph")
         ui.keys("Ctrl+Z")
         assert ui.session.value(STOPS) == before
@@ -131,7 +132,7 @@ def test_a_fault_in_an_action_or_while_rendering_is_told_and_nothing_else_happen
             patch.setattr(ui.editor.preview, "work", broken)
             ui.wait(3)
             assert "Rendering" in ui.editor.faults
-            ui.session.set(STOPS, 1.5)
+            ui.session.apply(SetValue(STOPS, 1.5))
             ui.wait(3)
         ui.settled()
         assert not ui.editor.faults and ui.editor.preview.shown("A") is not None
@@ -158,7 +159,7 @@ def test_opengl_as_on_a_mac_will_do(gui, monkeypatch) -> None:
         ui.settled()
         assert ui.window.device.target.form == "fragment"
         assert not ui.editor.preview.faults and ui.editor.preview.shown("A") is not None
-        ui.session.set(STOPS, 1.5)
+        ui.session.apply(SetValue(STOPS, 1.5))
         ui.settled()
         left, top, right, bottom = map(int, ui.editor.places["viewer image"])
         assert ui.pixels()[top:bottom, left:right].std() > 20.0

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.authoring.commands import ReplaceGraph, SetValue
 from halation.editor.window.dropped_files import take_files
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
@@ -46,7 +47,7 @@ def graph_of(path: str, *nodes: str, **settings: object) -> Graph:
 
 def start(ui, graph: Graph) -> None:
     ui.editor.dialogs.open.clear()
-    ui.session.edit("Start", graph)
+    ui.session.apply(ReplaceGraph("Start", graph))
     ui.session.seal()
     ui.session.select([])
     ui.settled()
@@ -281,7 +282,7 @@ def test_missing_frames_are_marked(gui, tmp_path) -> None:
         ui.settled()
         assert "no such file" in ui.editor.preview.fault("A")
         ui.shot("missing.png")
-        session.set(Port("read", "missing"), "nearest")
+        session.apply(SetValue(Port("read", "missing"), "nearest"))
         ui.settled()
         assert ui.editor.preview.fault("A") is None
         ui.keys("Space")

@@ -10,6 +10,7 @@ import OpenImageIO as oiio
 import pytest
 from gui_viewer import HEIGHT, PRESET, WIDTH, hover, inside, seen, shown_plainly
 from halation import document
+from halation.authoring.commands import AddInput, AddNode
 from halation.editor.viewer.geometry import Sight
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
@@ -118,7 +119,7 @@ def test_the_first_node_that_makes_infinity_is_found(gui) -> None:
         ui.editor.dialogs.open.clear()
         broken = np.ones((8, 16, 4), np.float32)
         broken[3, 5] = np.inf
-        session.add_input("light", "Image")
+        session.apply(AddInput("light", "Image"))
         session._bound["light"] = broken  # files are repaired when they are read
         session.view(Port("inputs", "light"))
         ui.settled()
@@ -157,13 +158,13 @@ def test_says_why_there_is_nothing(gui) -> None:
         ui.editor.dialogs.open.clear()
         ui.wait(3)
         assert "viewer message" in ui.editor.places
-        noise = ui.session.add_node("noise")
+        noise = ui.session.apply(AddNode("noise"))
         ui.session.view(Port(noise, "value"))
         ui.settled()
         assert "viewer message" not in ui.editor.places
         low, high = ui.editor.viewer.span
         assert 0.0 < low < high < 1.0  # measured
-        ui.session.view(Port(ui.session.add_node("read_image"), "out"))
+        ui.session.view(Port(ui.session.apply(AddNode("read_image")), "out"))
         ui.settled()
         assert "viewer message" in ui.editor.places
 
@@ -203,7 +204,7 @@ def test_keys_keep_and_recall_what_is_viewed(gui) -> None:
 def test_a_color_is_picked_from_the_picture(gui) -> None:
     def body(ui) -> None:
         ui.settled()
-        constant = ui.session.add_node("constant")
+        constant = ui.session.apply(AddNode("constant"))
         ui.session.view(Port("inputs", "beauty"))
         ui.settled()
         hover(ui, 0.3, 0.7)

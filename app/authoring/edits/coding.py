@@ -49,6 +49,11 @@ def make_starter_node() -> Node:
     return node_type(Code(CODE, STARTER))()
 
 
+def with_code_type(types: Mapping[str, type[Node]]) -> Mapping[str, type[Node]]:
+    """The node types with that of a new node of code, under the name of its language."""
+    return {**types, CODE: type(make_starter_node())}
+
+
 def read_node_code(item: Item | None, folder: str) -> Code | None:
     """The code of a node, even of one whose code says no node; None for all other nodes."""
     if isinstance(item, CustomNode):

@@ -148,5 +148,6 @@ class FrameCache:
 
 
 def is_on_device(faces: FrameImages, names: Mapping[str, Port], renderer: Renderer) -> bool:
+    """True if the pictures of all these panels are on the device."""
     textures = renderer.runner.textures
     return all(name in faces and faces[name].surface.key in textures for name in names)

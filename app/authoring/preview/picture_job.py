@@ -67,6 +67,14 @@ class PictureJob:
         """False while the next step would wait for a file."""
         return self.run is None or self.run.ready
 
+    @property
+    def preroll_progress(self) -> tuple[str, int, int] | None:
+        """What of the history is under way: "plan" or "pre-roll", how many frames are done, and how many there are."""
+        if self.run is None and self.planned_frames[0] < self.planned_frames[1]:
+            return "plan", *self.planned_frames
+        done, total = self.preroll
+        return ("pre-roll", done, total) if total and done < total else None
+
     def step(self) -> bool:
         """Do a little; True when all is done."""
         if self.run is None:

@@ -1,4 +1,4 @@
-"""Pictures for panels: compiled, run step by step, kept until better ones are ready."""
+"""Pictures for panels: compiled, run step by step, displayed until better ones are ready."""
 
 from __future__ import annotations
 
@@ -202,22 +202,16 @@ class Preview:
     @property
     def progress(self) -> tuple[int, int]:
         """Passes done, and passes to do in all, as far as they are known."""
-        before = self._round.passes if self._round else 0
-        job = self._job
+        before, job = self._round.passes if self._round else 0, self._job
         if job is None or job.run is None or job.ahead:
             return before, before
-        return before + job.finished_passes + job.run.done, before + job.finished_passes + job.run.total
+        before += job.finished_passes
+        return before + job.run.done, before + job.run.total
 
     @property
     def lead(self) -> tuple[str, int, int] | None:
         """What of the history is under way for a frame: "plan" or "pre-roll", how many frames are done, and of all."""
-        job = self._job
-        if job is None or job.ahead:
-            return None
-        if job.run is None and job.planned_frames[0] < job.planned_frames[1]:
-            return "plan", job.planned_frames[0], job.planned_frames[1]
-        done, total = job.preroll
-        return ("pre-roll", done, total) if total and done < total else None
+        return self._job.preroll_progress if self._job and not self._job.ahead else None
 
     @property
     def timings(self) -> Mapping[str, NodeTiming]:
@@ -298,14 +292,12 @@ class Preview:
             if take is not wish.frame_cache:
                 take.close()
         self._takes = [wish.frame_cache]
-        known = wish.frame_cache.find(wish.frame, ports, self.renderer) if ports else None
-        for name, face in known.items() if known else ():
-            if name in ports:
-                self._shelf.show(name, ports[name], wish, face)
-        skimmed = bool(known and self.skims)
-        self._round = PreviewWork(
-            wish, [ports] if ports and not skimmed else [], time.perf_counter(), from_cache_only=skimmed
-        )
+        images = (wish.frame_cache.find(wish.frame, ports, self.renderer) if ports else None) or {}
+        for name in filter(ports.__contains__, images):
+            self._shelf.show(name, ports[name], wish, images[name])
+        skimmed = bool(images and self.skims)
+        queue = [ports] if ports and not skimmed else []
+        self._round = PreviewWork(wish, queue, time.perf_counter(), from_cache_only=skimmed)
         self._settle(self._round)
 
     def _may_restart(self, wish: PreviewRequest) -> bool:
@@ -313,7 +305,7 @@ class Preview:
         now, job = self._round, self._job
         if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
             return True
-        if now.part is not None and job.part is None:
+        if now.part and not job.part:
             return True
         return time.perf_counter() - now.started_at > self.patience
 
@@ -328,8 +320,7 @@ class Preview:
         if job is not None:
             job.close()
             now.queue.insert(0, job.ports)
-        self._job = found
-        self._cameras |= found.plan.cameras
+        self._job, self._cameras = found, self._cameras | found.plan.cameras
         return True
 
     def _compile(self, now: PreviewWork) -> bool:

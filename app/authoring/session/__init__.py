@@ -1,8 +1,7 @@
-"""A document that a person works on: every thing that can be done to it is a method of `Session`."""
+"""The document that the user works on, and the one way to change it."""
 
 from __future__ import annotations
 
-from ..state.history import History
 from .session import Session
 
-__all__ = ["History", "Session"]
+__all__ = ["Session"]

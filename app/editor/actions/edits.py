@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...authoring.commands import CutSelection, DeleteSelection, DuplicateSelection, PasteText
+from ...authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from ..shared.action import Action
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.cut",
         "Cut",
-        lambda context: context.clipboard.put(context.session.cut_out()),
+        lambda context: context.clipboard.put(context.session.apply(CutSelection())),
         "Edit",
         "Ctrl+X",
         "graph",
@@ -57,7 +59,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.paste",
         "Paste",
-        lambda context: context.session.paste(context.clipboard.get(), context.canvas.pointer),
+        lambda context: context.session.apply(PasteText(context.clipboard.get(), context.canvas.pointer)),
         "Edit",
         "Ctrl+V",
         "graph",
@@ -66,7 +68,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.duplicate",
         "Duplicate",
-        lambda context: context.session.duplicate(),
+        lambda context: context.session.apply(DuplicateSelection()),
         "Edit",
         "Ctrl+D",
         "graph",
@@ -76,7 +78,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.delete",
         "Delete",
-        lambda context: context.session.delete(),
+        lambda context: context.session.apply(DeleteSelection()),
         "Edit",
         "Delete",
         "graph",
@@ -87,7 +89,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.delete_break",
         "Delete and Break Links",
-        lambda context: context.session.delete(heal=False),
+        lambda context: context.session.apply(DeleteSelection(heal=False)),
         "Edit",
         "Shift+Delete",
         "graph",
@@ -96,7 +98,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.all",
         "Select All",
-        lambda context: context.session.select_all(),
+        lambda context: context.session.select(context.session.elements, "extend"),
         "Edit/Select",
         "Ctrl+A",
         "graph",
@@ -105,7 +107,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.none",
         "Select None",
-        lambda context: context.session.select_none(),
+        lambda context: context.session.select(()),
         "Edit/Select",
         "Ctrl+Shift+A",
         "graph",
@@ -113,7 +115,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.invert",
         "Invert Selection",
-        lambda context: context.session.select_inverse(),
+        lambda context: context.session.select(invert_selection(context.session.elements, context.session.selection)),
         "Edit/Select",
         "Ctrl+I",
         "graph",
@@ -121,7 +123,9 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.upstream",
         "Select Upstream",
-        lambda context: context.session.select_upstream(),
+        lambda context: context.session.select(
+            find_upstream(context.session.graph, context.session.selection), "extend"
+        ),
         "Edit/Select",
         "Shift+U",
         "graph",
@@ -132,7 +136,9 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.downstream",
         "Select Downstream",
-        lambda context: context.session.select_downstream(),
+        lambda context: context.session.select(
+            find_downstream(context.session.graph, context.session.selection), "extend"
+        ),
         "Edit/Select",
         "Shift+D",
         "graph",
@@ -143,7 +149,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.linked",
         "Select Linked",
-        lambda context: context.session.select_linked(),
+        lambda context: context.session.select(find_linked(context.session.graph, context.session.selection), "extend"),
         "Edit/Select",
         "Shift+L",
         "graph",

@@ -5,6 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...authoring.commands import (
+    AddComment,
+    AddFrame,
+    AlignSelection,
+    ArrangeElements,
+    ExtractSelection,
+    MakeGroup,
+    MakeGroupLocal,
+    ResetNode,
+    SwapInputs,
+    ToggleCollapse,
+    ToggleMute,
+    Ungroup,
+)
 from ...graph import Group
 from ..shared.action import Act, Action
 from ..shared.dialogs import Browse
@@ -73,7 +87,7 @@ def _search(context: CanvasContext) -> None:
 
 def _frame(context: CanvasContext) -> None:
     at = None if context.session.selection else context.canvas.pointer
-    context.session.add_frame(at=at, sizes=context.canvas.sizes)
+    context.session.apply(AddFrame(at=at, sizes=context.canvas.sizes))
 
 
 def _rename(context: CanvasContext) -> None:
@@ -91,7 +105,7 @@ def _align(side: str, label: str) -> Action:
     return Action(
         f"align.{side.replace(' ', '_')}",
         label,
-        lambda context: context.session.align(side, context.canvas.sizes or {}),
+        lambda context: context.session.apply(AlignSelection(side, context.canvas.sizes or {})),
         "Graph/Align",
         scope="graph",
         enabled=_several,
@@ -103,7 +117,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.mute",
         "Mute",
-        lambda context: context.session.mute(),
+        lambda context: context.session.apply(ToggleMute()),
         "Graph",
         "M",
         "graph",
@@ -115,7 +129,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.collapse",
         "Collapse",
-        lambda context: context.session.collapse(),
+        lambda context: context.session.apply(ToggleCollapse()),
         "Graph",
         "H",
         "graph",
@@ -147,7 +161,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.extract",
         "Extract from Chain",
-        lambda context: context.session.extract(),
+        lambda context: context.session.apply(ExtractSelection()),
         "Graph",
         "Alt+X",
         "graph",
@@ -158,7 +172,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.swap",
         "Swap Inputs",
-        lambda context: context.session.swap_inputs(context.session.active),
+        lambda context: context.session.apply(SwapInputs(context.session.active)),
         "Graph",
         "Alt+S",
         "graph",
@@ -179,7 +193,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.reset",
         "Reset Values",
-        lambda context: context.session.reset_all(context.session.active),
+        lambda context: context.session.apply(ResetNode(context.session.active)),
         "Graph",
         enabled=_node,
         contexts=frozenset({"node"}),
@@ -216,7 +230,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.make",
         "Group",
-        lambda context: context.session.make_group(),
+        lambda context: context.session.apply(MakeGroup()),
         "Graph",
         "Ctrl+G",
         "graph",
@@ -227,7 +241,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.ungroup",
         "Ungroup",
-        lambda context: context.session.ungroup(context.session.active),
+        lambda context: context.session.apply(Ungroup(context.session.active)),
         "Graph",
         "Ctrl+Shift+G",
         "graph",
@@ -266,7 +280,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.local",
         "Make Group Local",
-        lambda context: context.session.make_local(context.session.active),
+        lambda context: context.session.apply(MakeGroupLocal(context.session.active)),
         "Graph",
         enabled=_is_borrowed_group,
         contexts=frozenset({"group"}),
@@ -293,7 +307,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "comment.add",
         "Comment",
-        lambda context: context.session.add_comment(context.canvas.pointer, ""),
+        lambda context: context.session.apply(AddComment(context.canvas.pointer, "")),
         "Graph",
         "Shift+C",
         "graph",
@@ -302,7 +316,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda context: context.session.arrange(with_room(context)),
+        lambda context: context.session.apply(ArrangeElements(with_room(context))),
         "Graph",
         "L",
         "graph",

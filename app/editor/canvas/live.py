@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetExpression, SetValue
 from ...authoring.session import Session
 from ...graph import Port
 from ..fields.choice_field import toggle_field
@@ -143,7 +144,7 @@ class Live:
             self.context.dialogs.browse = browse(
                 value,
                 lambda path: self.context.log.attempt(
-                    lambda: self.context.session.set(port, self.context.session.relative(path))
+                    lambda: self.context.session.apply(SetValue(port, self.context.session.relative(path)))
                 ),
             )
             return
@@ -177,6 +178,6 @@ class Live:
 
 def _put(session: Session, port: Port, edit: Edit) -> None:
     if edit.expression:
-        session.express(port, edit.expression)
+        session.apply(SetExpression(port, edit.expression))
     else:
-        session.set(port, edit.value, edit.merge)
+        session.apply(SetValue(port, edit.value, edit.merge))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
 from ...graph import Group, Port
 from ..shared.action import Action
 from ..toolkit.buttons import entry
@@ -49,8 +50,8 @@ class Menus:
         session, hit = self.context.session, self._hit
         if hit.part == "link" and hit.port:
             target = hit.port
-            _item(self.context, "Add a dot", lambda: session.add_dot(target, self._at))
-            _item(self.context, "Cut this link", lambda: session.cut((target,)))
+            _item(self.context, "Add a dot", lambda: session.apply(AddDot(target, self._at)))
+            _item(self.context, "Cut this link", lambda: session.apply(CutLinks((target,))))
         elif hit.part == "pin" and hit.port:
             self._pin(hit.port, hit.output)
         elif hit.part == "field" and hit.port:
@@ -84,20 +85,22 @@ class Menus:
             _item(self.context, "View", lambda: session.view(port))
             _item(self.context, "View as B", lambda: session.view(port, "B"))
             fed = [target for target, source in session.graph.links.items() if source == port]
-            _item(self.context, "Cut its links", lambda: session.cut(fed), bool(fed))
+            _item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
         else:
-            _item(self.context, "Cut its link", lambda: session.disconnect(port), port in session.graph.links)
+            _item(self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links)
             if port.node in session.graph.nodes and port in session.graph.links:
-                _item(self.context, "Add a dot", lambda: session.add_dot(port, self._at))
+                _item(self.context, "Add a dot", lambda: session.apply(AddDot(port, self._at)))
 
     def _field(self, port: Port) -> None:
         session = self.context.session
-        _item(self.context, f"Reset {port.socket}", lambda: session.reset(port), not session.is_default(port))
+        _item(
+            self.context, f"Reset {port.socket}", lambda: session.apply(ResetValue(port)), not session.is_default(port)
+        )
         control = session.control_of(port)
         if control:
-            _item(self.context, f"Hide the control '{control}'", lambda: session.hide(control))
+            _item(self.context, f"Hide the control '{control}'", lambda: session.apply(HideControl(control)))
         else:
-            _item(self.context, "Show as a control of the graph", lambda: session.expose(port))
+            _item(self.context, "Show as a control of the graph", lambda: session.apply(ExposeValue(port)))
 
 
 def _context(hit: Hit) -> str:
@@ -115,7 +118,7 @@ def _colors(context: CanvasContext, key: str) -> None:
         if index % 7:
             imgui.same_line()
         if imgui.color_button(f"##frame color {index}", (*color, 1.0), int(imgui.ColorEditFlags_.no_tooltip)):
-            context.log.attempt(lambda color=color: context.session.set_frame(id, color=color))
+            context.log.attempt(lambda color=color: context.session.apply(EditFrame(id, color=color)))
     imgui.separator()
 
 

@@ -8,6 +8,19 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ...authoring.commands import (
+    AddDot,
+    Connect,
+    CutLinks,
+    Disconnect,
+    ExtractSelection,
+    MoveElements,
+    MoveLink,
+    ReplaceGraph,
+    ResizeComment,
+    ResizeFrame,
+    SpliceChain,
+)
 from ...graph import Group, Port
 from .frame import CanvasFrame, pan_at_border, turn_wheel
 from .geometry import Point, holds
@@ -159,7 +172,7 @@ class CanvasMouse:
         context, session = frame.context, frame.context.session
         if hit.part == "link" and hit.port:
             target = hit.port
-            context.log.attempt(lambda: session.add_dot(target, frame.at))
+            context.log.attempt(lambda: session.apply(AddDot(target, frame.at)))
         elif hit.key.startswith(("frames.", "comments.")):
             self.asked.rename = hit.key
         elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
@@ -235,7 +248,7 @@ class CanvasMouse:
             if extract and any(wire.leaves(move.keys) for wire in frame.scene.wires):
                 self._moves += 1
                 merge, steps = f"move {self._moves}", session.history.position
-                frame.context.log.attempt(lambda: session.extract(merge))
+                frame.context.log.attempt(lambda: session.apply(ExtractSelection(merge)))
                 if session.history.position > steps:
                     move = replace(move, merge=merge)
         return moved(move, frame.scene, frame.at, snap)
@@ -251,10 +264,10 @@ class CanvasMouse:
         target = insertable(session.graph, shown(frame.scene, move), move.keys, frame.at, frame.reach)
         if target:
             ids, sizes = sorted(move.keys & session.graph.nodes.keys()), frame.scene.sizes
-            frame.context.log.attempt(lambda: session.splice(ids, target, move.by, sizes, move.merge))
+            frame.context.log.attempt(lambda: session.apply(SpliceChain(ids, target, move.by, sizes, move.merge)))
         elif move.by != (0.0, 0.0):
             keys = sorted(move.keys & frame.scene.boxes.keys())
-            frame.context.log.attempt(lambda: session.move(keys, *move.by, merge=move.merge))
+            frame.context.log.attempt(lambda: session.apply(MoveElements(keys, *move.by, merge=move.merge)))
         session.seal()
 
     def _banded(self, frame: CanvasFrame, band: Band) -> None:
@@ -279,16 +292,16 @@ class CanvasMouse:
             if detached == target:
                 return
             if detached:
-                context.log.attempt(lambda: session.move_link(detached, target))
+                context.log.attempt(lambda: session.apply(MoveLink(detached, target)))
             else:
-                context.log.attempt(lambda: session.connect(source, target))
+                context.log.attempt(lambda: session.apply(Connect(source, target)))
         elif not frame.is_far(self._start(frame, link)):
             if link.output and link.detached is None:
                 context.log.attempt(lambda: session.view(link.port))
         elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
             if link.detached:
                 target = link.detached
-                context.log.attempt(lambda: session.disconnect(target))
+                context.log.attempt(lambda: session.apply(Disconnect(target)))
             elif holds(frame.panel, *frame.screen):
                 self.asked.search = link.port, link.output
 
@@ -327,9 +340,9 @@ def _resize(context: CanvasContext, resize: ResizeGesture) -> None:
     if resize.rect == resize.before:
         return
     if section == "frames":
-        context.log.attempt(lambda: context.session.resize_frame(id, left, top, right - left, bottom - top))
+        context.log.attempt(lambda: context.session.apply(ResizeFrame(id, left, top, right - left, bottom - top)))
     else:
-        context.log.attempt(lambda: context.session.resize_comment(id, left, top, right - left))
+        context.log.attempt(lambda: context.session.apply(ResizeComment(id, left, top, right - left)))
 
 
 def _drawn(frame: CanvasFrame, draw: BandGesture) -> None:
@@ -340,6 +353,6 @@ def _drawn(frame: CanvasFrame, draw: BandGesture) -> None:
 
     def dots() -> None:
         graph, keys = dotted(session.graph, crossings)
-        session.edit("Add dots", graph, keys)
+        session.apply(ReplaceGraph("Add dots", graph, keys))
 
-    context.log.attempt(dots if draw.dots else lambda: session.cut(tuple(crossings)))
+    context.log.attempt(dots if draw.dots else lambda: session.apply(CutLinks(tuple(crossings))))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ...authoring.commands import EditComment, EditFrame, RenameEnd, RenameNode
 from ...authoring.edits.elements import end_port, entry
 from .brush import TEXT, DrawContext
 from .geometry import Rect
@@ -79,10 +80,10 @@ class Naming:
 def _keep(context: CanvasContext, key: str, text: str) -> None:
     session, id = context.session, key.partition(".")[2]
     if key.startswith("frames."):
-        session.set_frame(id, title=text.strip())
+        session.apply(EditFrame(id, title=text.strip()))
     elif key.startswith("comments."):
-        session.set_comment(id, text.rstrip())
+        session.apply(EditComment(id, text.rstrip()))
     elif end_port(key):
-        session.rename_end(key, text.strip())
+        session.apply(RenameEnd(key, text.strip()))
     else:
-        session.rename(key, text.strip())
+        session.apply(RenameNode(key, text.strip()))

@@ -10,6 +10,16 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import (
+    AddCodeFile,
+    AddComment,
+    AddFrame,
+    AddGroupFile,
+    AddInput,
+    AddNode,
+    AddOutput,
+    ReplaceNode,
+)
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Port
 from ...graph.names import fresh_name
@@ -188,7 +198,7 @@ class Search:
     def _add(self, entry: CatalogEntry) -> None:
         session, at = self.context.session, self._at
         if self._replaced:
-            session.replace(self._replaced, entry.id)
+            session.apply(ReplaceNode(self._replaced, entry.id))
             return
         port, output = self._link or (None, True)
         self._recent = [entry.id, *(id for id in self._recent if id != entry.id)][:_RECENT]
@@ -196,15 +206,15 @@ class Search:
             # The socket that takes the link lies near the pointer, not the node's corner.
             at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
         if entry.kind == SHADER:
-            session.add_code_file(entry.id, at, port, output)
+            session.apply(AddCodeFile(entry.id, at, port, output))
         elif entry.category == GROUP:
-            session.add_group(entry.id, at, port, output)
+            session.apply(AddGroupFile(entry.id, at, port, output))
         elif entry.category != GRAPH:
-            session.add_node(entry.id, at, port, output)
+            session.apply(AddNode(entry.id, at, port, output))
         elif entry.id == "frame":
-            session.add_frame("", at)
+            session.apply(AddFrame("", at))
         elif entry.id == "comment":
-            session.add_comment(at, "")
+            session.apply(AddComment(at, ""))
         else:
             side, _, kind = entry.id.partition(":")
             _add_end(self.context, side, Kind(kind), at)
@@ -215,9 +225,9 @@ def _add_end(context: CanvasContext, side: str, kind: Kind, at: Point) -> None:
     taken = session.graph.inputs if side == "input" else session.graph.outputs
     name = fresh_name(kind.lower(), taken)
     if side == "input":
-        session.add_input(name, kind, at=at)
+        session.apply(AddInput(name, kind, at=at))
     else:
-        session.add_output(name, kind, at=at)
+        session.apply(AddOutput(name, kind, at=at))
 
 
 def _arrows() -> int:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
+from ...authoring.commands import SetCode
 from ...custom_nodes import Code, CodeFault, CustomNode, node_type
 from ...errors import ShaderError
 from ...graph import Unknown
@@ -101,7 +102,7 @@ class Page:
             return
         self._taken = self._text
         merge = f"code {self.path} {id(self)} {self._bursts}"
-        self.context.log.attempt(lambda: self.context.session.set_code(self.id, self._text, merge))
+        self.context.log.attempt(lambda: self.context.session.apply(SetCode(self.id, self._text, merge)))
 
     def end_burst(self) -> None:
         """What is typed from now on is another step."""

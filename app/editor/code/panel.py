@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import EmbedCode
 from ...authoring.edits import paths
 from ...custom_nodes import Code
 from ..theme.style import EM, ui_scale, vec4
@@ -144,7 +145,7 @@ class CodePanel:
                 self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=ours
             ):
                 page.take()
-                self._context.log.attempt(lambda: session.inline_code(page.id))
+                self._context.log.attempt(lambda: session.apply(EmbedCode(page.id)))
         elif quiet_button(
             self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours
         ):

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...authoring.commands import AddGroupFile, AddNode
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
 from ..shared.action import Action
@@ -102,11 +103,11 @@ def _all(context: PaletteContext) -> Iterator[Command]:
 
 
 def _add(context: PaletteContext, type_id: str) -> None:
-    context.session.select((context.session.add_node(type_id, context.canvas.pointer),))
+    context.session.select((context.session.apply(AddNode(type_id, context.canvas.pointer)),))
 
 
 def _add_preset(context: PaletteContext, path: Path) -> None:
-    context.session.select((context.session.add_group(path, context.canvas.pointer),))
+    context.session.select((context.session.apply(AddGroupFile(path, context.canvas.pointer)),))
 
 
 def _go(context: PaletteContext, key: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
-from ...authoring.session.animating import values_of
+from ...authoring.commands import AnimateValues
+from ...authoring.edits.values import animatable_values
 from ...errors import UsageError
 from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
 from ..toolkit.plane import View
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 def put(context: CurvesContext, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
     """Give values other keys, as one step; a value without any stays as it is at this frame."""
     before = context.session.graph.animation
-    context.session.animate_all(
-        {port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge
+    context.session.apply(
+        AnimateValues({port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge)
     )
 
 
@@ -211,7 +212,7 @@ def animatable(context: CurvesContext) -> tuple[Port, ...]:
         port
         for id in session.graph.nodes
         if id in session.selection
-        for port in values_of(session.graph, id)
+        for port in animatable_values(session.graph, id)
         if port not in session.graph.animation and session.linked(port) is None
     )
 

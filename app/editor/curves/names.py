@@ -8,6 +8,7 @@ from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import AnimateValue, BakeKeys, ToggleKey
 from ...errors import HalationError
 from ...graph import Keys, Port
 from ..theme.style import mix, u32
@@ -73,7 +74,7 @@ class Names:
             return
         port = row.port
         if x > right - _KEY * scale and not self._expressed(row):
-            context.log.attempt(lambda: context.session.toggle_key(port))
+            context.log.attempt(lambda: context.session.apply(ToggleKey(port)))
             return
         letter = self._letter_at(frame, row, x)
         if letter is not None:
@@ -210,13 +211,13 @@ def value_menu(context: CurvesContext, port: Port) -> None:
     animation = session.animation(port)
     keyed = isinstance(animation, Keys)
     has = session.key_at(port) is not None
-    entry(icons.ICON_FA_KEY, "Remove Key" if has else "Set Key", lambda: session.toggle_key(port), keyed)
-    entry(icons.ICON_FA_WAVE_SQUARE, "Bake to Keys", lambda: session.bake(port), animation is not None)
+    entry(icons.ICON_FA_KEY, "Remove Key" if has else "Set Key", lambda: session.apply(ToggleKey(port)), keyed)
+    entry(icons.ICON_FA_WAVE_SQUARE, "Bake to Keys", lambda: session.apply(BakeKeys(port)), animation is not None)
     entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select([port.node]))
     imgui.separator()
     entry(
         icons.ICON_FA_XMARK,
         "Remove Animation",
-        lambda: session.animate(port, None, f"Remove animation of {port}"),
+        lambda: session.apply(AnimateValue(port, None, f"Remove animation of {port}")),
         animation is not None,
     )

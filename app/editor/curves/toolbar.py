@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetKey
 from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
 from ..theme.style import u32, ui_scale, vec4
@@ -203,7 +204,7 @@ def offered(context: CurvesContext) -> None:
             node = port.node
             imgui.separator_text(node)
         if imgui.menu_item(f"{value_label(context.session.graph, port)}##{port}", "", False)[0]:
-            context.log.attempt(lambda port=port: context.session.key(port))
+            context.log.attempt(lambda port=port: context.session.apply(SetKey(port)))
 
 
 def keys_menu(context: CurvesContext) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import Plain, Value
 
+from ...authoring.commands import ReplaceGraph, ResetValue, SetValue, SetValues
 from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, signature
 from ..fields.fields import Edit
@@ -21,21 +22,21 @@ Ports = tuple[Port, ...]
 def apply(session: Session, ports: Ports, declaration: Value, edit: Edit) -> None:
     """Put an edit into the value of every port, as one step; a number typed relative to the old one counts for each."""
     if len(ports) == 1:
-        session.set(ports[0], edit.value, merge=edit.merge)
+        session.apply(SetValue(ports[0], edit.value, merge=edit.merge))
         return
     values = {port: _for_one(session, port, declaration, edit) for port in ports}
-    session.set_all(values, f"Set {declaration.name} of {len(ports)} nodes", merge=edit.merge)
+    session.apply(SetValues(values, f"Set {declaration.name} of {len(ports)} nodes", merge=edit.merge))
 
 
 def reset(session: Session, ports: Ports) -> None:
     """Set the values of all ports back to their defaults, as one step."""
     if len(ports) == 1:
-        session.reset(ports[0])
+        session.apply(ResetValue(ports[0]))
         return
     graph = session.graph
     for port in ports:
         graph = graph.animate(port, None).set(port, default_of(graph, port))
-    session.edit(f"Reset {ports[0].socket} of {len(ports)} nodes", graph)
+    session.apply(ReplaceGraph(f"Reset {ports[0].socket} of {len(ports)} nodes", graph))
 
 
 def default_of(graph: Graph, port: Port) -> Plain:

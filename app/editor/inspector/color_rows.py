@@ -8,6 +8,7 @@ from halation.nodes import ColorSettings, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetColorSettings
 from ...color.management import builtin_configs, color_mark, managed, ocio
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
@@ -61,10 +62,10 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         edit = text_field(fields, "color config", color.config, _PATH, rows.field() - imgui.get_frame_height())
         rows.record("color config")
         if edit:
-            rows.act(lambda: session.set_color(config=str(edit.value)))
+            rows.act(lambda: session.apply(SetColorSettings(config=str(edit.value))))
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, "no color config", "What $OCIO names, else the built-in one"):
-            rows.act(lambda: session.set_color(config=""))
+            rows.act(lambda: session.apply(SetColorSettings(config="")))
     else:
         index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
         rows.record("color config")
@@ -72,11 +73,13 @@ def color_rows(rows: Rows, fields: Fields) -> None:
             context.dialogs.browse = Browse(
                 "Choose a Color Config",
                 "config",
-                lambda path: context.log.attempt(lambda: session.set_color(config=session.relative(path))),
+                lambda path: context.log.attempt(
+                    lambda: session.apply(SetColorSettings(config=session.relative(path)))
+                ),
             )
         elif index is not None:
             config = "" if index == 0 else choices[index]
-            rows.act(lambda: session.set_color(config=config))
+            rows.act(lambda: session.apply(SetColorSettings(config=config)))
     usable = settings_in_use(context)
     if fault := context.coloring.fault:
         rows.field_note(fault, rows.palette.error)
@@ -91,7 +94,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     rows.record("working space")
     if index is not None:
         working = "" if index == 0 else known[index]
-        rows.act(lambda: session.set_color(working=working))
+        rows.act(lambda: session.apply(SetColorSettings(working=working)))
 
 
 def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:

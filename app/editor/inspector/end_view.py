@@ -9,6 +9,7 @@ from halation.nodes import Kind, Missing, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import RenameEnd, SetInput, SetOutput
 from ...color.transforms import views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
@@ -59,7 +60,7 @@ class EndView:
         word = "Input" if isinstance(end, Input) else "Output"
         heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
         session, key = rows.context.session, str(port)
-        name_field(rows, self._fields, key, port.socket, lambda new: session.rename_end(key, new))
+        name_field(rows, self._fields, key, port.socket, lambda new: session.apply(RenameEnd(key, new)))
         faults(rows, key)
         if isinstance(end, Input):
             self._input(rows, port, end)
@@ -79,22 +80,22 @@ class EndView:
                 rows.act(lambda: session.bind(name, None))
         rows.name(f"{key} file", "file", doc="What comes in unless something else is linked or bound")
         edit = self._files.path(
-            rows, f"{key} file", end.file, PICTURE, rows.field(), lambda path: session.set_input(name, file=path)
+            rows, f"{key} file", end.file, PICTURE, rows.field(), lambda path: session.apply(SetInput(name, file=path))
         )
         if edit:
-            rows.act(lambda: session.set_input(name, file=str(edit.value)))
+            rows.act(lambda: session.apply(SetInput(name, file=str(edit.value))))
         if not bound:
             self._files.about(rows, end.file, PICTURE, end.layer)
         rows.name(f"{key} layer", "layer", doc="The layer of that file")
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
-            rows.act(lambda: session.set_input(name, layer=str(layer.value)))
+            rows.act(lambda: session.apply(SetInput(name, layer=str(layer.value))))
         if end.kind in (Kind.IMAGE, Kind.COLOR):
             rows.name(f"{key} space", "color space", doc="What the color of the file is in")
             space = space_field(rows, self._fields, f"{key} space", end.color_space, rows.field())
             rows.record(f"{key} space")
             if space:
-                rows.act(lambda: session.set_input(name, color_space=str(space.value)))
+                rows.act(lambda: session.apply(SetInput(name, color_space=str(space.value))))
             if not bound:
                 self._files.space(rows, end.file, end.layer, end.color_space)
         if Pattern.parse(end.file):
@@ -102,13 +103,18 @@ class EndView:
             index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
             rows.record(f"{key} missing")
             if index is not None:
-                rows.act(lambda: session.set_input(name, missing=MISSING[index]))
+                rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
         rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
         found = self._default(rows, f"{key} default", end, rows.field())
         if found:
-            rows.act(lambda: session.set_input(name, default=found.value, merge=found.merge))
+            rows.act(lambda: session.apply(SetInput(name, default=found.value, merge=found.merge)))
         self._text(
-            rows, f"{key} doc", "description", end.doc, lambda doc: session.set_input(name, doc=doc), "What it is for"
+            rows,
+            f"{key} doc",
+            "description",
+            end.doc,
+            lambda doc: session.apply(SetInput(name, doc=doc)),
+            "What it is for",
         )
 
     def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
@@ -118,7 +124,7 @@ class EndView:
         if end.default is None:
             if imgui.button(f"None##{key}", (width, 0.0)):
                 start: Plain = 0.0 if channels == 1 else (0.0,) * channels
-                rows.act(lambda: session.set_input(name, default=start))
+                rows.act(lambda: session.apply(SetInput(name, default=start)))
             tip("Without a default something must be linked, bound or read; click to set one")
             return None
         side = imgui.get_frame_height()
@@ -134,7 +140,7 @@ class EndView:
             edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "No default"):
-            rows.act(lambda: session.set_input(name, default=None))
+            rows.act(lambda: session.apply(SetInput(name, default=None)))
         return edit
 
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
@@ -152,7 +158,7 @@ class EndView:
             f"{key} layer",
             "layer",
             end.layer,
-            lambda layer: session.set_output(name, layer=layer),
+            lambda layer: session.apply(SetOutput(name, layer=layer)),
             "What it is called in a file of several layers",
             hint=name,
         )
@@ -164,7 +170,7 @@ class EndView:
             )
             rows.record(f"{key} view")
             if index is not None:
-                rows.act(lambda: session.set_output(name, view=known[index]))
+                rows.act(lambda: session.apply(SetOutput(name, view=known[index])))
 
     def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, doc: str, hint: str = "") -> None:
         draw_text(rows, self._fields, key, label, text, then, doc, hint)

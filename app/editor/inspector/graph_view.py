@@ -2,12 +2,29 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import PurePath
 
 from halation.nodes import Kind, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import (
+    AddInput,
+    AddOutput,
+    DescribeControl,
+    EditComment,
+    EditFrame,
+    ExposeValue,
+    HideControl,
+    RemoveEnd,
+    RenameControl,
+    RenameEnd,
+    SetCanvasSize,
+    SetFrameRange,
+    SetFrameRate,
+    SetPreroll,
+)
 from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import value_label
 from ...graph import Port, Unknown, signature
@@ -71,7 +88,7 @@ class GraphView:
             f"frames.{id} title",
             "title",
             str(facts.get("title", "")),
-            lambda title: session.set_frame(id, title=title),
+            lambda title: session.apply(EditFrame(id, title=title)),
         )
         given = facts.get("color")
         shown = tuple(float(part) for part in given) if isinstance(given, tuple) and len(given) == 3 else None
@@ -81,7 +98,7 @@ class GraphView:
         edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field(), eyedropper=False)
         if edit and isinstance(edit.value, tuple):
             made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
-            rows.act(lambda: session.set_frame(id, color=(made[0], made[1], made[2]), merge=edit.merge))
+            rows.act(lambda: session.apply(EditFrame(id, color=(made[0], made[1], made[2]), merge=edit.merge)))
 
     def comment(self, rows: Rows, id: str) -> None:
         """A comment: its text."""
@@ -91,7 +108,7 @@ class GraphView:
         edit = text_field(self._fields, f"comments.{id} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
         rows.record(f"comments.{id} text")
         if edit:
-            rows.act(lambda: session.set_comment(id, str(edit.value)))
+            rows.act(lambda: session.apply(EditComment(id, str(edit.value))))
         rows.note("Ctrl+Enter starts a new line.")
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -103,7 +120,7 @@ class GraphView:
         width, side = rows.field(), imgui.get_frame_height()
         if size is None:
             if imgui.button("Automatic##size", (width, 0.0)):
-                rows.act(lambda: session.set_size(FULL_HD))
+                rows.act(lambda: session.apply(SetCanvasSize(FULL_HD)))
             rows.record("size")
             tip("The size of the first picture that is read; click to set one")
             return
@@ -121,10 +138,10 @@ class GraphView:
         rows.record("size")
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, "automatic size", "Automatic: the size of the first picture"):
-            rows.act(lambda: session.set_size(None))
+            rows.act(lambda: session.apply(SetCanvasSize(None)))
         if edit and isinstance(edit.value, tuple):
             wide, high = edit.value
-            rows.act(lambda: session.set_size((int(wide), int(high)), merge=edit.merge))
+            rows.act(lambda: session.apply(SetCanvasSize((int(wide), int(high)), merge=edit.merge)))
 
     def _time(self, rows: Rows) -> None:
         """Range, rate and pre-roll."""
@@ -144,17 +161,17 @@ class GraphView:
         else:
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, "automatic frames", "Automatic: as what it reads, or its keys, say"):
-                rows.act(lambda: session.set_frames(None))
+                rows.act(lambda: session.apply(SetFrameRange(None)))
         if edit and isinstance(edit.value, tuple):
             low, high = (int(part) for part in edit.value)
             low, high = (low, max(low, high)) if low != first else (min(low, high), high)
-            rows.act(lambda: session.set_frames(low, high, merge=edit.merge))
+            rows.act(lambda: session.apply(SetFrameRange(low, high, merge=edit.merge)))
         rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)
         rate = number_field(self._fields, "rate", settings.rate, RATE, rows.field(), suffix="fps", plain=True)
         rows.record("rate")
         if rate and isinstance(rate.value, int | float):
             fps, token = float(rate.value), rate.merge
-            rows.act(lambda: session.set_rate(fps, merge=token))
+            rows.act(lambda: session.apply(SetFrameRate(fps, merge=token)))
         self._preroll(rows)
 
     def _preroll(self, rows: Rows) -> None:
@@ -166,7 +183,7 @@ class GraphView:
         width = rows.field()
         if preroll is None:
             if imgui.button("From the first frame##preroll", (width, 0.0)):
-                rows.act(lambda: session.set_preroll(12))
+                rows.act(lambda: session.apply(SetPreroll(12)))
             rows.record("preroll")
             tip(doc)
             return
@@ -175,10 +192,10 @@ class GraphView:
         rows.record("preroll")
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", "From the first frame"):
-            rows.act(lambda: session.set_preroll(None))
+            rows.act(lambda: session.apply(SetPreroll(None)))
         if edit and isinstance(edit.value, int | float):
             count, token = int(edit.value), edit.merge
-            rows.act(lambda: session.set_preroll(count, merge=token))
+            rows.act(lambda: session.apply(SetPreroll(count, merge=token)))
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.context.session
@@ -193,13 +210,13 @@ class GraphView:
             edit = text_field(self._fields, f"{key} row", name, _TEXT, room)
             rows.record(f"{key} row")
             if edit:
-                rows.act(lambda key=key, edit=edit: session.rename_end(key, str(edit.value)))
+                rows.act(lambda key=key, edit=edit: session.apply(RenameEnd(key, str(edit.value))))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
                 rows.act(lambda name=name: go_to(rows.context, Port(side, name)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
-                rows.act(lambda key=key: session.remove_end(key))
+                rows.act(lambda key=key: session.apply(RemoveEnd(key)))
             if side == "inputs":
                 text, color = _comes_in(rows, name)
                 rows.field_note(text, color)
@@ -212,8 +229,8 @@ class GraphView:
                 rows.context.places[f"menu {label}"] = item_rect()
                 if chosen:
                     name = fresh_name(kind.lower(), known)
-                    add = session.add_input if side == "inputs" else session.add_output
-                    rows.act(lambda add=add, name=name, kind=kind, width=width: add(name, kind, width))
+                    command = AddInput if side == "inputs" else AddOutput
+                    rows.act(partial(session.apply, command(name, kind, width)))
             imgui.end_popup()
 
     def _controls(self, rows: Rows) -> None:
@@ -246,7 +263,7 @@ class GraphView:
                     f"{key} name",
                     "name",
                     name,
-                    lambda new, name=name: session.rename_control(name, new),
+                    lambda new, name=name: session.apply(RenameControl(name, new)),
                 )
                 draw_text(
                     inner,
@@ -254,7 +271,7 @@ class GraphView:
                     f"{key} label",
                     "label",
                     control.label,
-                    lambda label, name=name: session.set_control_doc(name, label=label),
+                    lambda label, name=name: session.apply(DescribeControl(name, label=label)),
                     hint=name,
                 )
                 draw_text(
@@ -263,14 +280,14 @@ class GraphView:
                     f"{key} doc",
                     "description",
                     control.doc,
-                    lambda doc, name=name: session.set_control_doc(name, doc=doc),
+                    lambda doc, name=name: session.apply(DescribeControl(name, doc=doc)),
                     hint=declaration.doc if declaration else "",
                 )
                 if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
                     rows.act(lambda target=target: go_to(rows.context, target))
                 imgui.same_line()
                 if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
-                    rows.act(lambda name=name: session.hide(name))
+                    rows.act(lambda name=name: session.apply(HideControl(name)))
                 imgui.tree_pop()
         if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add Control", "add control"):
             imgui.open_popup("add control")
@@ -295,7 +312,7 @@ class GraphView:
             found = True
             for port in ports:
                 if imgui.menu_item(f"{value_label(session.graph, port)}##{port}", "", False)[0]:
-                    rows.act(lambda port=port: session.expose(port))
+                    rows.act(lambda port=port: session.apply(ExposeValue(port)))
             imgui.end_menu()
         if not found:
             imgui.text_disabled("No value is left to expose")

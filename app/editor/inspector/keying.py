@@ -10,6 +10,7 @@ from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import AnimateValues, BakeKeys, SetExpression, ToggleKey
 from ...document.animation import describe_animation, read_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
@@ -74,7 +75,7 @@ def spoken(value: Plain) -> str:
 def toggle(session: Session, ports: Ports) -> None:
     """Set a key in all values, or remove those of all, as the first one asks for."""
     if len(ports) == 1:
-        session.toggle_key(ports[0])
+        session.apply(ToggleKey(ports[0]))
         return
     removes, made = session.key_at(ports[0]) is not None, dict[Port, Animation | None]()
     for port in ports:
@@ -85,7 +86,7 @@ def toggle(session: Session, ports: Ports) -> None:
             made[port] = keys and keys.remove(session.frame)
         else:
             made[port] = (keys or Keys()).set(session.frame, session.value_now(port))
-    session.animate_all(made, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
+    session.apply(AnimateValues(made, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes"))
 
 
 class Keying:
@@ -127,7 +128,7 @@ class Keying:
             self._drafts[str(port)] = text.strip().removeprefix("=").strip()
         else:
             self._drafts.pop(str(port), None)
-            session.express(port, text)
+            session.apply(SetExpression(port, text))
 
     def field(self, rows: Rows, port: Port, width: float) -> bool:
         """The expression of a value in place of its field; False if it has none."""
@@ -192,7 +193,7 @@ class Keying:
             context.places[f"menu {label}"] = item_rect()
 
         def all_still() -> None:
-            session.animate_all(dict.fromkeys(ports), f"Still {ports[0].socket}")
+            session.apply(AnimateValues(dict.fromkeys(ports), f"Still {ports[0].socket}"))
 
         def jump(frame: int | None) -> None:
             if frame is not None:
@@ -218,7 +219,9 @@ class Keying:
         imgui.separator()
         entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", one, lambda: self.begin(session, port, shown))
         entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
-        entry(icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.bake(port))
+        entry(
+            icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.apply(BakeKeys(port))
+        )
         entry(
             icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: context.clipboard.put(as_text(session, port))
         )
@@ -240,7 +243,9 @@ class Keying:
         self._drafts.pop(str(port), None)
         if edit is not None and isinstance(edit.value, str):
             said = edit.value
-            rows.act(lambda: self.typed(session, port, said) if said.strip() else session.express(port, ""))
+            rows.act(
+                lambda: self.typed(session, port, said) if said.strip() else session.apply(SetExpression(port, ""))
+            )
         elif text and session.expression_fault(port, text):
             self._drafts[str(port)] = text
 
@@ -258,7 +263,7 @@ def paste(session: Session, ports: Ports, text: str) -> None:
     except (ValueError, TypeError, KeyError):
         raise UsageError("the clipboard holds no animation: copy one first") from None
     animation = read_animation(raw, "clipboard", "$.animation")
-    session.animate_all(dict.fromkeys(ports, animation), f"Paste animation of {ports[0].socket}")
+    session.apply(AnimateValues(dict.fromkeys(ports, animation), f"Paste animation of {ports[0].socket}"))
 
 
 def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:

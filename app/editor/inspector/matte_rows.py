@@ -9,6 +9,7 @@ from halation.nodes import Matte, pick_names, toggle_name
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetValue
 from ...graph import Port
 from ..fields.fields import Fields
 from ..shared.render_facts import matte_at
@@ -55,7 +56,9 @@ class MatteRows:
         if session.linked(port) is not None:
             return
         names = self._found(rows, key, matte)
-        self._list(rows, key, names, picked, lambda name: session.set(port, toggle_name(pick, name, matte.ids)))
+        self._list(
+            rows, key, names, picked, lambda name: session.apply(SetValue(port, toggle_name(pick, name, matte.ids)))
+        )
         self._buttons(rows, port)
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -143,7 +146,7 @@ class MatteRows:
         with font(rows.context, "text", SMALL):
             for label, pick in (("All", "*"), ("None", "")):
                 if imgui.button(f"{label}##{port} {label}", (width, 0.0)):
-                    rows.act(lambda pick=pick: session.set(port, pick))
+                    rows.act(lambda pick=pick: session.apply(SetValue(port, pick)))
                 rows.context.places[f"button {label} {port}"] = item_rect()
                 if not pick:
                     break

@@ -9,6 +9,7 @@ from halation.nodes import Node, Socket
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import MakeGroupLocal, RenameNode, ResetNode, ToggleMute
 from ...authoring.edits import paths
 from ...authoring.edits.coding import LANGUAGES
 from ...custom_nodes import Code
@@ -41,7 +42,9 @@ class NodeView:
         face = signature(item)
         rows.fit(("name", *face.inputs, *(value.label or name for name, value in face.values.items())))
         heading(rows, title_of(item), rows.palette.category(_category(item)), lambda: self._buttons(rows, id, item), 3)
-        name_field(rows, self._fields, id, id, lambda new: session.rename(id, new), "What links and files call it")
+        name_field(
+            rows, self._fields, id, id, lambda new: session.apply(RenameNode(id, new)), "What links and files call it"
+        )
         self._explained = explanation(rows, doc_of(item), self._explained)
         faults(rows, id)
         if isinstance(item, Group):
@@ -94,7 +97,7 @@ class NodeView:
         imgui.same_line()
         known = not isinstance(item, Unknown) and bool(signature(item).values)
         if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=known):
-            rows.act(lambda: session.reset_all(id))
+            rows.act(lambda: session.apply(ResetNode(id)))
 
     def _shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
         self._mute(rows, ids)
@@ -105,7 +108,7 @@ class NodeView:
         doc = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
         if rows.icon(glyph, f"mute {ids[0]}", doc, lit=muted):
-            rows.act(session.mute)
+            rows.act(lambda: session.apply(ToggleMute()))
 
     def _code(self, rows: Rows, id: str, code: Code) -> None:
         context = rows.context
@@ -133,7 +136,7 @@ class NodeView:
             if beside:
                 imgui.same_line(0.0, rows.gap)
             if imgui.button(f"{local}##{id}", (width, 0.0)):
-                rows.act(lambda: context.session.make_local(id))
+                rows.act(lambda: context.session.apply(MakeGroupLocal(id)))
             tip("Make it part of this document, so that it can be changed here")
             context.places[f"button local {id}"] = item_rect()
 

@@ -9,6 +9,7 @@ from halation.nodes import Kind, Node, Socket, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import AddMatte, SetValue
 from ...graph import Port
 from ...render_layers.naming import Role
 from ...render_layers.overview import Overview, Use
@@ -124,7 +125,7 @@ class RenderRows:
             likely = [value for value in roles if value.role in item.candidates or value.role == item.role]
             for value in (*likely, *(value for value in roles if value not in likely)):
                 if imgui.menu_item(f"{_label(value)}###{value.name}", "", value in likely)[0]:
-                    rows.act(lambda value=value: session.set(Port(id, value.name), item.layer.name))
+                    rows.act(lambda value=value: session.apply(SetValue(Port(id, value.name), item.layer.name)))
                 rows.context.places[f"menu {_label(value)}"] = item_rect()
 
         dropdown(rows.context, button, f"button use {key}", "Choose what this layer is used for", offer)
@@ -147,7 +148,7 @@ class RenderRows:
         rows.note(", ".join(words))
         session = rows.context.session
         if rows.wide_button(f"{icons.ICON_FA_OBJECT_GROUP}  Pick Objects", f"matte {id}", "Add a cryptomatte node"):
-            rows.act(lambda: session.add_matte(id, seen.mattes[0].kind))
+            rows.act(lambda: session.apply(AddMatte(id, seen.mattes[0].kind)))
 
 
 def _about(rows: Rows, seen: Overview | str | None) -> None:

@@ -10,6 +10,7 @@ from halation.nodes import Node, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import Disconnect, ExposeValue, HideControl, RenameControl
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
@@ -191,7 +192,7 @@ class ValueRows:
             )
             if entered:
                 session, new = rows.context.session, self._renaming
-                rows.act(lambda: session.rename_control(control, new))
+                rows.act(lambda: session.apply(RenameControl(control, new)))
                 imgui.close_current_popup()
             imgui.end_popup()
 
@@ -216,15 +217,15 @@ class ValueRows:
         )
         imgui.separator()
         if control is None:
-            entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.expose(port))
+            entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.apply(ExposeValue(port)))
         else:
-            entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.hide(control))
+            entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.apply(HideControl(control)))
         if source is None and session.can_animate(port):
             self._keying.menu(rows, ports, as_text(value))
         if source is not None:
             imgui.separator()
             entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(context, source))
-            entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.disconnect(port))
+            entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.apply(Disconnect(port)))
 
 
 def _crosshair(rows: Rows, key: str) -> None:
@@ -247,7 +248,7 @@ def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
     first = item_rect()
     imgui.same_line(0.0, 0.0)
     if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", "Unlink"):
-        rows.act(lambda: context.session.disconnect(target))
+        rows.act(lambda: context.session.apply(Disconnect(target)))
     last = item_rect()
     context.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
 

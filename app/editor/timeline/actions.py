@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...authoring.commands import SetFrameRange
 from ..shared.action import Act, Action
 from .playback import LOOPS, Loop
 
@@ -78,7 +79,7 @@ def _whole(context: TimelineContext) -> None:
 
 def _range_from_part(context: TimelineContext) -> None:
     first, last = context.timeline.span(context.session)
-    context.session.set_frames(first, last)
+    context.session.apply(SetFrameRange(first, last))
 
 
 def _has_part(context: TimelineContext) -> bool:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetFrameRange, SetFrameRate
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field
 from ..fields.numbers import RATE, near
@@ -120,7 +121,7 @@ class Timeline:
                 at, merge = int(edit.value), edit.merge
                 low, high = (at, max(last, at)) if name == "first" else (min(first, at), at)
                 self._context.log.attempt(
-                    lambda low=low, high=high, merge=merge: session.set_frames(low, high, merge=merge)
+                    lambda low=low, high=high, merge=merge: session.apply(SetFrameRange(low, high, merge=merge))
                 )
         rate = number_field(
             self._fields, "timeline rate", session.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
@@ -129,7 +130,7 @@ class Timeline:
         tip("Frames per second of the graph")
         if rate and isinstance(rate.value, int | float):
             value, merge = float(rate.value), rate.merge
-            self._context.log.attempt(lambda: session.set_rate(value, merge=merge))
+            self._context.log.attempt(lambda: session.apply(SetFrameRate(value, merge=merge)))
 
     def _number(self, id: str, value: int, width: float, doc: str) -> Edit | None:
         edit = number_field(self._fields, id, value, near(value), width, plain=True)

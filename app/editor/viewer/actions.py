@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ...authoring.commands import AssignViewer
 from ..shared.action import Action
 from .state import BACKGROUNDS, PROXIES, SCOPES, Background, Channels, Compare
 
@@ -132,7 +133,7 @@ def _numbered(number: int) -> tuple[Action, Action]:
     assign = Action(
         f"viewer.assign.{number}",
         f"Assign {number}",
-        lambda context: context.session.assign_viewer(number),
+        lambda context: context.session.apply(AssignViewer(number)),
         "Viewer/Bookmarks",
         f"Ctrl+{number}",
         enabled=_shown,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from msgspec import structs
 
+from ...authoring.commands import SetValue
 from ...graph import Port
 from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_dragged, box_grip, ordered, wipe_angle, wipe_grip
@@ -246,7 +247,7 @@ class MouseHold:
         assert port is not None
         self.context.interface.dragging = True
         position = tuple(round(min(max(part, -1.0), 2.0), 5) for part in to)
-        self.context.log.attempt(lambda: self.context.session.set(port, position, merge=self.token))
+        self.context.log.attempt(lambda: self.context.session.apply(SetValue(port, position, merge=self.token)))
 
 
 def toggled(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:

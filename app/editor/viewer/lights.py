@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import Camera, Kind, Light, LightKind, lights_of
 from msgspec import structs
 
+from ...authoring.commands import ReplaceGraph, SetValue
 from ...graph import Port, Unknown, signature
 from ..fields.lights import added, changed, count_of, fresh, light_at, removed
 from .geometry import Point
@@ -159,7 +160,7 @@ def change(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") ->
         return
     value = changed(numbers, lamp.index, light)
     context.interface.dragging = True
-    context.log.attempt(lambda: context.session.set(lamp.port, value, merge=merge or token(lamp)))
+    context.log.attempt(lambda: context.session.apply(SetValue(lamp.port, value, merge=merge or token(lamp))))
 
 
 def token(lamp: Lamp) -> str:
@@ -188,7 +189,7 @@ def add(context: ViewerContext, to: Point) -> None:
         return
     context.lights[str(port)] = at
     context.log.attempt(
-        lambda: context.session.edit(f"Add light to {port.node}", context.session.graph.set(port, made))
+        lambda: context.session.apply(ReplaceGraph(f"Add light to {port.node}", context.session.graph.set(port, made)))
     )
 
 
@@ -204,7 +205,9 @@ def remove(context: ViewerContext) -> None:
     if port is not None:
         made, at = removed(_numbers(context, port), _chosen(context, port))
         context.lights[str(port)] = max(at, 0)
-        context.log.attempt(lambda: session.edit(f"Remove light of {port.node}", session.graph.set(port, made)))
+        context.log.attempt(
+            lambda: session.apply(ReplaceGraph(f"Remove light of {port.node}", session.graph.set(port, made)))
+        )
 
 
 def _over(context: ViewerContext, camera: Camera, to: Point, light: Light) -> Place | None:

@@ -9,6 +9,7 @@ from halation.nodes import Matte, float_bits, pick_ids, toggle_name
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetValue
 from ...graph import Port
 from ...render_layers.mattes import IdMap
 from ..shared.render_facts import matte_at, pick_value, render_file
@@ -73,7 +74,7 @@ def click(context: ViewerContext, sight: Sight, at: Point) -> None:
         return
     session = context.session
     pick = toggle_name(str(session.value(found.port)), found.name, found.matte.ids)
-    context.log.attempt(lambda: session.set(found.port, pick))
+    context.log.attempt(lambda: session.apply(SetValue(found.port, pick)))
 
 
 def draw_name(context: ViewerContext, sight: Sight) -> None:

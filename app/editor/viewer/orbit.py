@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from halation.nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
 
+from ...authoring.commands import ReplaceGraph
 from ...graph import Graph, Item, Port
 from ...media.meshes.load import load_mesh
 from ...resources.mesh import ATTRIBUTES
@@ -152,7 +153,7 @@ def put(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
     for name in ("target", "distance", "azimuth", "elevation"):
         if getattr(orbit, name) != getattr(before, name):
             graph = graph.set(Port(id, name), getattr(orbit, name))
-    context.log.attempt(lambda: session.edit(f"Orbit {id}", graph, merge=merge))
+    context.log.attempt(lambda: session.apply(ReplaceGraph(f"Orbit {id}", graph, merge=merge)))
 
 
 def aspect_of(context: ViewerContext) -> float:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import Kind, Plain
 from imgui_bundle import imgui
 
+from ...authoring.commands import SetValue
 from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
 from ..shared.coloring import settings_in_use
@@ -278,7 +279,9 @@ class Viewer:
             port = Port.parse(viewer.picking)
             picked = self._picked(port, values)
             if picked is not None:
-                self._context.log.attempt(lambda: self._context.session.set(port, picked, merge=f"pick {port}"))
+                self._context.log.attempt(
+                    lambda: self._context.session.apply(SetValue(port, picked, merge=f"pick {port}"))
+                )
             if not imgui.is_mouse_down(imgui.MouseButton_.left):
                 self._context.session.seal()
                 viewer.picking = ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...authoring.commands import DropFiles
 from ...authoring.edits.coding import ENDINGS
 from ...errors import HalationError
 from ...media.sequences import find_sequence
@@ -59,7 +60,7 @@ def add_files(editor: Editor, paths: Sequence[Path]) -> None:
     editor.dialogs.open.discard("start")
 
     def drop(files: Sequence[Path]) -> None:
-        editor.session.drop_files(list(files), at)
+        editor.session.apply(DropFiles(list(files), at))
 
     single = [path for path in files if path in frames]
     if not single:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from ...authoring.commands import EmbedCode
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
 
@@ -140,7 +141,7 @@ CODE: tuple[Action, ...] = (
     Action(
         "code.inline",
         "Move Code into the Graph",
-        lambda files: files.session.inline_code(files.session.active),
+        lambda files: files.session.apply(EmbedCode(files.session.active)),
         "Graph/Code",
         enabled=lambda files: files.active_has_file,
         contexts=frozenset({"code"}),

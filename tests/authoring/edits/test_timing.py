@@ -3,6 +3,16 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import (
+    ExposeValue,
+    HideControl,
+    MakeGroup,
+    PasteText,
+    RenameControl,
+    ReplaceGraph,
+    ResetValue,
+    Ungroup,
+)
 from halation.authoring.edits import timing
 from halation.authoring.edits.clipboard import copy_elements
 from halation.authoring.session import Session
@@ -28,7 +38,7 @@ def session() -> Session:
     graph = graph.connect(port("a.out"), port("b.image")).connect(port("b.out"), port("c.image"))
     graph = graph.connect(port("c.out"), port("outputs.image")).add_control("strength", Control(port("b.gain")))
     graph = graph.animate(port("a.gain"), KEYS).animate(port("b.gain"), Expression("a.gain * 2"))
-    made.edit("Start", graph.animate(port("c.gain"), Expression("strength + 0.25")))
+    made.apply(ReplaceGraph("Start", graph.animate(port("c.gain"), Expression("strength + 0.25"))))
     return made
 
 
@@ -51,48 +61,48 @@ def test_a_group_and_its_end(session):
     before = [gains(session.root, frame) for frame in FRAMES]
     session.select(["a", "b"])
     with pytest.raises(GraphError, match="other side of the group's border"):
-        session.make_group()  # b.gain is outside now, as a control, and reads a.gain, which has none
-    session.expose(port("a.gain"))
+        session.apply(MakeGroup())  # b.gain is outside now, as a control, and reads a.gain, which has none
+    session.apply(ExposeValue(port("a.gain")))
     session.select(["a", "b"])
-    id = session.make_group()
+    id = session.apply(MakeGroup())
     graph = session.root
     assert graph.animation[Port(id, "gain")] == KEYS
     assert graph.animation[Port(id, "strength")] == Expression(f"{id}.gain * 2")
     assert [gains(graph, frame) for frame in FRAMES] == before
     assert [problem.socket for problem in problems(graph, session.types)] == ["image"], "the end of the chain is open"
     assert loads(dumps(graph), catalogue=session.types) == graph
-    session.ungroup(id)
+    session.apply(Ungroup(id))
     assert session.root.animation[port("b.gain")] == Expression("a.gain * 2")
     assert [gains(session.root, frame) for frame in FRAMES] == before
 
 
 def test_what_a_group_holds_is_animated_inside(session):
-    session.reset(port("b.gain"))
-    session.reset(port("c.gain"))
-    session.hide("strength")
+    session.apply(ResetValue(port("b.gain")))
+    session.apply(ResetValue(port("c.gain")))
+    session.apply(HideControl("strength"))
     session.select(["a"])
-    id = session.make_group()
+    id = session.apply(MakeGroup())
     assert session.root.nodes[id].graph.animation == {port("a.gain"): KEYS} and not session.root.animation
 
 
 def test_copies_have_keys_and_read_each_other(session):
     session.select(["a", "b"])
     text = copy_elements(session.graph, session.selection)
-    keys = session.paste(text)
+    keys = session.apply(PasteText(text))
     first, second = (key for key in keys if key in session.graph.nodes)
     assert session.animation(Port(first, "gain")) == KEYS
     assert session.animation(Port(second, "gain")) == Expression(f"{first}.gain * 2")
 
 
 def test_a_control_of_a_group_that_is_renamed_or_hidden(session):
-    session.expose(port("a.gain"), "power")
+    session.apply(ExposeValue(port("a.gain"), "power"))
     session.select(["a", "b"])
-    id = session.make_group()
+    id = session.apply(MakeGroup())
     session.enter(id)
-    session.rename_control("power", "force")
+    session.apply(RenameControl("power", "force"))
     assert session.root.animation[Port(id, "force")] == KEYS
     assert session.root.animation[Port(id, "strength")] == Expression(f"{id}.force * 2")
-    session.hide("strength")
+    session.apply(HideControl("strength"))
     assert Port(id, "strength") not in session.root.animation
 
 

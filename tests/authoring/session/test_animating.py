@@ -3,6 +3,23 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import (
+    AnimateValues,
+    BakeKeys,
+    ExposeValue,
+    MakeGroup,
+    RemoveKey,
+    ReplaceGraph,
+    ResetValue,
+    SetCanvasSize,
+    SetExpression,
+    SetFrameRange,
+    SetFrameRate,
+    SetKey,
+    SetPreroll,
+    SetValue,
+    ToggleKey,
+)
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Expression, Keys, Port
@@ -19,7 +36,7 @@ GAIN = port("gain.gain")
 @pytest.fixture
 def session() -> Session:
     made = Session({**TOYS, "gain": Gain})
-    made.edit("Start", chain(2).add("gain", Gain()))
+    made.apply(ReplaceGraph("Start", chain(2).add("gain", Gain())))
     return made
 
 
@@ -28,13 +45,13 @@ def test_frames_are_the_documents_or_measured(session):
     session.measure = lambda graph, bindings: (1001, 1024)
     session.look_again()
     assert (session.frames, session.frame) == ((1001, 1024), 1001)
-    session.set_frames(10, 20)
+    session.apply(SetFrameRange(10, 20))
     session.seek(14.6)
     assert (session.frames, session.frame) == ((10, 20), 15)
     session.undo()
     assert (session.frames, session.frame) == ((1001, 1024), 15), "the frame is view state"
     with pytest.raises(GraphError, match="comes after"):
-        session.set_frames(5, 4)
+        session.apply(SetFrameRange(5, 4))
 
 
 def test_a_range_that_cannot_be_measured_is_that_of_the_keys(session):
@@ -43,28 +60,28 @@ def test_a_range_that_cannot_be_measured_is_that_of_the_keys(session):
 
     session.measure = fails
     session.seek(12)
-    session.key(GAIN)
+    session.apply(SetKey(GAIN))
     assert session.frames == (1, 12)
 
 
 def test_settings_stay_beside_each_other_and_are_the_documents_in_groups(session):
-    session.set_rate(25)
-    session.set_size((8, 4))
+    session.apply(SetFrameRate(25))
+    session.apply(SetCanvasSize((8, 4)))
     session.select(["n0", "n1"])
-    group = session.make_group()
+    group = session.apply(MakeGroup())
     session.enter(group)
-    session.set_preroll(6)
+    session.apply(SetPreroll(6))
     found = session.root.settings
     assert (found.rate, found.size, found.preroll) == (25.0, (8, 4), 6)
     assert session.history.undo_label == "Set pre-roll" and session.place == (group,)
 
 
 def test_a_value_with_keys_gets_keys_and_undo_is_one_step(session):
-    session.key(GAIN, 1.0)
+    session.apply(SetKey(GAIN, 1.0))
     session.seek(11)
     steps = session.history.position
     for value in (2.0, 2.5, 3.0):
-        session.set(GAIN, value, merge="drag")
+        session.apply(SetValue(GAIN, value, merge="drag"))
     session.seal()
     assert session.history.position == steps + 1
     assert [(key.frame, key.value) for key in session.animation(GAIN).keys] == [(1, 1.0), (11, 3.0)]
@@ -77,50 +94,50 @@ def test_a_value_with_keys_gets_keys_and_undo_is_one_step(session):
 
 
 def test_toggling_a_key_keeps_the_value(session):
-    session.set(GAIN, 2.0)
-    session.toggle_key(GAIN)
+    session.apply(SetValue(GAIN, 2.0))
+    session.apply(ToggleKey(GAIN))
     assert session.key_at(GAIN).value == 2.0
     session.seek(9)
-    session.set(GAIN, 4.0)
+    session.apply(SetValue(GAIN, 4.0))
     session.seek(1)
-    session.toggle_key(GAIN)
+    session.apply(ToggleKey(GAIN))
     session.seek(9)
-    session.toggle_key(GAIN)
+    session.apply(ToggleKey(GAIN))
     assert session.animation(GAIN) is None and session.value(GAIN) == 4.0
     with pytest.raises(GraphError, match="no key at frame 9"):
-        session.unkey(GAIN)
+        session.apply(RemoveKey(GAIN))
 
 
 def test_a_key_beyond_the_hard_range_changes_nothing(session):
-    session.key(GAIN, 1.0)
+    session.apply(SetKey(GAIN, 1.0))
     before = session.root
     with pytest.raises(GraphError):
-        session.set(GAIN, 99.0)
+        session.apply(SetValue(GAIN, 99.0))
     assert session.root is before
 
 
 def test_expressions_are_set_edited_baked_and_removed(session):
-    session.set_frames(1, 4)
-    session.express(GAIN, "= frame / 2")
+    session.apply(SetFrameRange(1, 4))
+    session.apply(SetExpression(GAIN, "= frame / 2"))
     assert session.animation(GAIN) == Expression("frame / 2")
     session.seek(3)
     assert session.value_now(GAIN) == 1.5
-    for edit in (lambda: session.set(GAIN, 1.0), lambda: session.key(GAIN)):
+    for edit in (lambda: session.apply(SetValue(GAIN, 1.0)), lambda: session.apply(SetKey(GAIN))):
         with pytest.raises(GraphError, match="expression"):
             edit()
-    session.bake(GAIN)
+    session.apply(BakeKeys(GAIN))
     assert [key.value for key in session.animation(GAIN).keys] == [0.5, 1.0, 1.5, 2.0]
     session.undo()
-    session.express(GAIN, "")
+    session.apply(SetExpression(GAIN, ""))
     assert session.animation(GAIN) is None and session.value(GAIN) == 1.5
     assert "^" in session.expression_fault(GAIN, "1 +")
     with pytest.raises(GraphError, match="no node 'nobody'"):
-        session.express(GAIN, "nobody.gain")
+        session.apply(SetExpression(GAIN, "nobody.gain"))
 
 
 def test_jumping_goes_by_the_selected_nodes_else_by_all(session):
     other = port("gain.steps")
-    session.animate_all({GAIN: Keys().set(3, 1.0).set(9.6, 2.0), other: Keys().set(5, 2)}, "Keys")
+    session.apply(AnimateValues({GAIN: Keys().set(3, 1.0).set(9.6, 2.0), other: Keys().set(5, 2)}, "Keys"))
     assert session.key_frames() == (3, 5, 10) and session.key_frames(other) == (5,)
     assert (session.next_key(), session.previous_key()) == (3, None)
     session.seek(10)
@@ -136,31 +153,31 @@ def test_what_cannot_change_over_time(session):
 
 
 def test_resetting_removes_keys(session):
-    session.key(GAIN, 2.0)
-    session.reset(GAIN)
+    session.apply(SetKey(GAIN, 2.0))
+    session.apply(ResetValue(GAIN))
     assert session.animation(GAIN) is None and session.is_default(GAIN)
 
 
 def test_inside_a_group_an_animated_control_is_what_it_is_outside(session):
     session.select(["gain"])
-    group = session.make_group()
+    group = session.apply(MakeGroup())
     session.enter(group)
-    name = session.expose(GAIN)
+    name = session.apply(ExposeValue(GAIN))
     session.leave()
     outer = Port(group, name)
-    session.key(outer, 1.0)
+    session.apply(SetKey(outer, 1.0))
     session.seek(5)
-    session.set(outer, 3.0)
+    session.apply(SetValue(outer, 3.0))
     session.enter(group)
     assert session.value_now(GAIN) == 3.0 == session.graph_now.value(GAIN)
     assert session.animated_outside(GAIN) == ((), outer)
     with pytest.raises(GraphError, match="change it there"):
-        session.set(GAIN, 1.0)
+        session.apply(SetValue(GAIN, 1.0))
 
 
 def test_another_document_begins_at_its_first_frame(session, tmp_path):
     session.seek(40)
-    session.set_frames(7, 9)
+    session.apply(SetFrameRange(7, 9))
     session.save_as(tmp_path / "a.json")
     session.new()
     assert session.frame == 1

@@ -5,6 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from halation.authoring.commands import (
+    AddNode,
+    Connect,
+    DropFiles,
+    DuplicateSelection,
+    EmbedCode,
+    ExposeValue,
+    ExtractSelection,
+    MakeGroup,
+    PasteText,
+    RenameNode,
+    ReplaceGraph,
+    ReplaceNode,
+    SetCode,
+    SetKey,
+    SetValue,
+    ToggleMute,
+    Ungroup,
+)
 from halation.authoring.edits import coding
 from halation.authoring.edits.coding import BrokenCodeNode
 from halation.authoring.session import Session
@@ -22,10 +41,10 @@ GLOW = HEAD + "\nvoid main() { gl_FragColor = vec4(1.0); }"
 def start(text: str = GAIN) -> Session:
     """A session with one node of code, `code`, between the ends."""
     session = Session()
-    session.edit("Begin", Graph().add_input("image", Input()).add_output("out", Output(width=4)))
-    session.add_node("glsl", link=Port("inputs", "image"))
-    session.connect(Port("code", "out"), Port("outputs", "out"))
-    session.set_code("code", text)
+    session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input()).add_output("out", Output(width=4))))
+    session.apply(AddNode("glsl", link=Port("inputs", "image")))
+    session.apply(Connect(Port("code", "out"), Port("outputs", "out")))
+    session.apply(SetCode("code", text))
     return session
 
 
@@ -37,9 +56,9 @@ def written(session: Session, id: str = "code") -> CustomNode:
 
 def test_a_new_node_is_linked_and_says_what_it_is() -> None:
     session = Session()
-    session.edit("Begin", Graph().add_input("image", Input()))
+    session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input())))
     assert "glsl" in session.fitting(Port("inputs", "image"), True)
-    id = session.add_node("glsl", link=Port("inputs", "image"))
+    id = session.apply(AddNode("glsl", link=Port("inputs", "image")))
     item = written(session, id)
     assert (id, item.title, item.category) == ("code", "tint", "code")
     assert session.linked(Port("code", "image")) == Port("inputs", "image")
@@ -48,60 +67,62 @@ def test_a_new_node_is_linked_and_says_what_it_is() -> None:
 
 def test_broken_code_keeps_what_it_was_given_and_comes_back() -> None:
     session = start()
-    session.set(Port("code", "k"), 3.0)
-    session.expose(Port("code", "k"))
+    session.apply(SetValue(Port("code", "k"), 3.0))
+    session.apply(ExposeValue(Port("code", "k")))
     links = session.graph.links
-    session.set_code("code", "uniform " + GAIN)
+    session.apply(SetCode("code", "uniform " + GAIN))
     item = session.graph.nodes["code"]
     assert isinstance(item, BrokenCodeNode) and "line 1: 'uniform'" in item.fault
     assert session.graph.links == links and "k" in session.graph.controls
     assert session.problems["code"][0].severity == "error"
     again = loads(dumps(session.root))
     assert dumps(again) == dumps(session.root) and isinstance(again.nodes["code"], Unknown)
-    session.set_code("code", GAIN)
+    session.apply(SetCode("code", GAIN))
     assert written(session).k == 3.0 and session.graph.links == links
     assert session.graph.controls["k"].label == "How Much"
 
 
 def test_typing_is_one_step_whatever_was_typed_between() -> None:
     session = start()
-    session.set(Port("code", "k"), 3.0)
-    session.key(Port("code", "k"), 1.5)
+    session.apply(SetValue(Port("code", "k"), 3.0))
+    session.apply(SetKey(Port("code", "k"), 1.5))
     before, steps = session.root, session.history.steps
     for text in ("", GAIN.replace("k", "ki"), "vec4 f(vec4 other) { return other; }", "vec4 gain(", GAIN + "\n"):
-        session.set_code("code", text, merge="burst")
+        session.apply(SetCode("code", text, merge="burst"))
     assert session.history.steps == (*steps, "Edit code of code")
     assert session.graph.links == before.links and isinstance(session.graph.animation[Port("code", "k")], Keys)
     session.undo()
     assert session.root == before
     session.redo()
     assert session.code("code").text == GAIN + "\n"  # pyright: ignore[reportOptionalMemberAccess]
-    session.set_code("code", GAIN + "\n// more", merge="another")
-    session.set_code("code", GAIN + "\n", merge="another")
+    session.apply(SetCode("code", GAIN + "\n// more", merge="another"))
+    session.apply(SetCode("code", GAIN + "\n", merge="another"))
     session.seal()
     assert session.history.steps == (*steps, "Edit code of code")
 
 
 def test_a_default_that_was_not_touched_follows_the_code() -> None:
     session = start()
-    session.set_code("code", GAIN.replace("= 2", "= 3"))
+    session.apply(SetCode("code", GAIN.replace("= 2", "= 3")))
     assert written(session).k == 3.0
-    session.set(Port("code", "k"), 1.0)
-    session.set_code("code", GAIN.replace("= 2", "= 3").replace("k", "gain"))
+    session.apply(SetValue(Port("code", "k"), 1.0))
+    session.apply(SetCode("code", GAIN.replace("= 2", "= 3").replace("k", "gain")))
     assert isinstance(session.graph.nodes["code"], CustomNode)
     session.undo()
-    session.set_code("code", GAIN)
+    session.apply(SetCode("code", GAIN))
     assert written(session).k == 1.0
-    session.set_code("code", GAIN.replace("float k // = 2", "vec3 k // = 1, color").replace("* k", "* vec4(k, 1.0)"))
+    session.apply(
+        SetCode("code", GAIN.replace("float k // = 2", "vec3 k // = 1, color").replace("* k", "* vec4(k, 1.0)"))
+    )
     assert written(session).k == (1.0, 1.0, 1.0)
 
 
 def test_a_color_without_alpha_takes_what_pickers_make() -> None:
     session = start("vec4 f(vec4 image, vec3 shade /* = 1, color */) { return image; }")
-    session.set(Port("code", "shade"), (0.1, 0.2, 0.3, 1.0))
+    session.apply(SetValue(Port("code", "shade"), (0.1, 0.2, 0.3, 1.0)))
     assert written(session).shade == (0.1, 0.2, 0.3)
-    session.key(Port("code", "shade"))
-    session.set(Port("code", "shade"), (0.4, 0.5, 0.6, 0.7))
+    session.apply(SetKey(Port("code", "shade")))
+    session.apply(SetValue(Port("code", "shade"), (0.4, 0.5, 0.6, 0.7)))
     assert session.value_now(Port("code", "shade")) == (0.4, 0.5, 0.6)
 
 
@@ -112,9 +133,9 @@ def filed(tmp_path: Path) -> Session:
     (tmp_path / "shaders/gain.glsl").write_text(GAIN)
     session = start()
     session.save_as(tmp_path / "graph.json")
-    session.drop_files([tmp_path / "shaders/gain.glsl"])
-    session.make_group()
-    session.drop_files([tmp_path / "shaders/gain.glsl"])
+    session.apply(DropFiles([tmp_path / "shaders/gain.glsl"]))
+    session.apply(MakeGroup())
+    session.apply(DropFiles([tmp_path / "shaders/gain.glsl"]))
     session.save()
     session.note_code_files()
     return session
@@ -124,7 +145,7 @@ def test_code_in_a_file_is_a_draft_until_it_is_saved(filed: Session, tmp_path: P
     file = tmp_path / "shaders/gain.glsl"
     assert filed.code("gain").file == "shaders/gain.glsl" and not filed.drafts and not filed.dirty  # pyright: ignore
     more = GAIN.replace("k;", "k * 2.0;")
-    filed.set_code("gain", more)
+    filed.apply(SetCode("gain", more))
     assert filed.drafts == {file: more} and filed.dirty and file.read_text() == GAIN
     inside = next(item for item in filed.root.nodes.values() if hasattr(item, "graph"))
     assert [coding.read_node_code(item, "").text for item in inside.graph.nodes.values()] == [more]  # pyright: ignore
@@ -154,15 +175,15 @@ def test_what_another_program_writes_is_taken_over(filed: Session, tmp_path: Pat
 
 
 def test_code_moves_between_the_graph_and_a_file(filed: Session, tmp_path: Path) -> None:
-    filed.inline_code("gain")
+    filed.apply(EmbedCode("gain"))
     assert filed.code("gain").file == "" and filed.code("gain").text == GAIN  # pyright: ignore
     with pytest.raises(GraphError, match="in no file"):
-        filed.inline_code("gain")
+        filed.apply(EmbedCode("gain"))
     filed.export_code("gain", tmp_path / "other.glsl")
     assert filed.code("gain").file == "other.glsl" and (tmp_path / "other.glsl").read_text() == GAIN  # pyright: ignore
     assert not filed.drafts
     with pytest.raises(GraphError, match="not made of code"):
-        filed.set_code(next(id for id in filed.root.nodes if id.startswith("group")), "")
+        filed.apply(SetCode(next(id for id in filed.root.nodes if id.startswith("group")), ""))
 
 
 def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: Path) -> None:
@@ -175,7 +196,7 @@ def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: P
     filed.select("gain")
     other = Session()
     other.save_as(tmp_path / "third.json")
-    other.paste(filed.copy())
+    other.apply(PasteText(filed.copy()))
     assert other.code("gain").file == "shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
     broken = Graph(folder=str(tmp_path)).add("x", coding.make_file_node("none.glsl", str(tmp_path)))
     assert rebased(broken, str(tmp_path / "elsewhere")).nodes["x"].raw["file"] == "../none.glsl"  # pyright: ignore
@@ -184,26 +205,26 @@ def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: P
 def test_shaders_of_another_format_are_dropped_too(tmp_path: Path) -> None:
     (tmp_path / "Glow 2.fs").write_text(GLOW)
     session = Session()
-    (id,) = session.drop_files([tmp_path / "Glow 2.fs"])
+    (id,) = session.apply(DropFiles([tmp_path / "Glow 2.fs"]))
     assert (id, written(session, id).id) == ("Glow_2", "isf")
 
 
 def acts(session: Session) -> None:
     """What editors do with nodes."""
     session.select("code")
-    session.duplicate()
-    session.paste(session.copy())
+    session.apply(DuplicateSelection())
+    session.apply(PasteText(session.copy()))
     session.select("code")
-    session.mute()
-    session.mute()
-    session.make_group()
+    session.apply(ToggleMute())
+    session.apply(ToggleMute())
+    session.apply(MakeGroup())
     group = session.active
     session.enter(group)
-    session.set_code("code", GAIN.replace("= 2", "= 3"))
+    session.apply(SetCode("code", GAIN.replace("= 2", "= 3")))
     session.leave()
-    session.ungroup(group)
-    session.rename("code", "renamed")
-    session.extract()
+    session.apply(Ungroup(group))
+    session.apply(RenameNode("code", "renamed"))
+    session.apply(ExtractSelection())
 
 
 @pytest.mark.parametrize("broken", [False, True])
@@ -218,10 +239,10 @@ def test_code_survives_all_acts(broken: bool) -> None:
 
 def test_code_is_replaced_and_replaces() -> None:
     session = start()
-    session.replace("code", "exposure")
+    session.apply(ReplaceNode("code", "exposure"))
     assert session.graph.nodes["code"].id == "exposure"  # pyright: ignore[reportAttributeAccessIssue]
     assert Port("code", "image") in session.graph.links
-    session.replace("code", "glsl")
+    session.apply(ReplaceNode("code", "glsl"))
     assert written(session).title == "tint" and Port("outputs", "out") in session.graph.links
 
 
@@ -230,4 +251,4 @@ def test_code_of_a_group_from_a_file_is_not_changed_here(filed: Session, tmp_pat
     filed.save_group(group, tmp_path / "group.json", link=True)
     filed.enter(group)
     with pytest.raises(GraphError, match="make it local first"):
-        filed.set_code(next(iter(filed.graph.nodes)), "x")
+        filed.apply(SetCode(next(iter(filed.graph.nodes)), "x"))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import presets
+from halation.authoring.commands import AddGroupFile, AddMatte, AddNode, DropFiles, MakeGroup, ReplaceGraph, SetValue
 from halation.authoring.session import Session
 from halation.document import dumps, load
 from halation.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
@@ -30,14 +31,14 @@ def test_open_save_and_open_again(session, tmp_path):
     path = written(tmp_path / "a.json", chain(2))
     session.open(path)
     assert (session.name, session.path, session.dirty, session.history.steps) == ("a", path, False, ())
-    session.set(Port("n0", "gain"), 3.0)
+    session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.save()
     assert not session.dirty and session.history.can_undo
     assert load(path, TOYS) == session.root
 
 
 def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
-    session.edit("Start", chain(1))
+    session.apply(ReplaceGraph("Start", chain(1)))
     (tmp_path / "bad.json").write_text("{")
     for act in (
         lambda: session.open(tmp_path / "bad.json"),
@@ -54,7 +55,7 @@ def test_save_needs_a_file_and_a_folder(session, tmp_path):
         session.save()
     with pytest.raises(UsageError, match="no file to read again"):
         session.reload()
-    session.edit("Start", chain(1))
+    session.apply(ReplaceGraph("Start", chain(1)))
     with pytest.raises(OutputError):
         session.save_as(tmp_path / "none" / "a.json")
     assert session.path is None and session.dirty
@@ -68,7 +69,7 @@ def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
     graph = graph.add("p", Photo(path="plates/c.exr")).add("q", Photo(path="/far/d.exr")).add("r", Photo())
     session.open(written(tmp_path / "one/doc.json", graph))
     session.select("p")
-    session.make_group("local")
+    session.apply(MakeGroup("local"))
     (tmp_path / "two").mkdir()
     session.save_as(tmp_path / "two/doc.json")
     root = load(tmp_path / "two/doc.json", TOYS)
@@ -85,19 +86,19 @@ def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
 
 def test_a_document_is_not_saved_into_itself(session, tmp_path):
     path = written(tmp_path / "lib.json", chain(1))
-    session.add_group(path)
+    session.apply(AddGroupFile(path))
     with pytest.raises(UsageError, match="used as a group"):
         session.save_as(path)
     session.save_as(tmp_path / "doc.json")
     with pytest.raises(GraphError, match="cannot hold itself"):
-        session.add_group(tmp_path / "doc.json")
+        session.apply(AddGroupFile(tmp_path / "doc.json"))
     with pytest.raises(UsageError, match="of the document itself"):
-        session.select(session.add_node("gain"))
-        session.save_group(session.make_group(), tmp_path / "doc.json")
+        session.select(session.apply(AddNode("gain")))
+        session.save_group(session.apply(MakeGroup()), tmp_path / "doc.json")
     outer = Session(TOYS)
     outer.open(path)
     with pytest.raises(GraphError, match="cannot hold itself"):
-        outer.add_group(tmp_path / "doc.json")
+        outer.apply(AddGroupFile(tmp_path / "doc.json"))
 
 
 def test_a_preset_opens_as_a_new_document_that_finds_its_files(session, tmp_path):
@@ -111,7 +112,7 @@ def test_a_preset_opens_as_a_new_document_that_finds_its_files(session, tmp_path
 
 def test_a_preset_as_a_node_depends_on_no_file(tmp_path):
     session = Session()
-    id = session.add_group(next(path for path in presets.paths() if path.stem == "soft_bloom"))
+    id = session.apply(AddGroupFile(next(path for path in presets.paths() if path.stem == "soft_bloom")))
     item = session.graph.nodes[id]
     assert isinstance(item, Group) and not item.path
     assert [end.file for end in item.graph.inputs.values()] == ["" for _ in item.graph.inputs]
@@ -131,7 +132,7 @@ def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
     session.open(path)
     session.select(["n1", "n2"])
     session.view_node("n1")
-    session.set(Port("n0", "gain"), 3.0)
+    session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.revert()
     assert session.value(Port("n0", "gain")) == 1.5 and not session.dirty
     assert session.selection == {"n1", "n2"} and session.viewed() == Port("n1", "out")
@@ -146,9 +147,9 @@ def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
 
 
 def test_reloading_leaves_a_group_that_is_gone(session, tmp_path):
-    session.edit("Start", chain(2))
+    session.apply(ReplaceGraph("Start", chain(2)))
     session.select("n0")
-    session.enter(session.make_group())
+    session.enter(session.apply(MakeGroup()))
     session.save_as(tmp_path / "a.json")
     written(tmp_path / "a.json", chain(1))
     session.reload()
@@ -157,8 +158,8 @@ def test_reloading_leaves_a_group_that_is_gone(session, tmp_path):
 
 def test_groups_are_read_again_everywhere(session, tmp_path):
     path = written(tmp_path / "lib.json", chain(1))
-    id = session.add_group(path, (5.0, 5.0))
-    session.add_node("gain")
+    id = session.apply(AddGroupFile(path, (5.0, 5.0)))
+    session.apply(AddNode("gain"))
     session.save_as(tmp_path / "doc.json")
     written(path, chain(4))
     session.reload_groups()
@@ -172,8 +173,8 @@ def test_groups_are_read_again_everywhere(session, tmp_path):
 
 
 def test_a_change_of_classes_reaches_the_whole_history(session):
-    session.edit("Start", Graph(nodes={"n": Gain()}))
-    session.add_node("soften")
+    session.apply(ReplaceGraph("Start", Graph(nodes={"n": Gain()})))
+    session.apply(AddNode("soften"))
     session.migrate(lambda graph: Graph(nodes={id: Soften() for id in graph.nodes}, ui=graph.ui))
     assert session.graph.nodes["n"] == Soften() and len(session.history.steps) == 2
     session.undo()
@@ -184,13 +185,13 @@ def test_dropped_files(tmp_path):
     session = Session()
     session.save_as(tmp_path / "doc.json")
     path = written(tmp_path / "my look.json", Graph(outputs={"image": Output()}))
-    ids = session.drop_files([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0))
+    ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0)))
     assert ids == ("shot_1", "b", "my_look")
     assert [session.graph.nodes[id].path for id in ids] == ["plates/shot 1.exr", "/far/b.png", "my look.json"]
     assert session.selection == set(ids) and session.position("shot_1") == (10.0, 20.0)
     assert session.history.steps == ("Drop 3 files",)
     with pytest.raises(HalationError):
-        session.drop_files([tmp_path / "none.json"])
+        session.apply(DropFiles([tmp_path / "none.json"]))
     assert json.loads((tmp_path / "doc.json").read_text()) == {
         "halation": 1,
         "outputs": {"image": {"type": "Image"}},
@@ -200,8 +201,8 @@ def test_dropped_files(tmp_path):
 
 def test_a_dropped_render_is_read_as_one():
     session = Session()
-    (id,) = session.drop_files([sample()])
+    (id,) = session.apply(DropFiles([sample()]))
     assert session.graph.nodes[id].id == "read_render"
-    matte = session.add_matte(id, "object")
+    matte = session.apply(AddMatte(id, "object"))
     assert session.graph.nodes[matte].path == session.graph.nodes[id].path and session.selection == {matte}
     assert session.history.steps == (f"Drop {id}", f"Add {matte}")

@@ -4,6 +4,45 @@ from __future__ import annotations
 
 import pytest
 from halation import presets
+from halation.authoring.commands import (
+    AddComment,
+    AddDot,
+    AddFrame,
+    AddGroupFile,
+    AddInput,
+    AddNode,
+    AddOutput,
+    CutSelection,
+    DeleteSelection,
+    DescribeControl,
+    DuplicateSelection,
+    EditFrame,
+    ExposeValue,
+    ExtractSelection,
+    HideControl,
+    InsertNode,
+    MakeGroup,
+    MakeGroupLocal,
+    MoveElements,
+    PasteText,
+    RemoveDot,
+    RemoveEnd,
+    RenameControl,
+    RenameEnd,
+    ReplaceGraph,
+    ResetNode,
+    ResetValue,
+    ResizeComment,
+    ResizeFrame,
+    SetCanvasSize,
+    SetInput,
+    SetOutput,
+    SetValue,
+    SpliceChain,
+    ToggleCollapse,
+    ToggleMute,
+)
+from halation.authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from halation.authoring.session import Session
 from halation.document import load
 from halation.errors import GraphError
@@ -19,7 +58,7 @@ def port(text: str) -> Port:
 @pytest.fixture
 def session() -> Session:
     made = Session(TOYS)
-    made.edit("Start", chain(3))
+    made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
 
@@ -35,125 +74,125 @@ def test_selecting(session):
     assert (session.selection, session.active) == ({"n1", "n2"}, "n2")
     session.select("n2", "remove")
     assert (session.selection, session.active) == ({"n1"}, "n1")
-    session.select_upstream()
+    session.select(find_upstream(session.graph, session.selection), "extend")
     assert (session.selection, session.active) == ({"inputs.beauty", "n0", "n1"}, "n1")
     session.select("n1")
-    session.select_downstream()
+    session.select(find_downstream(session.graph, session.selection), "extend")
     assert session.selection == {"n1", "n2", "outputs.image"}
-    session.select_inverse()
+    session.select(invert_selection(session.elements, session.selection))
     assert session.selection == {"inputs.beauty", "n0"}
-    session.add_node("photo")
+    session.apply(AddNode("photo"))
     session.select("n2")
-    session.select_linked()
+    session.select(find_linked(session.graph, session.selection), "extend")
     assert session.selection == {"inputs.beauty", "n0", "n1", "n2", "outputs.image"}
-    session.select_none()
+    session.select(())
     assert (session.selection, session.active) == (frozenset(), "")
 
 
 def test_adding_with_a_link(session):
-    assert session.add_node("blend", (5.0, 6.0), port("n0.out")) == "blend"
-    assert session.add_node("photo", (0.0, 0.0), port("blend.second"), output=False) == "photo"
+    assert session.apply(AddNode("blend", (5.0, 6.0), port("n0.out"))) == "blend"
+    assert session.apply(AddNode("photo", (0.0, 0.0), port("blend.second"), output=False)) == "photo"
     assert {"blend.first": "n0.out", "blend.second": "photo.out"}.items() <= links(session).items()
     assert session.position("blend") == (5.0, 6.0) and session.active == "photo"
     before = session.root
     with pytest.raises(GraphError, match="fits no input"):
-        session.add_node("photo", link=port("n0.out"))
+        session.apply(AddNode("photo", link=port("n0.out")))
     assert session.root is before
 
 
 def test_inserting_new_and_existing_nodes(session):
-    assert session.insert("soften", port("n1.image"), (7.0, 8.0)) == "soften"
+    assert session.apply(InsertNode("soften", port("n1.image"), (7.0, 8.0))) == "soften"
     assert links(session)["n1.image"] == "soften.out" and session.position("soften") == (7.0, 8.0)
-    session.extract()
+    session.apply(ExtractSelection())
     assert links(session)["n1.image"] == "n0.out"
-    session.insert("soften", port("outputs.image"))
+    session.apply(InsertNode("soften", port("outputs.image")))
     assert links(session)["soften.image"] == "n2.out" and links(session)["outputs.image"] == "soften.out"
 
 
 def test_deleting_all_kinds_of_things(session):
-    frame, note = session.add_frame("f", (0.0, 0.0)), session.add_comment((0.0, 0.0), "c")
-    dot = session.add_dot(port("n1.image"), (1.0, 1.0))
+    frame, note = session.apply(AddFrame("f", (0.0, 0.0))), session.apply(AddComment((0.0, 0.0), "c"))
+    dot = session.apply(AddDot(port("n1.image"), (1.0, 1.0)))
     session.select(["n0", "inputs.beauty", f"frames.{frame}", f"comments.{note}", f"dots.{dot}"])
-    session.delete()
+    session.apply(DeleteSelection())
     assert set(session.elements) == {"n1", "n2", "outputs.image"}
     assert session.selection == frozenset()
     assert links(session) == {"n2.image": "n1.out", "outputs.image": "n2.out"}
     with pytest.raises(GraphError, match="nothing is selected"):
-        session.delete()
+        session.apply(DeleteSelection())
 
 
 def test_delete_heals_unless_told_otherwise(session):
     session.select("n1")
-    session.delete()
+    session.apply(DeleteSelection())
     assert links(session)["n2.image"] == "n0.out"
     session.undo()
-    session.delete(heal=False)
+    session.apply(DeleteSelection(heal=False))
     assert "n2.image" not in links(session)
 
 
 def test_mute_and_collapse_toggle_all_of_the_selection(session):
     session.select("n0")
-    session.mute()
+    session.apply(ToggleMute())
     session.select(["n0", "n1"])
-    session.mute()
+    session.apply(ToggleMute())
     assert session.graph.muted == {"n0", "n1"}
-    session.mute()
+    session.apply(ToggleMute())
     assert session.graph.muted == frozenset()
-    session.collapse()
+    session.apply(ToggleCollapse())
     assert session.graph.ui["nodes"]["n0"]["collapsed"] is True
-    session.collapse()
+    session.apply(ToggleCollapse())
     assert "collapsed" not in session.graph.ui["nodes"]["n0"]
 
 
 def test_values(session):
     gain, tint = port("n0.gain"), port("n0.tint")
-    session.set(gain, 2, "drag")
-    session.set(gain, 3, "drag")
-    session.set(tint, [1, 0, 0, 1])
+    session.apply(SetValue(gain, 2, "drag"))
+    session.apply(SetValue(gain, 3, "drag"))
+    session.apply(SetValue(tint, [1, 0, 0, 1]))
     assert (session.value(gain), session.value(tint)) == (3.0, (1.0, 0.0, 0.0, 1.0))
     assert len(session.history.steps) == 3 and not session.is_default(gain)
-    session.reset(gain)
+    session.apply(ResetValue(gain))
     assert session.is_default(gain) and session.value(gain) == 1.0
-    session.reset_all("n0")
+    session.apply(ResetNode("n0"))
     assert session.graph.nodes["n0"] == Gain()
     for value, said in ((99.0, "outside the range"), ("a", "takes a number"), (float("nan"), "not a finite")):
         with pytest.raises(GraphError, match=said):
-            session.set(gain, value)
+            session.apply(SetValue(gain, value))
     assert session.linked(port("n1.image")) == port("n0.out") and session.linked(gain) is None
 
 
 def test_controls(session):
     gain = port("n0.gain")
-    assert session.expose(gain) == "gain" and session.control_of(gain) == "gain"
-    assert session.expose(port("n1.gain")) == "gain2"
+    assert session.apply(ExposeValue(gain)) == "gain" and session.control_of(gain) == "gain"
+    assert session.apply(ExposeValue(port("n1.gain"))) == "gain2"
     with pytest.raises(GraphError, match="control 'gain' already"):
-        session.expose(gain)
-    session.rename_control("gain", "glow")
-    session.set_control_doc("glow", label="Glow")
-    session.set_control_doc("glow", doc="How much.")
+        session.apply(ExposeValue(gain))
+    session.apply(RenameControl("gain", "glow"))
+    session.apply(DescribeControl("glow", label="Glow"))
+    session.apply(DescribeControl("glow", doc="How much."))
     assert session.graph.controls["glow"] == Control(gain, "Glow", "How much.")
-    session.hide("glow")
+    session.apply(HideControl("glow"))
     assert session.control_of(gain) is None
 
 
 def test_values_of_a_group_and_of_what_is_inside(session):
-    session.expose(port("n1.gain"), "glow")
+    session.apply(ExposeValue(port("n1.gain"), "glow"))
     session.select(["n0", "n1"])
-    id = session.make_group("look")
+    id = session.apply(MakeGroup("look"))
     glow = Port(id, "glow")
-    session.set(glow, 4.0)
+    session.apply(SetValue(glow, 4.0))
     assert not session.is_default(glow)
     session.enter(id)
     assert session.value(port("n1.gain")) == 4.0, "the value that the group sets"
-    session.set(port("n0.gain"), 0.5)
-    session.rename_control("glow", "shine")
-    session.rename_end("inputs.image", "plate")
+    session.apply(SetValue(port("n0.gain"), 0.5))
+    session.apply(RenameControl("glow", "shine"))
+    session.apply(RenameEnd("inputs.image", "plate"))
     session.leave()
     assert session.value(Port(id, "shine")) == 4.0
     assert session.graph.controls["glow"].target == Port(id, "shine")
     assert links(session)["look.plate"] == "inputs.beauty"
     session.enter(id)
-    session.remove_end("inputs.plate")
+    session.apply(RemoveEnd("inputs.plate"))
     session.leave()
     assert "look.plate" not in links(session)
     session.undo()
@@ -164,7 +203,7 @@ def test_values_of_a_group_and_of_what_is_inside(session):
 
 def test_groups_from_files(session, tmp_path):
     session.select(["n0", "n1"])
-    id = session.make_group("look")
+    id = session.apply(MakeGroup("look"))
     session.save_as(tmp_path / "doc.json")
     session.save_group(id, tmp_path / "look.json")
     assert session.borrowed == "" and not session.dirty
@@ -173,24 +212,24 @@ def test_groups_from_files(session, tmp_path):
     session.enter(id)
     assert session.borrowed == "look.json" and session.crumbs == (("doc", ()), ("look", ("look",)))
     with pytest.raises(GraphError, match=r"'look' comes from the file 'look.json': make it local first"):
-        session.set(port("n0.gain"), 2.0)
+        session.apply(SetValue(port("n0.gain"), 2.0))
     session.leave()
     session.save()
     assert load(tmp_path / "doc.json", TOYS) == session.root
-    session.make_local(id)
+    session.apply(MakeGroupLocal(id))
     session.enter(id)
-    session.set(port("n0.gain"), 2.0)
+    session.apply(SetValue(port("n0.gain"), 2.0))
     assert session.borrowed == ""
     session.leave()
     with pytest.raises(GraphError, match="part of this document already"):
-        session.make_local(id)
+        session.apply(MakeGroupLocal(id))
 
 
 def test_entering_and_leaving(session):
     session.select("n1")
-    session.enter(session.make_group("a"))
+    session.enter(session.apply(MakeGroup("a")))
     session.select("n1")
-    session.enter(session.make_group("b"))
+    session.enter(session.apply(MakeGroup("b")))
     assert session.place == ("a", "b") and session.crumbs == (("untitled", ()), ("a", ("a",)), ("b", ("a", "b")))
     session.leave(2)
     assert (session.place, session.active) == ((), "a")
@@ -204,30 +243,30 @@ def test_entering_and_leaving(session):
 
 
 def test_ends(session):
-    assert session.add_input("depth", "Field", at=(1.0, 2.0)) == "inputs.depth"
+    assert session.apply(AddInput("depth", "Field", at=(1.0, 2.0))) == "inputs.depth"
     assert session.graph.inputs["depth"] == Input(Kind.FIELD) and session.position("inputs.depth") == (1.0, 2.0)
-    assert session.add_output("flow", Kind.VECTOR, 2) == "outputs.flow"
-    session.set_input("depth", file="a.exr", layer="Z", doc="Far.")
-    session.set_input("depth", default=1.0)
+    assert session.apply(AddOutput("flow", Kind.VECTOR, 2)) == "outputs.flow"
+    session.apply(SetInput("depth", file="a.exr", layer="Z", doc="Far."))
+    session.apply(SetInput("depth", default=1.0))
     assert session.graph.inputs["depth"] == Input(Kind.FIELD, 1, "a.exr", "Z", 1.0, "Far.")
-    session.set_input("depth", default=None, missing="hold")
+    session.apply(SetInput("depth", default=None, missing="hold"))
     assert session.graph.inputs["depth"] == Input(Kind.FIELD, 1, "a.exr", "Z", None, "Far.", "hold")
     for default in ((1.0, 2.0), "far", True, float("inf")):
         with pytest.raises(GraphError, match="default"):
-            session.set_input("depth", default=default)
-    session.set_output("image", layer="rgba", view="none")
+            session.apply(SetInput("depth", default=default))
+    session.apply(SetOutput("image", layer="rgba", view="none"))
     assert (session.graph.outputs["image"].layer, session.graph.outputs["image"].view) == ("rgba", "none")
-    session.set_size((64, 48))
+    session.apply(SetCanvasSize((64, 48)))
     assert session.root.settings.size == (64, 48)
-    session.remove_end("inputs.beauty")
+    session.apply(RemoveEnd("inputs.beauty"))
     assert "n0.image" not in links(session)
     with pytest.raises(GraphError, match=r"no 'inputs\.beauty'"):
-        session.rename_end("inputs.beauty", "x")
+        session.apply(RenameEnd("inputs.beauty", "x"))
 
 
 def test_bound_files_follow_their_input(session):
     session.bind("beauty", "shot.exr")
-    session.rename_end("inputs.beauty", "plate")
+    session.apply(RenameEnd("inputs.beauty", "plate"))
     assert session.bindings == {"plate": "shot.exr"}
     session.undo()
     assert session.bindings == {"beauty": "shot.exr"}
@@ -239,51 +278,51 @@ def test_bound_files_follow_their_input(session):
 
 def test_frames_hold_what_lies_inside(session):
     session.select(["n0", "n1"])
-    frame = session.add_frame("Grade")
+    frame = session.apply(AddFrame("Grade"))
     assert session.frame_members(frame) == {"n0", "n1"} and session.active == f"frames.{frame}"
     session.select(f"frames.{frame}")
-    outer = session.add_frame()
+    outer = session.apply(AddFrame())
     assert session.frame_members(outer) == {"n0", "n1", f"frames.{frame}"}
-    session.move([*session.frame_members(outer), f"frames.{outer}"], 1000.0, 0.0)
+    session.apply(MoveElements([*session.frame_members(outer), f"frames.{outer}"], 1000.0, 0.0))
     assert session.frame_members(frame) == {"n0", "n1"}
-    session.resize_frame(frame, 0.0, 0.0, 1.0, 1.0)
+    session.apply(ResizeFrame(frame, 0.0, 0.0, 1.0, 1.0))
     assert session.graph.ui["frames"][frame]["w"] == 40.0, "never too small to be grabbed"
-    session.set_frame(frame, color=(0.5, 0.25, 0.125))
+    session.apply(EditFrame(frame, color=(0.5, 0.25, 0.125)))
     assert session.graph.ui["frames"][frame]["title"] == "Grade"
     assert session.graph.ui["frames"][frame]["color"] == (0.5, 0.25, 0.125)
     with pytest.raises(GraphError, match="there is no frame 'x'"):
-        session.set_frame("x")
+        session.apply(EditFrame("x"))
     with pytest.raises(GraphError, match="there is no comment 'x'"):
-        session.resize_comment("x", 0.0, 0.0, 9.0)
+        session.apply(ResizeComment("x", 0.0, 0.0, 9.0))
     with pytest.raises(GraphError, match="there is no dot 'x'"):
-        session.remove_dot("x")
+        session.apply(RemoveDot("x"))
 
 
 def test_cut_copy_and_paste(session):
     session.select(["n1"])
-    text = session.cut_out()
+    text = session.apply(CutSelection())
     assert links(session) == {"n0.image": "inputs.beauty", "n2.image": "n0.out", "outputs.image": "n2.out"}
-    assert session.paste(text) == ("n1",)
+    assert session.apply(PasteText(text)) == ("n1",)
     assert session.selection == {"n1"} and "n1.image" not in links(session)
-    assert session.duplicate() == ("n3",)
+    assert session.apply(DuplicateSelection()) == ("n3",)
     other = Session(TOYS)
-    assert other.paste(text, (50.0, 60.0)) == ("n1",) and other.position("n1") == (50.0, 60.0)
+    assert other.apply(PasteText(text, (50.0, 60.0))) == ("n1",) and other.position("n1") == (50.0, 60.0)
     assert isinstance(other.root, Graph)
 
 
 def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(session):
     before, steps = session.root, session.history.position
     session.select(["n1"])
-    session.extract("drag")
+    session.apply(ExtractSelection("drag"))
     assert links(session)["n2.image"] == "n0.out"
-    session.move(["n1"], 0.0, 300.0, "drag")
+    session.apply(MoveElements(["n1"], 0.0, 300.0, "drag"))
     session.abandon("drag")
     assert session.root == before and session.history.steps == session.history.steps[:steps]
     assert not session.history.can_redo
     session.abandon("drag")
     assert session.root == before, "there is nothing unfinished"
-    session.extract("drag")
-    session.splice(["n1"], port("outputs.image"), (900.0, 0.0), merge="drag")
+    session.apply(ExtractSelection("drag"))
+    session.apply(SpliceChain(["n1"], port("outputs.image"), (900.0, 0.0), merge="drag"))
     session.seal()
     assert session.history.position == steps + 1
     assert links(session)["n1.image"] == "n2.out" and links(session)["outputs.image"] == "n1.out"
@@ -293,9 +332,9 @@ def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(se
 
 def test_presets_that_fit_a_port():
     session, files = Session(), presets.paths()
-    session.add_node("gaussian_blur")
+    session.apply(AddNode("gaussian_blur"))
     some = session.fitting_files(files, port("gaussian_blur.out"), True)
     assert some and set(some) <= set(files)
-    id = session.add_group(some[0], link=port("gaussian_blur.out"))
+    id = session.apply(AddGroupFile(some[0], link=port("gaussian_blur.out")))
     assert [str(end.node) for end, start in session.graph.links.items() if str(start) == "gaussian_blur.out"] == [id]
     assert session.fitting_files(files, port("gaussian_blur.image"), False) == files, "all of them make a picture"

@@ -5,6 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from halation.authoring.commands import (
+    AddNode,
+    Disconnect,
+    MakeGroup,
+    MoveElements,
+    PlaceElement,
+    RenameNode,
+    ReplaceGraph,
+    SetValue,
+    ToggleMute,
+)
 from halation.authoring.session import Session
 from halation.authoring.state import history
 from halation.errors import GraphError
@@ -15,7 +26,7 @@ from toy_nodes import TOYS, chain
 @pytest.fixture
 def session() -> Session:
     made = Session(TOYS)
-    made.edit("Start", chain(3))
+    made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
 
@@ -25,15 +36,15 @@ def test_a_new_document_has_one_output_and_no_past():
     assert session.history.steps == () and not session.dirty and session.name == "untitled"
     assert "blur" not in session.types and "gaussian_blur" in session.types
     with pytest.raises(GraphError, match="no node type 'gausian_blur'; did you mean 'gaussian_blur'"):
-        session.add_node("gausian_blur")
+        session.apply(AddNode("gausian_blur"))
 
 
 def test_undo_and_redo_bring_selection_and_place_back(session):
     session.select(["n0", "n1"])
-    group = session.make_group("look")
+    group = session.apply(MakeGroup("look"))
     session.enter(group)
     session.select("n1")
-    session.mute()
+    session.apply(ToggleMute())
     session.leave()
     assert session.active == group
     session.undo()
@@ -47,11 +58,11 @@ def test_undo_and_redo_bring_selection_and_place_back(session):
 
 def test_a_drag_is_one_step(session):
     for _ in range(5):
-        session.move(["n0"], 3.0, 1.0, merge="drag")
+        session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
     assert session.history.steps == ("Start", "Move n0")
     assert session.position("n0") == (275.0, 5.0)
     session.seal()
-    session.move(["n0"], 3.0, 1.0, merge="drag")
+    session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
     assert len(session.history.steps) == 3
     session.undo()
     session.undo()
@@ -59,24 +70,24 @@ def test_a_drag_is_one_step(session):
 
 
 def test_a_drag_that_comes_back_is_no_step(session):
-    session.move(["n0"], 3.0, 1.0, merge="drag")
-    session.move(["n0"], -3.0, -1.0, merge="drag")
+    session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
+    session.apply(MoveElements(["n0"], -3.0, -1.0, merge="drag"))
     session.seal()
     assert session.history.steps == ("Start",)
 
 
 def test_what_changes_nothing_is_no_step(session):
-    session.set(Port("n0", "gain"), 1.5)
-    session.place_at("n0", *session.position("n0"))
+    session.apply(SetValue(Port("n0", "gain"), 1.5))
+    session.apply(PlaceElement("n0", *session.position("n0")))
     assert session.history.steps == ("Start",)
 
 
 def test_undone_steps_are_forgotten_by_the_next_one(session):
-    session.set(Port("n0", "gain"), 2.0)
-    session.set(Port("n0", "gain"), 3.0)
+    session.apply(SetValue(Port("n0", "gain"), 2.0))
+    session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.undo()
     assert (session.history.undo_label, session.history.redo_label) == ("Set n0.gain", "Set n0.gain")
-    session.rename("n1", "middle")
+    session.apply(RenameNode("n1", "middle"))
     assert session.history.steps == ("Start", "Set n0.gain", "Rename n1 to middle")
     assert not session.history.can_redo
     session.go_to(0)
@@ -88,7 +99,7 @@ def test_undone_steps_are_forgotten_by_the_next_one(session):
 def test_only_so_many_steps_are_kept(session, monkeypatch):
     monkeypatch.setattr(history, "MOST", 5)
     for gain in range(9):
-        session.set(Port("n0", "gain"), float(gain))
+        session.apply(SetValue(Port("n0", "gain"), float(gain)))
     assert len(session.history.steps) == session.history.position == 5
     session.go_to(0)
     assert session.value(Port("n0", "gain")) == 3.0
@@ -97,20 +108,26 @@ def test_only_so_many_steps_are_kept(session, monkeypatch):
 def test_dirty_is_about_the_document_not_about_steps(session, tmp_path):
     session.save_as(tmp_path / "a.json")
     assert not session.dirty
-    session.set(Port("n0", "gain"), 3.0)
+    session.apply(SetValue(Port("n0", "gain"), 3.0))
     assert session.dirty
-    session.set(Port("n0", "gain"), 1.5)
+    session.apply(SetValue(Port("n0", "gain"), 1.5))
     assert not session.dirty, "it is as it was saved"
     session.undo()
     assert session.dirty
-    session.select_all()
+    session.select(session.elements, "extend")
     session.go_to(0)
     assert session.dirty
 
 
 def test_the_revision_grows_with_every_change(session):
     seen = [session.revision]
-    acts = (lambda: session.select("n0"), session.mute, session.undo, session.redo, lambda: session.view_node("n1"))
+    acts = (
+        lambda: session.select("n0"),
+        lambda: session.apply(ToggleMute()),
+        session.undo,
+        session.redo,
+        lambda: session.view_node("n1"),
+    )
     for act in acts:
         act()
         seen.append(session.revision)
@@ -121,15 +138,15 @@ def test_the_revision_grows_with_every_change(session):
 
 def test_problems_by_element(session):
     assert session.problems == {}
-    session.disconnect(Port("n1", "image"))
+    session.apply(Disconnect(Port("n1", "image")))
     assert set(session.problems) == {"n1"} and "n1.image" in session.problems["n1"][0].sentence
-    session.disconnect(Port("outputs", "image"))
+    session.apply(Disconnect(Port("outputs", "image")))
     assert set(session.problems) == {"n1", "outputs.image"}
     known = session.problems
-    session.move(["n0"], 5.0, 5.0)
+    session.apply(MoveElements(["n0"], 5.0, 5.0))
     assert session.problems is known, "the layout changes no problem"
     session.select("n1")
-    session.enter(session.make_group())
+    session.enter(session.apply(MakeGroup()))
     assert set(session.problems) == {"n1"}, "the output of the group is linked inside"
     assert {problem.node for problem in session.all_problems} == {"group/n1", "outputs"}
 
@@ -140,7 +157,7 @@ def test_layout_is_saved_with_the_first_edit_so_that_nothing_jumps():
     session._restart(graph, None, graph)
     assert not session.dirty
     before = dict(session.positions)
-    session.disconnect(Port("n1", "image"))
+    session.apply(Disconnect(Port("n1", "image")))
     assert session.positions == before
     session.undo()
     assert session.root == graph and isinstance(session.root, Graph)

@@ -3,6 +3,16 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import (
+    AddNode,
+    AssignViewer,
+    DeleteSelection,
+    Disconnect,
+    MakeGroup,
+    RenameEnd,
+    RenameNode,
+    ReplaceGraph,
+)
 from halation.authoring.session import Session
 from halation.compiler import Request, compile_graph
 from halation.errors import GraphError
@@ -20,16 +30,16 @@ def port(text: str) -> Port:
 @pytest.fixture
 def session() -> Session:
     made = Session(TOYS)
-    made.edit("Start", chain(3))
+    made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
 
 def test_without_a_choice_a_shows_the_output_and_b_nothing(session):
     assert session.viewed() == port("outputs.image") and session.viewed("B") is None
-    session.disconnect(port("outputs.image"))
+    session.apply(Disconnect(port("outputs.image")))
     assert session.viewed() == port("n2.out"), "the last node"
-    session.select_all()
-    session.delete()
+    session.select(session.elements, "extend")
+    session.apply(DeleteSelection())
     assert session.viewed() is None
 
 
@@ -37,7 +47,7 @@ def test_a_port_that_vanishes_comes_back(session):
     session.view(port("n1.out"))
     session.view(port("n0.out"), "B")
     session.select(["n0", "n1"])
-    session.delete()
+    session.apply(DeleteSelection())
     assert (session.viewed(), session.viewed("B")) == (port("outputs.image"), None)
     session.undo()
     assert (session.viewed(), session.viewed("B")) == (port("n1.out"), port("n0.out"))
@@ -48,8 +58,8 @@ def test_a_port_that_vanishes_comes_back(session):
 def test_the_view_follows_a_new_name_and_back(session):
     session.view(port("n1.out"))
     session.view(port("inputs.beauty"), "B")
-    session.rename("n1", "middle")
-    session.rename_end("inputs.beauty", "plate")
+    session.apply(RenameNode("n1", "middle"))
+    session.apply(RenameEnd("inputs.beauty", "plate"))
     assert (session.viewed(), session.viewed("B")) == (port("middle.out"), port("inputs.plate"))
     session.undo()
     session.undo()
@@ -57,7 +67,7 @@ def test_the_view_follows_a_new_name_and_back(session):
 
 
 def test_viewing_a_node_again_shows_its_next_output(session):
-    id = session.add_node("split", link=port("n2.out"))
+    id = session.apply(AddNode("split", link=port("n2.out")))
     seen = []
     for _ in range(3):
         session.view_node(id)
@@ -72,7 +82,7 @@ def test_viewing_a_node_again_shows_its_next_output(session):
 def test_every_group_has_a_view_of_its_own(session):
     session.view(port("n0.out"))
     session.select("n1")
-    session.enter(session.make_group("look"))
+    session.enter(session.apply(MakeGroup("look")))
     assert session.viewed() == port("outputs.out")
     session.view_node("n1")
     session.leave()
@@ -89,7 +99,7 @@ def test_what_the_compiler_is_asked_for():
     graph = Graph(inputs={"image": Input()}, outputs={"image": Output()})
     for id, before in (("a", "inputs.image"), ("b", "a.out"), ("c", "b.out")):
         graph = graph.add(id, catalogue()["gaussian_blur"]()).connect(port(before), Port(id, "image"))
-    session.edit("Start", graph.connect(port("c.out"), port("outputs.image")))
+    session.apply(ReplaceGraph("Start", graph.connect(port("c.out"), port("outputs.image"))))
 
     def key(target: Port | None) -> str:
         assert target is not None
@@ -99,9 +109,9 @@ def test_what_the_compiler_is_asked_for():
 
     wanted = {name: key(port(name)) for name in ("inputs.image", "a.out", "b.out", "c.out")}
     session.select(["a", "b"])
-    session.enter(session.make_group("outer"))
+    session.enter(session.apply(MakeGroup("outer")))
     session.select(["b"])
-    session.enter(session.make_group("inner"))
+    session.enter(session.apply(MakeGroup("inner")))
     for name, same in (("inputs.image", "a.out"), ("b.out", "b.out"), ("outputs.out", "b.out")):
         session.view(port(name))
         assert key(session.viewed_in_root()) == wanted[same]
@@ -113,26 +123,26 @@ def test_what_the_compiler_is_asked_for():
 
 def test_viewer_keys(session):
     session.select("n1")
-    session.assign_viewer(1)
-    session.assign_viewer(2, port("inputs.beauty"))
+    session.apply(AssignViewer(1))
+    session.apply(AssignViewer(2, port("inputs.beauty")))
     assert session.viewers == {1: port("n1.out"), 2: port("inputs.beauty")}
     assert session.graph.ui["viewers"] == {"1": "n1.out", "2": "inputs.beauty"}
     session.recall_viewer(1, "B")
     assert session.viewed("B") == port("n1.out") and session.viewed() == port("inputs.beauty")
-    session.rename("n1", "middle")
+    session.apply(RenameNode("n1", "middle"))
     assert session.viewers[1] == port("middle.out")
     session.select("middle")
-    session.delete()
+    session.apply(DeleteSelection())
     assert set(session.viewers) == {2}
     for number, said in ((3, "nothing is assigned"), (1, "nothing is assigned")):
         with pytest.raises(GraphError, match=said):
             session.recall_viewer(number)
     with pytest.raises(GraphError, match="choose 1 to 9"):
-        session.assign_viewer(0)
+        session.apply(AssignViewer(0))
 
 
 def test_another_document_forgets_what_was_viewed(session):
     session.view(port("n0.out"))
     session.new()
-    session.edit("Start", chain(3))
+    session.apply(ReplaceGraph("Start", chain(3)))
     assert session.viewed() == port("outputs.image")

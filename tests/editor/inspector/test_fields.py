@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import ReplaceGraph
 from halation.authoring.session import Session
 from halation.editor.fields.fields import Edit, Fields
 from halation.editor.inspector.applying import apply, as_text, common, from_text, reset
@@ -17,7 +18,9 @@ GAIN = Gain.values["gain"]
 @pytest.fixture
 def session() -> Session:
     made = Session(TOYS)
-    made.edit("Start", Graph({"one": Gain(gain=1.0), "two": Gain(gain=3.0), "blend": Blend(), "soft": Soften()}))
+    made.apply(
+        ReplaceGraph("Start", Graph({"one": Gain(gain=1.0), "two": Gain(gain=3.0), "blend": Blend(), "soft": Soften()}))
+    )
     return made
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from halation.authoring.commands import SetFrameRange
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.render_queue.queue import RenderQueue
 from halation.authoring.session import Session
@@ -33,7 +34,7 @@ def desk(tmp_path: Path) -> Desk:
     """A preset of 24 frames, whose renders go to a folder of their own."""
     made = Desk(PreferenceStore(tmp_path / "state"))
     made.session.open(PRESET)
-    made.session.set_frames(1, 24)
+    made.session.apply(SetFrameRange(1, 24))
     (tmp_path / "out").mkdir()
     made.store.note_folder("export", tmp_path / "out" / "x.exr")
     return made
@@ -51,7 +52,7 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     form.extend("this frame")
     assert form.frames() == (7,)
     assert aim_text(form.targets()) == "Writes soft_bloom.exr"
-    desk.session.set_frames(None)
+    desk.session.apply(SetFrameRange(None))
     assert list(RenderForm(desk).extents()) == ["this frame", "some frames"]
     assert RenderForm(desk).extent_of() == "this frame"
 

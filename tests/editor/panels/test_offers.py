@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
+from halation.authoring.commands import Disconnect, MakeGroup
 from halation.authoring.log import Log
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.session import Session
@@ -134,7 +135,7 @@ def test_columns_are_as_equal_as_order_allows() -> None:
 def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
     assert list_problems(contexts.problems) == ()
-    desk.session.disconnect(Port("outputs", "image"))
+    desk.session.apply(Disconnect(Port("outputs", "image")))
     desk.preview.faults = {"inputs.beauty": "there is no such file", "outputs.image": "the same in other words"}
     desk.watcher.fault = desk.recovery.fault = "the disk is full"
     desk.faults["Viewer"] = "Traceback"
@@ -149,7 +150,7 @@ def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Context
 def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
     desk.session.select(["bloom"])
-    group = desk.session.make_group()
+    group = desk.session.apply(MakeGroup())
     show_element(contexts.problems, f"{group}/bloom")
     assert desk.session.place == (group,)
     assert desk.session.selection == {"bloom"}

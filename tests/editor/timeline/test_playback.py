@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from halation.authoring.commands import SetFrameRange
 from halation.authoring.session import Session
 from halation.editor.timeline.playback import Course, Playback
 from halation.editor.timeline.state import TimelineState
@@ -98,12 +99,12 @@ def test_somebody_else_seeks_or_changes_the_range():
 
 def test_the_part_that_is_played_and_what_is_seen():
     session, state = Session(TOYS), TimelineState()
-    session.set_frames(1, 100)
+    session.apply(SetFrameRange(1, 100))
     state.set_part(session, 20, 140)
     assert state.span(session) == (20, 100)
-    session.set_frames(1, 10)
+    session.apply(SetFrameRange(1, 10))
     assert state.span(session) == (1, 10), "a part outside is none"
-    session.set_frames(1, 100)
+    session.apply(SetFrameRange(1, 100))
     state.set_part(session, 1, 100)
     assert state.part is None
     assert state.visible_range(session) == (0.5, 100.5)

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from halation.authoring.commands import AddNode, Disconnect, ReplaceGraph, SetValue
 from halation.authoring.session import Session
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.handles import handles
@@ -70,18 +71,18 @@ def test_a_click_pans_nothing(editor: Any) -> None:
 
 def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
     session = editor.session
-    ramp = session.add_node("ramp")
+    ramp = session.apply(AddNode("ramp"))
     assert [str(one.port) for one in handles(session)] == ["ramp.start", "ramp.end"]
     assert drag(editor, (2.0, 201.0), (202.0, 101.0)) == "handle"
     assert session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
     assert editor.interface.dragging
     assert session.history.position == 2  # the node, and one step for the whole drag
-    session.select_none()
+    session.select(())
     assert handles(session) == ()
 
 
 def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
-    ramp = editor.session.add_node("ramp")
+    ramp = editor.session.apply(AddNode("ramp"))
     drag(editor, (0.0, 200.0), (200.0, 100.0))
     drag(editor, (200.0, 100.0), (400.0, 100.0))
     editor.session.undo()
@@ -93,7 +94,7 @@ def lit(editor: Any, *lights: Light) -> Port:
     session = editor.session
     graph = session.graph.add("lamps", Lit(lights=numbers_of(lights)) if lights else Lit())
     graph = graph.add("camera", catalogue()["camera"]()).connect(Port("camera", "camera"), Port("lamps", "camera"))
-    session.edit("Add", graph)
+    session.apply(ReplaceGraph("Add", graph))
     session.select(["lamps"])
     return Port("lamps", "lights")
 
@@ -116,12 +117,12 @@ def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
 
 def test_without_a_camera_lights_have_no_handles(editor: Any) -> None:
     lit(editor)
-    editor.session.disconnect(Port("lamps", "camera"))
+    editor.session.apply(Disconnect(Port("lamps", "camera")))
     assert lamps(editor) == ()
     editor.session.undo()
     editor.preview.camera = lambda port: None
     assert lamps(editor) == ()
-    editor.session.select_none()
+    editor.session.select(())
     assert lamps(editor) == ()
 
 
@@ -131,7 +132,7 @@ def test_of_many_lights_the_selected_one_has_a_handle(editor: Any) -> None:
     editor.lights["lamps.lights"] = MOST
     assert [lamp.index for lamp in lamps(editor)] == [MOST]
     lit_port = Port("lamps", "lights")
-    editor.session.set(lit_port, ())
+    editor.session.apply(SetValue(lit_port, ()))
     assert lamps(editor) == ()
 
 
@@ -183,6 +184,6 @@ def test_ctrl_measures_rectangles_and_sets_markers(editor: Any) -> None:
 
 
 def test_the_eyedropper_comes_first(editor: Any) -> None:
-    editor.session.add_node("ramp")
+    editor.session.apply(AddNode("ramp"))
     editor.viewer.picking = "constant.color"
     assert aim(editor, SIGHT, (0.0, 200.0)).what == "pick"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from halation.authoring.commands import AddNode, Connect, Disconnect, ReplaceGraph, SetValue
 from halation.authoring.session import Session
 from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
 from halation.editor.viewer.geometry import Sight
@@ -67,7 +68,7 @@ def editor() -> Any:
         log=SimpleNamespace(attempt=lambda act: act(), add=said.append),
     )
     graph = made.session.graph.add("lamps", Lit()).add("camera", catalogue()["camera"]())
-    made.session.edit("Add", graph.connect(Port("camera", "camera"), Port("lamps", "camera")))
+    made.session.apply(ReplaceGraph("Add", graph.connect(Port("camera", "camera"), Port("lamps", "camera"))))
     made.session.select(["lamps"])
     return made
 
@@ -86,8 +87,8 @@ def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **ke
 def see(editor: Any, socket: str, *values: float) -> None:
     """Let the node know depths or places, the same everywhere."""
     session = editor.session
-    source = session.add_node("scene") if "scene" not in session.graph.nodes else "scene"
-    session.connect(Port(source, socket), Port("lamps", socket))
+    source = session.apply(AddNode("scene")) if "scene" not in session.graph.nodes else "scene"
+    session.apply(Connect(Port(source, socket), Port("lamps", socket)))
     session.select(["lamps"])
     known = {"depth": "depth", "place": "position"}
     editor.probe = SimpleNamespace(pixel=lambda texture, x, y: values)
@@ -207,8 +208,8 @@ def test_lights_are_added_and_removed(editor: Any) -> None:
         remove(editor)
         assert len(of(editor)) == left
     assert not can_remove(editor) and len(editor.session.history.steps) == 11
-    editor.session.set(PORT, numbers_of((POINT,) * MAX_LIGHTS))
+    editor.session.apply(SetValue(PORT, numbers_of((POINT,) * MAX_LIGHTS)))
     add(editor, (0.5, 0.5))
     assert len(of(editor)) == MAX_LIGHTS and editor.said
-    editor.session.disconnect(Port("lamps", "camera"))
+    editor.session.apply(Disconnect(Port("lamps", "camera")))
     assert not can_add(editor) and can_remove(editor) and suns(editor) == ()

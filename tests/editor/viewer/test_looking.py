@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from halation.authoring.commands import AddInput, AddNode
 from halation.authoring.session import Session
 from halation.color.transforms import to_display
 from halation.editor.viewer.geometry import Sight
@@ -49,7 +50,7 @@ def test_ranges_are_measured_unless_they_are_given() -> None:
 
 def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
     session = Session()
-    noise = session.add_node("noise")
+    noise = session.apply(AddNode("noise"))
     graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
     graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
     assert requested_view(graph, Port("outputs", "image")) == "none"
@@ -97,15 +98,15 @@ def editor() -> Any:
         session=Session(),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
-        store=SimpleNamespace(now=SimpleNamespace(proxy_while_dragging=True)),
+        store=SimpleNamespace(current=SimpleNamespace(proxy_while_dragging=True)),
     )
 
 
 def test_only_what_is_seen_is_wanted(editor: Any) -> None:
     session = editor.session
     assert list_wanted_ports(editor) == ({}, 1.0)
-    noise, light = session.add_node("noise"), "beauty"
-    session.add_input(light, "Image")
+    noise, light = session.apply(AddNode("noise")), "beauty"
+    session.apply(AddInput(light, "Image"))
     session.view(Port(noise, "value"))
     session.view(Port("inputs", light), "B")
     assert list_wanted_ports(editor) == ({"A": Port(noise, "value")}, 1.0)
@@ -126,9 +127,9 @@ def test_slow_pictures_are_wanted_coarser_while_dragging(editor: Any) -> None:
 
 def test_everything_can_be_chosen_by_its_name(editor: Any) -> None:
     session = editor.session
-    session.add_input("beauty", "Image")
-    noise = session.add_node("noise")
-    session.add_node("exposure", link=Port(noise, "out"))
+    session.apply(AddInput("beauty", "Image"))
+    noise = session.apply(AddNode("noise"))
+    session.apply(AddNode("exposure", link=Port(noise, "out")))
     groups = {heading: [title(session.graph, port) for port in ports] for heading, ports in ports_of(session.graph)}
     assert groups["Nodes"] == ["exposure", "noise.out", "noise.value", "noise.vector"]
     assert groups["Inputs"] == ["beauty"]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from halation.authoring.commands import AddNode, Connect, ReplaceGraph, SetValue
 from halation.authoring.session import Session
 from halation.editor.viewer.axes import axes
 from halation.editor.viewer.geometry import Sight
@@ -36,7 +37,7 @@ def editor() -> Any:
         preview=SimpleNamespace(camera=lambda port: None, shown=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act()),
     )
-    made.session.add_node("scene")
+    made.session.apply(AddNode("scene"))
     made.viewer.scene = orbited(made.session)
     return made
 
@@ -121,7 +122,7 @@ def test_nearer_and_farther_within_limits() -> None:
 def test_a_framed_scene_fills_the_picture(editor: Any, name: Any, azimuth: float, elevation: float) -> None:
     session = editor.session
     for value, plain in (("scene", name), ("azimuth", azimuth), ("elevation", elevation)):
-        session.set(Port("scene", value), plain)
+        session.apply(SetValue(Port("scene", value), plain))
     steps = len(session.history.steps)
     frame_scene(editor)
     assert len(session.history.steps) == steps + 1
@@ -143,18 +144,18 @@ def test_a_floor_alone_is_framed_too() -> None:
 def test_the_scene_that_is_seen_or_selected(editor: Any) -> None:
     session = editor.session
     assert orbited(session) == "scene"
-    other = session.add_node("scene")
-    mixed = session.add_node("mix_images")
+    other = session.apply(AddNode("scene"))
+    mixed = session.apply(AddNode("mix_images"))
     for source, socket in zip(("scene", other), session.graph.nodes[mixed].inputs, strict=False):
-        session.connect(Port(source, "color"), Port(mixed, socket))
+        session.apply(Connect(Port(source, "color"), Port(mixed, socket)))
     session.view(Port(mixed, "out"))
-    session.select_none()
+    session.select(())
     assert orbited(session) == ""
     session.select([other])
     assert orbited(session) == other
     session.view(Port("scene", "albedo"))
     assert orbited(session) == "scene"
-    noise = session.add_node("noise")
+    noise = session.apply(AddNode("noise"))
     session.view(Port(noise, "value"))
     session.select(["scene"])
     assert orbited(session) == ""
@@ -162,7 +163,7 @@ def test_the_scene_that_is_seen_or_selected(editor: Any) -> None:
 
 def test_a_camera_that_something_else_moves_is_left_alone(editor: Any) -> None:
     session = editor.session
-    session.edit("Add", session.graph.add_input("angle", Input(Kind.NUMBER, 1, default=3.0)))
+    session.apply(ReplaceGraph("Add", session.graph.add_input("angle", Input(Kind.NUMBER, 1, default=3.0))))
     assert orbited(session) == "scene"
     graph = session.graph
     linked = replace(graph, links={**graph.links, Port("scene", "azimuth"): Port(INPUTS, "angle")})

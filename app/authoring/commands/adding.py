@@ -1,0 +1,210 @@
+"""Commands that add nodes: from a type, from files, into a link."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from halation.nodes import Node
+
+from ...custom_nodes.plugins import preset_paths
+from ...document import load
+from ...errors import GraphError
+from ...graph import Group, Item, Port, did_you_mean
+from ...render_layers.render import is_render
+from ...watch.sequence_files import representative_file
+from ..edits import coding, elements, naming, paths, room, routes, wiring
+from ..edits.elements import Place, Sizes
+from ..edits.ends import without_samples
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+DROP_STEP = 100.0
+"""Canvas units between the nodes of files that are dropped together: about the height of a node with three sockets."""
+
+ABOVE = 380.0
+"""Canvas units between a render's node and a matte node above it: the height of a `read_render` with all outputs."""
+
+
+@dataclass(frozen=True)
+class AddNode(EditCommand[str]):
+    """Add a node of a type at canvas position `at`, and select it; gives its id.
+
+    With `link`, a source if `output` else a target, it is linked by the first socket that fits.
+    """
+
+    type_id: str
+    at: Place = (0.0, 0.0)
+    link: Port | None = None
+    output: bool = True
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        item = make_node(document, self.type_id)
+        return add_item(document, type_stem(self.type_id), item, self.at, self.link, self.output)
+
+
+@dataclass(frozen=True)
+class AddGroupFile(EditCommand[str]):
+    """Add a graph file as a node; gives its id."""
+
+    path: str | Path
+    at: Place = (0.0, 0.0)
+    link: Port | None = None
+    output: bool = True
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        item = load_group(document, self.path)
+        return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
+
+
+@dataclass(frozen=True)
+class AddCodeFile(EditCommand[str]):
+    """Add a node whose code is in a file; gives its id."""
+
+    path: str | Path
+    at: Place = (0.0, 0.0)
+    link: Port | None = None
+    output: bool = True
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        item = coding.make_file_node(document.relative(self.path), document.root.folder)
+        return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
+
+
+@dataclass(frozen=True)
+class AddMatte(EditCommand[str]):
+    """Add a node that cuts out of the render that node `id` reads, above it; gives its id."""
+
+    id: str
+    kind: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        path = document.graph.value(Port(self.id, "path"))
+        node = make_node(document, "cryptomatte").with_values(path=path, **({"layer": self.kind} if self.kind else {}))
+        x, y = document.positions[self.id]
+        return add_item(document, "cryptomatte", node, (x, y - ABOVE), None, True)
+
+
+@dataclass(frozen=True)
+class InsertNode(EditCommand[str]):
+    """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type; gives its id.
+
+    What depends on it is pushed aside where it is in the way.
+    """
+
+    node: str
+    target: Port
+    at: Place | None = None
+    sizes: Sizes | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        if self.node in document.graph.nodes:
+            graph, id = document.graph, self.node
+            if self.at is not None:
+                graph = elements.with_places(graph, {id: self.at})
+        else:
+            id = document.graph.fresh_id(type_stem(self.node))
+            graph = document.graph.add(id, make_node(document, self.node))
+            graph = elements.with_places(graph, {id: self.at or self._find_middle(document)})
+        graph = room.make_space(wiring.insert_node(graph, id, self.target), (id,), self.target, self.sizes)
+        return Edited(f"Insert {id}", id, graph, (id,))
+
+    def _find_middle(self, document: OpenDocument) -> Place:
+        """Halfway between the ends of the link."""
+        source = document.graph.links.get(self.target, self.target)
+        ends = [elements.element_of(end) for end in (self.target, source)]
+        spots = [document.positions.get(key, (0.0, 0.0)) for key in ends]
+        return (spots[0][0] + spots[1][0]) / 2.0, (spots[0][1] + spots[1][1]) / 2.0
+
+
+@dataclass(frozen=True)
+class SpliceChain(EditCommand[None]):
+    """Put a chain of nodes, moved by a distance with the dots in it, into the link that feeds `target`.
+
+    What depends on it is pushed aside where it is in the way.
+    """
+
+    ids: Collection[str]
+    target: Port
+    by: Place = (0.0, 0.0)
+    sizes: Sizes | None = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        ids = {id for id in self.ids if id in graph.nodes}
+        places = {key: document.positions[key] for key in (*ids, *routes.inner_dots(graph, ids))}
+        moved = {key: (x + self.by[0], y + self.by[1]) for key, (x, y) in places.items()}
+        graph = wiring.splice_chain(elements.with_places(graph, moved), ids, self.target)
+        graph = room.make_space(graph, ids, self.target, self.sizes)
+        return Edited(f"Insert {naming.describe_elements(ids)}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class DropFiles(EditCommand[tuple[str, ...]]):
+    """Add files as nodes: graphs become groups, shaders code, renders `read_render`, others `read_image`; gives ids."""
+
+    paths: Sequence[str | Path]
+    at: Place = (0.0, 0.0)
+
+    def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
+        graph, ids = document.graph, list[str]()
+        if not self.paths:
+            return Edited("Drop files", ())
+        for number, path in enumerate(self.paths):
+            id = graph.fresh_id(naming.node_stem(path))
+            spot = (self.at[0], self.at[1] + number * DROP_STEP)
+            graph = elements.with_places(graph.add(id, _make_file_item(document, path)), {id: spot})
+            ids.append(id)
+        label = naming.node_stem(self.paths[0]) if len(ids) == 1 else f"{len(ids)} files"
+        return Edited(f"Drop {label}", tuple(ids), graph, ids)
+
+
+def make_node(document: OpenDocument, type_id: str) -> Node:
+    """A new node of a type. Raises GraphError for an unknown type."""
+    if type_id == coding.CODE:
+        return coding.make_starter_node()
+    if type_id not in document.types:
+        raise GraphError(f"there is no node type '{type_id}'{did_you_mean(type_id, document.types)}")
+    return document.types[type_id]()
+
+
+def type_stem(type_id: str) -> str:
+    """What a new node of a type is called."""
+    return "code" if type_id == coding.CODE else type_id
+
+
+def add_item(document: OpenDocument, stem: str, item: Item, at: Place, link: Port | None, output: bool) -> Edited[str]:
+    """A node added under a free id like `stem`, linked with `link` if that is given, and selected."""
+    id = document.graph.fresh_id(stem)
+    graph = elements.with_places(document.graph.add(id, item), {id: at})
+    if link is not None:
+        graph = wiring.link_node(graph, id, link, output)
+    return Edited(f"Add {id}", id, graph, (id,))
+
+
+def load_group(document: OpenDocument, path: str | Path) -> Group:
+    """A graph file as a group. Raises DocumentError, and GraphError if it contains this document.
+
+    Presets become part of the document, without their sample pictures: the document must not depend on where Halation
+    is installed.
+    """
+    body = load(path, document.types)
+    own_path = document.path.resolve() if document.path else None
+    if own_path in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
+        raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
+    if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
+        return Group(paths.rebased(without_samples(body), document.root.folder))
+    return Group(body, document.relative(path))
+
+
+def _make_file_item(document: OpenDocument, path: str | Path) -> Item:
+    suffix = Path(path).suffix.lower()
+    if suffix == ".json":
+        return load_group(document, path)
+    if suffix in coding.ENDINGS:
+        return coding.make_file_node(document.relative(path), document.root.folder)
+    reads_render = "read_render" in document.types and is_render(representative_file(Path(path)))
+    node = make_node(document, "read_render" if reads_render else "read_image")
+    return node.with_values(path=document.relative(path))

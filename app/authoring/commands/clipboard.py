@@ -1,0 +1,52 @@
+"""Commands that cut, paste and duplicate parts of a graph as JSON, which fits into any graph and any text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..edits import clipboard, deleting, naming
+from ..edits.elements import Place
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited, require_selection
+
+
+@dataclass(frozen=True)
+class CutSelection(EditCommand[str]):
+    """Remove the selection; gives it as text."""
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        text = document.copy()
+        graph = deleting.delete_elements(document.graph, document.selection)
+        return Edited(f"Cut {naming.describe_elements(document.selection)}", text, graph, ())
+
+
+@dataclass(frozen=True)
+class PasteText(EditCommand[tuple[str, ...]]):
+    """Add what was copied, or the content of a whole graph file; gives the keys, which are selected.
+
+    The upper left corner comes to `at`, else near where it was. With `keep_links`, links from what is not part of the
+    text stay where that exists.
+    """
+
+    text: str
+    at: Place | None = None
+    keep_links: bool = False
+
+    def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
+        part = clipboard.read_part(self.text, document.root.folder, document.types)
+        graph, keys = clipboard.paste_part(document.graph, part, document.positions, self.at, self.keep_links)
+        return Edited(f"Paste {naming.describe_elements(keys)}", keys, graph, keys)
+
+
+@dataclass(frozen=True)
+class DuplicateSelection(EditCommand[tuple[str, ...]]):
+    """Add the selection once more, fed by the same; gives the keys, which are selected."""
+
+    offset: Place = (24.0, 24.0)
+
+    def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
+        part = clipboard.cut_part(document.graph, require_selection(document, "duplicate"))
+        graph, keys = clipboard.paste_part(
+            document.graph, part, document.positions, keep_links=True, offset=self.offset
+        )
+        return Edited(f"Duplicate {naming.describe_elements(document.selection)}", keys, graph, keys)

@@ -1,0 +1,70 @@
+"""Commands for nodes that are made of code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from msgspec import structs
+
+from ...errors import GraphError
+from ..edits import coding, folding, paths
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class SetCode(EditCommand[None]):
+    """Give a node another text; links and values stay where their names do. Text that says no node is kept too.
+
+    Texts with the same `merge` in a row make one step, as if only the last one had been written: what one of them made
+    of links and values does not matter for the next.
+    """
+
+    id: str
+    text: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        before = document.history.snapshot_before(self.merge)
+        root = document.root if before is None or before.place != document.place else before.root
+        graph = folding.body_at(root, document.place)
+        code = coding.read_node_code(graph.nodes.get(self.id), graph.folder)
+        if code is None:
+            raise GraphError(f"node '{self.id}' is not made of code")
+        label = f"Edit code of {self.id}"
+        if not code.file:
+            edited = coding.set_code(graph, self.id, structs.replace(code, text=self.text))
+            return Edited(label, None, edited, merge=self.merge)
+        document.check_editable()
+        file = paths.full(code.file, graph.folder)
+        return Edited(label, None, root=coding.set_file_code(root, file, self.text), merge=self.merge)
+
+
+@dataclass(frozen=True)
+class EmbedCode(EditCommand[None]):
+    """Let the code of a node be part of the document; the file stays as it is."""
+
+    id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        code = document.code_in_file(self.id)
+        graph = coding.set_code(document.graph, self.id, structs.replace(code, file=""))
+        return Edited(f"Move code of {self.id} into the graph", None, graph)
+
+
+@dataclass(frozen=True)
+class LinkCodeFile(EditCommand[None]):
+    """Let the code of a node come from a file, which holds the same text."""
+
+    id: str
+    path: str | Path
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        code = document.code(self.id)
+        if code is None:
+            raise GraphError(f"node '{self.id}' is not made of code")
+        document.check_editable()
+        name = paths.relative(self.path, document.graph.folder)
+        graph = coding.set_code(document.graph, self.id, structs.replace(code, file=name))
+        return Edited(f"Move code of {self.id} to {Path(self.path).name}", None, graph)

@@ -1,0 +1,75 @@
+"""What a command is: one thing that a user can do to a document, as a frozen value.
+
+There is one way to change a document: `session.apply(command)`. A command knows what the user asked for, such as
+`Connect(source, target)`, not how the document is stored. Its `apply` reads the open document and returns an `Edited`:
+the new graph, the label of the step in the history, what is selected afterwards. It changes nothing itself, so it
+needs no window, can be tested on random graphs, and cannot leave a document half changed: an invalid command raises
+HalationError before anything happens.
+
+The session turns an `Edited` into a step of the history. During a drag the editor applies one command per frame; they
+carry the same `merge` token, and the history joins them into one step that goes back to where the drag began.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+from ...errors import GraphError
+from ...graph import Graph, Port
+from ..edits.folding import Moves
+from ..state.open_document import OpenDocument
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Edited(Generic[T]):
+    """What a command makes of a document, and the `outcome` that its caller needs, such as the id of a new node.
+
+    `graph` takes the place of the graph that the user sees; `root`, if given, that of the whole document. `select` are
+    the elements selected afterwards, by default those that are left. Steps with the same `merge` token become one.
+    """
+
+    label: str
+    outcome: T
+    graph: Graph | None = None
+    select: Iterable[str] | None = None
+    merge: str = ""
+    root: Graph | None = None
+    moves: Moves | None = None
+    """Ends and controls that got another name, which matters to the graph around a group."""
+    renamed: tuple[str, str] | None = None
+    """The old and the new name of an element: what the viewer shows and the files bound to inputs follow it."""
+    view: Port | None = None
+    """The port that the viewer shows afterwards."""
+
+
+class EditCommand(ABC, Generic[T]):
+    """One thing that a user can do to a document. `T` is what the caller gets back."""
+
+    @abstractmethod
+    def apply(self, document: OpenDocument) -> Edited[T]:
+        """What the document is to become. Raises HalationError with one sentence if the command makes no sense."""
+
+
+def require_selection(document: OpenDocument, verb: str) -> frozenset[str]:
+    """The selected elements. Raises GraphError if there are none."""
+    if not document.selection:
+        raise GraphError(f"nothing is selected: select what to {verb}")
+    return document.selection
+
+
+def require_nodes(document: OpenDocument, verb: str) -> tuple[str, ...]:
+    """Ids of the selected nodes, in the order of the graph. Raises GraphError if there are none."""
+    ids = tuple(id for id in document.graph.nodes if id in document.selection)
+    if not ids:
+        raise GraphError(f"no node is selected: select what to {verb}")
+    return ids
+
+
+def count_links(targets: Collection[Port]) -> str:
+    """Some links for the label of a step: `1 link`, `3 links`."""
+    return f"{len(set(targets))} {'link' if len(set(targets)) == 1 else 'links'}"

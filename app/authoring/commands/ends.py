@@ -1,0 +1,147 @@
+"""Commands for inputs and outputs of the graph: where pictures come in and leave."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+from halation.nodes import Kind, Missing, Plain
+
+from ...errors import GraphError
+from ...graph import INPUTS, Graph, Input, Output, Port, problems
+from ..edits.elements import Place, clean_text, end_port, with_places
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+class Keep:
+    """Says that something stays as it is, where None means something else."""
+
+
+KEEP = Keep()
+
+
+@dataclass(frozen=True)
+class AddInput(EditCommand[str]):
+    """Add an input of the graph, selected; gives its key. `width` counts the channels of a Vector."""
+
+    name: str
+    kind: Kind | str = Kind.IMAGE
+    width: int = 4
+    at: Place | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        graph = document.graph.add_input(self.name, Input(Kind(self.kind), self.width))
+        return _add_end(graph, f"inputs.{self.name}", self.at)
+
+
+@dataclass(frozen=True)
+class AddOutput(EditCommand[str]):
+    """Add an output of the graph, selected; gives its key. `width` counts the channels of a Vector."""
+
+    name: str
+    kind: Kind | str = Kind.IMAGE
+    width: int = 3
+    at: Place | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        graph = document.graph.add_output(self.name, Output(Kind(self.kind), self.width))
+        return _add_end(graph, f"outputs.{self.name}", self.at)
+
+
+@dataclass(frozen=True)
+class RemoveEnd(EditCommand[None]):
+    """Remove an input or output and its links."""
+
+    key: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        end, graph = _find_end(document.graph, self.key), document.graph
+        remove = graph.remove_input if end.node == INPUTS else graph.remove_output
+        return Edited(f"Remove {self.key}", None, remove(end.socket))
+
+
+@dataclass(frozen=True)
+class RenameEnd(EditCommand[None]):
+    """Give an input or output another name; links and files bound to it follow."""
+
+    key: str
+    new: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        end, graph = _find_end(document.graph, self.key), document.graph
+        rename = graph.rename_input if end.node == INPUTS else graph.rename_output
+        graph, new_end = rename(end.socket, self.new), Port(end.node, self.new)
+        selection = [str(new_end) if key == self.key else key for key in document.ordered_selection]
+        label = f"Rename {self.key} to {self.new}"
+        return Edited(label, None, graph, selection, moves={end: new_end}, renamed=(self.key, str(new_end)))
+
+
+@dataclass(frozen=True)
+class SetInput(EditCommand[None]):
+    """Change an input; what is not given stays. A default of None means that there is none."""
+
+    name: str
+    file: str | None = None
+    layer: str | None = None
+    default: Plain | Keep | None = KEEP
+    doc: str | None = None
+    missing: Missing | None = None
+    color_space: str | None = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        if self.name not in graph.inputs:
+            raise GraphError(f"the graph has no input '{self.name}'")
+        facts = _given_texts(
+            file=self.file, layer=self.layer, doc=self.doc, missing=self.missing, color_space=self.color_space
+        )
+        if not isinstance(self.default, Keep):
+            facts["default"] = self.default
+        changed = replace(graph.inputs[self.name], **facts)
+        graph = replace(graph, inputs={**graph.inputs, self.name: changed})
+        _check_default(graph, self.name)
+        return Edited(f"Set inputs.{self.name}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class SetOutput(EditCommand[None]):
+    """Change how an output is saved and shown; what is not given stays."""
+
+    name: str
+    layer: str | None = None
+    view: str | None = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        if self.name not in graph.outputs:
+            raise GraphError(f"the graph has no output '{self.name}'")
+        changed = replace(graph.outputs[self.name], **_given_texts(layer=self.layer, view=self.view))
+        graph = replace(graph, outputs={**graph.outputs, self.name: changed})
+        return Edited(f"Set outputs.{self.name}", None, graph, merge=self.merge)
+
+
+def _add_end(graph: Graph, key: str, at: Place | None) -> Edited[str]:
+    return Edited(f"Add {key}", key, with_places(graph, {key: at}) if at else graph, (key,))
+
+
+def _find_end(graph: Graph, key: str) -> Port:
+    end = end_port(key)
+    if end is None or end.socket not in (graph.inputs if end.node == INPUTS else graph.outputs):
+        raise GraphError(f"the graph has no '{key}'")
+    return end
+
+
+def _given_texts(**facts: str | None) -> dict[str, Any]:
+    return {name: clean_text(text) for name, text in facts.items() if text is not None}
+
+
+def _check_default(graph: Graph, name: str) -> None:
+    """Raise GraphError if an input cannot have the default that it has."""
+    for problem in problems(Graph(inputs={name: graph.inputs[name]}), {}):
+        if problem.node == INPUTS:
+            raise GraphError(problem.sentence)
+    if isinstance(graph.inputs[name].default, str | bool):
+        raise GraphError(f"input '{name}': the default is a number, or one per channel")

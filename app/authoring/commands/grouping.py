@@ -1,0 +1,65 @@
+"""Commands for groups: make one, dissolve one, take over or link the file of one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ...errors import GraphError
+from ...graph import Graph, Group
+from ..edits import folding, grouping, naming, paths, ungrouping
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class MakeGroup(EditCommand[str]):
+    """Turn the selection into a group; gives its id. Raises GraphError if it would feed itself."""
+
+    name: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        graph, id = grouping.make_group(document.graph, document.selection, self.name)
+        return Edited(f"Group {naming.describe_elements(document.selection)}", id, graph, (id,))
+
+
+@dataclass(frozen=True)
+class Ungroup(EditCommand[None]):
+    """Put what is in a group in its place."""
+
+    id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph, keys = ungrouping.ungroup(document.graph, self.id)
+        return Edited(f"Ungroup {self.id}", None, graph, keys)
+
+
+@dataclass(frozen=True)
+class MakeGroupLocal(EditCommand[None]):
+    """Make the body of a group that comes from a file part of this document."""
+
+    id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        group = folding.find_group(document.graph, self.id)
+        if not group.path:
+            raise GraphError(f"group '{self.id}' is part of this document already")
+        local = Group(paths.rebased(group.body(), document.graph.folder))
+        return Edited(f"Make {self.id} local", None, _with_group(document.graph, self.id, local))
+
+
+@dataclass(frozen=True)
+class LinkGroup(EditCommand[None]):
+    """Let a group come from a file, which holds `body`."""
+
+    id: str
+    path: Path
+    body: Graph
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        linked = Group(self.body, document.relative(self.path))
+        return Edited(f"Link {self.id} to {self.path.name}", None, _with_group(document.graph, self.id, linked))
+
+
+def _with_group(graph: Graph, id: str, group: Group) -> Graph:
+    return replace(graph, nodes={**graph.nodes, id: group})

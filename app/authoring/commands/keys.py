@@ -1,0 +1,167 @@
+"""Commands for keys and expressions: values that change over time.
+
+Ports are those of the graph that the user sees. A value of a group's body may be animated as a control outside of the
+group; then it cannot be animated inside too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from halation.nodes import Plain
+
+from ...errors import GraphError
+from ...graph import Animation, Expression, Graph, Key, Keys, Port
+from ..edits.elements import clean_text
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class SetKey(EditCommand[None]):
+    """Set a key at the current frame, with the current value unless another one is given."""
+
+    port: Port
+    value: object = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        check_not_animated_outside(document, self.port)
+        before = document.animation(self.port)
+        if isinstance(before, Expression):
+            raise GraphError(f"{self.port} follows an expression: bake it into keys, or remove it first")
+        keys = before or Keys()
+        if self.value is not None:
+            keys = keys.set(document.frame, _to_plain(self.value))
+        elif keys.keys:
+            keys = keys.insert(document.frame)
+        else:
+            keys = keys.set(document.frame, document.value_now(self.port))
+        return Edited(f"Key {self.port}", None, document.graph.animate(self.port, keys), merge=self.merge)
+
+
+@dataclass(frozen=True)
+class RemoveKey(EditCommand[None]):
+    """Remove the key at the current frame. After the last one the value stays as it is."""
+
+    port: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        keys = document.animation(self.port)
+        if not isinstance(keys, Keys) or keys.key(document.frame) is None:
+            raise GraphError(f"{self.port} has no key at frame {document.frame}")
+        graph = _animate(document, document.graph, self.port, keys.remove(document.frame))
+        return Edited(f"Remove a key of {self.port}", None, graph)
+
+
+@dataclass(frozen=True)
+class ToggleKey(EditCommand[None]):
+    """Set or remove the key at the current frame."""
+
+    port: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        command = SetKey(self.port) if document.key_at(self.port) is None else RemoveKey(self.port)
+        return command.apply(document)
+
+
+@dataclass(frozen=True)
+class AnimateValue(EditCommand[None]):
+    """Let a value change over time; without an animation it stays as it is at the current frame."""
+
+    port: Port
+    animation: Animation | None
+    label: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return AnimateValues({self.port: self.animation}, self.label, self.merge).apply(document)
+
+
+@dataclass(frozen=True)
+class AnimateValues(EditCommand[None]):
+    """The same for several values, as one step."""
+
+    animations: Mapping[Port, Animation | None]
+    label: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        for port, animation in self.animations.items():
+            graph = _animate(document, graph, port, animation)
+        return Edited(self.label, None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class SetExpression(EditCommand[None]):
+    """Let a value follow an expression; a `=` in front does not count. Without text it stays as it is now."""
+
+    port: Port
+    text: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        check_not_animated_outside(document, self.port)
+        text = clean_text(self.text).strip().removeprefix("=").strip()
+        if text and (fault := document.expression_fault(self.port, text)):
+            raise GraphError(fault)
+        graph = _animate(document, document.graph, self.port, Expression(text) if text else None)
+        return Edited(f"Expression of {self.port}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class BakeKeys(EditCommand[None]):
+    """Turn what a value is at each of these frames, by default of the whole range, into keys."""
+
+    port: Port
+    frames: Iterable[int] | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        check_not_animated_outside(document, self.port)
+        first, last = document.frames
+        frames = tuple(range(first, last + 1) if self.frames is None else self.frames)
+        if not frames:
+            raise GraphError(f"{self.port}: there are no frames to bake")
+        values = {frame: document.value_then(self.port, frame) for frame in frames}
+        keys = (
+            Key(frame, plain, "constant" if isinstance(plain, bool) else "linear") for frame, plain in values.items()
+        )
+        return Edited(f"Bake {self.port}", None, document.graph.animate(self.port, Keys(tuple(keys))))
+
+
+def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
+    """The keys of a value with one at the current frame; None if it has none. Raises GraphError for an expression."""
+    check_not_animated_outside(document, port)
+    before = document.animation(port)
+    if isinstance(before, Expression):
+        raise GraphError(f"{port} follows an expression: edit it, or remove it first")
+    return before and before.set(document.frame, _to_plain(value))
+
+
+def check_not_animated_outside(document: OpenDocument, port: Port) -> None:
+    """Raise GraphError for a value that is animated as a control of the group around it."""
+    if outer := document.animated_outside(port):
+        where = "/".join(outer[0]) or "the graph outside"
+        raise GraphError(f"{port} is animated as '{outer[1]}' in {where}: change it there")
+
+
+def _animate(document: OpenDocument, graph: Graph, port: Port, animation: Animation | None) -> Graph:
+    """The graph with a value animated; without an animation the value stays as it is at the current frame, if any."""
+    if animation is not None and not (isinstance(animation, Keys) and not animation.keys):
+        return graph.animate(port, animation)
+    if port not in graph.animation:
+        return graph
+    try:
+        return graph.set(port, document.value_now(port))
+    except GraphError:
+        return graph.animate(port, None)
+
+
+def _to_plain(value: object) -> Plain:
+    if isinstance(value, list | tuple):
+        return tuple(float(part) for part in value)
+    if isinstance(value, bool | int | float | str):
+        return value
+    raise GraphError(f"{value!r} cannot be a key")

@@ -1,0 +1,68 @@
+"""Commands that move, line up and arrange elements; no pixel of a picture changes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ..edits import align, arranging, elements, naming
+from ..edits.elements import Sizes
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class MoveElements(EditCommand[None]):
+    """Move elements by a distance."""
+
+    keys: Iterable[str]
+    dx: float
+    dy: float
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        places = {key: document.position(key) for key in self.keys}
+        moved = {key: (x + self.dx, y + self.dy) for key, (x, y) in places.items()}
+        graph = elements.with_places(document.graph, moved)
+        return Edited(f"Move {naming.describe_elements(places)}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class PlaceElement(EditCommand[None]):
+    """Put an element somewhere."""
+
+    key: str
+    x: float
+    y: float
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        document.position(self.key)
+        graph = elements.with_places(document.graph, {self.key: (self.x, self.y)})
+        return Edited(f"Move {self.key}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class AlignSelection(EditCommand[None]):
+    """Line up the selection: `left`, `right`, `top`, `bottom`, `center x`, `center y`, or `distribute x` or `y`."""
+
+    side: str
+    sizes: Sizes | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        chosen = [key for key in document.elements if key in document.selection]
+        places = align.align_elements(document.graph, chosen, self.side, document.positions, self.sizes)
+        return Edited(f"Align {self.side}", None, elements.with_places(document.graph, places))
+
+
+@dataclass(frozen=True)
+class ArrangeElements(EditCommand[None]):
+    """Lay out the selection, or everything if less than two nodes are selected."""
+
+    sizes: Sizes | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        chosen = {key for key in document.selection if elements.can_be_linked(key, graph)}
+        graph = arranging.arrange(graph, chosen if len(chosen) > 1 else None, document.positions, self.sizes)
+        return Edited("Arrange", None, graph)

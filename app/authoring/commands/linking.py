@@ -1,0 +1,161 @@
+"""Commands for links and for the nodes that are there: connect, cut, delete, replace, rename, mute, collapse."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+from ...errors import GraphError
+from ...graph import Port
+from ..edits import deleting, elements, naming, wiring
+from ..state.open_document import OpenDocument
+from .adding import make_node
+from .command import EditCommand, Edited, count_links, require_nodes, require_selection
+
+
+@dataclass(frozen=True)
+class Connect(EditCommand[None]):
+    """Link `source` to `target`, in place of what fed it."""
+
+    source: Port
+    target: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph.connect(self.source, self.target)
+        return Edited(f"Link {self.source} to {self.target}", None, graph)
+
+
+@dataclass(frozen=True)
+class Disconnect(EditCommand[None]):
+    """Remove the link to `target`."""
+
+    target: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(f"Unlink {self.target}", None, document.graph.disconnect(self.target))
+
+
+@dataclass(frozen=True)
+class DisconnectAll(EditCommand[None]):
+    """Remove every link of a node or end."""
+
+    key: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        targets = [
+            end
+            for end, start in document.graph.links.items()
+            if self.key in (elements.element_of(end), elements.element_of(start))
+        ]
+        return Edited(f"Unlink {self.key}", None, wiring.cut_links(document.graph, targets))
+
+
+@dataclass(frozen=True)
+class CutLinks(EditCommand[None]):
+    """Remove the links to `targets`."""
+
+    targets: Collection[Port]
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(f"Cut {count_links(self.targets)}", None, wiring.cut_links(document.graph, self.targets))
+
+
+@dataclass(frozen=True)
+class MoveLink(EditCommand[None]):
+    """Let the link to one socket feed another instead."""
+
+    old_target: Port
+    new_target: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = wiring.move_link(document.graph, self.old_target, self.new_target)
+        return Edited(f"Move link to {self.new_target}", None, graph)
+
+
+@dataclass(frozen=True)
+class SwapInputs(EditCommand[None]):
+    """Exchange what feeds the first two inputs of a node."""
+
+    id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(f"Swap inputs of {self.id}", None, wiring.swap_inputs(document.graph, self.id))
+
+
+@dataclass(frozen=True)
+class DeleteSelection(EditCommand[None]):
+    """Remove what is selected; with `heal`, what fed a node then feeds what it fed, where that fits."""
+
+    heal: bool = True
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        doomed = require_selection(document, "delete")
+        graph = deleting.delete_elements(document.graph, doomed, self.heal)
+        return Edited(f"Delete {naming.describe_elements(doomed)}", None, graph, ())
+
+
+@dataclass(frozen=True)
+class ExtractSelection(EditCommand[None]):
+    """Take the selected nodes out of their chains; the links there are healed."""
+
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = wiring.extract_nodes(document.graph, require_nodes(document, "extract"))
+        return Edited(f"Extract {naming.describe_elements(document.selection)}", None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class ReplaceNode(EditCommand[None]):
+    """Give a node another type; links and values stay where they fit."""
+
+    id: str
+    type_id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        kind = type(make_node(document, self.type_id))
+        graph = wiring.replace_node(document.graph, self.id, kind)
+        return Edited(f"Replace {self.id} by {self.type_id}", None, graph)
+
+
+@dataclass(frozen=True)
+class RenameNode(EditCommand[None]):
+    """Give a node another id; everything that names it follows."""
+
+    id: str
+    new: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph.rename(self.id, self.new)
+        selection = [self.new if key == self.id else key for key in document.ordered_selection]
+        label = f"Rename {self.id} to {self.new}"
+        return Edited(label, None, graph, selection, renamed=(self.id, self.new))
+
+
+@dataclass(frozen=True)
+class ToggleMute(EditCommand[None]):
+    """Mute the selected nodes; if all are muted already, let them work again."""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        ids = require_nodes(document, "mute")
+        mutes = not document.graph.muted.issuperset(ids)
+        graph = document.graph
+        for id in ids:
+            graph = graph.mute(id, mutes)
+        verb = "Mute" if mutes else "Unmute"
+        return Edited(f"{verb} {naming.describe_elements(document.selection)}", None, graph)
+
+
+@dataclass(frozen=True)
+class ToggleCollapse(EditCommand[None]):
+    """Fold the selected nodes to their title; if all are folded, unfold them."""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        chosen = [key for key in document.elements if key in document.selection and elements.can_be_linked(key, graph)]
+        if not chosen:
+            raise GraphError("no node is selected: select what to collapse")
+        collapses = not all(elements.entry(graph, key).get("collapsed") is True for key in chosen)
+        facts: dict[str, Mapping[str, object]] = {key: {"collapsed": True if collapses else None} for key in chosen}
+        label = f"{'Collapse' if collapses else 'Expand'} {naming.describe_elements(chosen)}"
+        return Edited(label, None, elements.with_entries(graph, facts))

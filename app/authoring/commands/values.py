@@ -1,0 +1,133 @@
+"""Commands for values of nodes, and for controls: values that the graph shows under names of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from ...errors import GraphError
+from ...graph import Control, Port, signature
+from ...graph.names import fresh_name
+from ..edits.elements import clean_text
+from ..edits.values import fit_color, reset_value
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+from .keys import add_key
+
+
+@dataclass(frozen=True)
+class SetValue(EditCommand[None]):
+    """Set a value, or, where it has keys, a key at the current frame."""
+
+    port: Port
+    value: object
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        fitted = fit_color(document.graph, self.port, self.value)
+        if keys := add_key(document, self.port, fitted):
+            graph = document.graph.animate(self.port, keys)
+            return Edited(f"Key {self.port}", None, graph, merge=self.merge)
+        plain = clean_text(fitted) if isinstance(fitted, str) else fitted
+        return Edited(f"Set {self.port}", None, document.graph.set(self.port, plain), merge=self.merge)
+
+
+@dataclass(frozen=True)
+class SetValues(EditCommand[None]):
+    """Set several values, as `SetValue` does, as one step."""
+
+    values: Mapping[Port, object]
+    label: str
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        for port, value in self.values.items():
+            fitted = fit_color(document.graph, port, value)
+            keys = add_key(document, port, fitted)
+            graph = graph.animate(port, keys) if keys else graph.set(port, fitted)
+        return Edited(self.label, None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class ResetValue(EditCommand[None]):
+    """Set a value back to its default, for all frames."""
+
+    port: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(f"Reset {self.port}", None, reset_value(document.graph, self.port))
+
+
+@dataclass(frozen=True)
+class ResetNode(EditCommand[None]):
+    """Set all values of a node back to their defaults."""
+
+    id: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        for name in signature(graph.node(self.id)).values:
+            graph = reset_value(graph, Port(self.id, name))
+        return Edited(f"Reset {self.id}", None, graph)
+
+
+@dataclass(frozen=True)
+class ExposeValue(EditCommand[str]):
+    """Show a value as a control of the graph; gives its name, by default that of the value."""
+
+    port: Port
+    name: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        if control := document.control_of(self.port):
+            raise GraphError(f"'{self.port}' is the control '{control}' already")
+        graph = document.graph
+        name = self.name or fresh_name(self.port.socket, {*graph.controls, *graph.inputs})
+        values = signature(graph.node(self.port.node)).values
+        label = values[self.port.socket].label if self.port.socket in values else ""
+        return Edited(f"Expose {self.port}", name, graph.add_control(name, Control(self.port, label)))
+
+
+@dataclass(frozen=True)
+class HideControl(EditCommand[None]):
+    """Remove a control; the value stays as it is."""
+
+    name: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(f"Hide {self.name}", None, document.graph.remove_control(self.name))
+
+
+@dataclass(frozen=True)
+class RenameControl(EditCommand[None]):
+    """Give a control another name."""
+
+    old: str
+    new: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        moves = {Port("controls", self.old): Port("controls", self.new)}
+        graph = document.graph.rename_control(self.old, self.new)
+        return Edited(f"Rename {self.old} to {self.new}", None, graph, moves=moves)
+
+
+@dataclass(frozen=True)
+class DescribeControl(EditCommand[None]):
+    """Set the label or the tooltip of a control; None leaves it."""
+
+    name: str
+    label: str | None = None
+    doc: str | None = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        if self.name not in graph.controls:
+            raise GraphError(f"the graph has no control '{self.name}'")
+        texts = (("label", self.label), ("doc", self.doc))
+        changed = replace(
+            graph.controls[self.name], **{key: clean_text(text) for key, text in texts if text is not None}
+        )
+        graph = replace(graph, controls={**graph.controls, self.name: changed})
+        return Edited(f"Describe {self.name}", None, graph, merge=self.merge)

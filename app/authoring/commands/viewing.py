@@ -1,0 +1,53 @@
+"""The command that lets a number key show a port, and the one for edits that panels compute themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from ...errors import GraphError
+from ...graph import Graph, Port
+from ..edits.elements import end_port, with_sections
+from ..edits.ports import VIEWER_NUMBERS, is_viewable, output_ports
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class AssignViewer(EditCommand[None]):
+    """Let a key from 1 to 9 show a port: the one given, else the active element's, else the one shown on side A."""
+
+    number: int
+    port: Port | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        if self.number not in VIEWER_NUMBERS:
+            raise GraphError(f"there is no viewer {self.number}: choose 1 to 9")
+        graph = document.graph
+        port = self.port or _find_active_port(document) or document.viewed()
+        if port is None or not is_viewable(graph, port):
+            raise GraphError("there is nothing to show: select a node first")
+        section = graph.ui.get("viewers")
+        viewers = {**(section if isinstance(section, Mapping) else {}), str(self.number): str(port)}
+        return Edited(f"Assign viewer {self.number}", None, with_sections(graph, {"viewers": viewers}), view=port)
+
+
+@dataclass(frozen=True)
+class ReplaceGraph(EditCommand[None]):
+    """Put a graph that a panel computed in the place of the one that the user sees, as one step."""
+
+    label: str
+    graph: Graph
+    select: Iterable[str] | None = None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(self.label, None, self.graph, self.select, self.merge)
+
+
+def _find_active_port(document: OpenDocument) -> Port | None:
+    if end := end_port(document.active):
+        return end
+    graph = document.graph
+    ports = output_ports(graph, document.active) if document.active in graph.nodes else []
+    return ports[0] if ports else None

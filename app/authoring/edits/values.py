@@ -1,0 +1,35 @@
+"""Values of nodes and of groups: defaults, and colors as a value takes them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from halation.nodes import Node
+
+from ...graph import ANIMATED, Graph, Group, Port, signature
+
+
+def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
+    """The values of a node that can change over time."""
+    if id not in graph.nodes:
+        return ()
+    return tuple(Port(id, name) for name, value in signature(graph.nodes[id]).values.items() if value.type in ANIMATED)
+
+
+def fit_color(graph: Graph, port: Port, value: object) -> object:
+    """A color as the value takes it: pickers give four numbers, one too many for a color without alpha."""
+    item = graph.nodes.get(port.node)
+    declaration = None if item is None else signature(item).values.get(port.socket)
+    is_rgb = declaration is not None and declaration.type == "color" and declaration.length == 3
+    return value[:3] if is_rgb and isinstance(value, tuple) and len(value) == 4 else value
+
+
+def reset_value(graph: Graph, port: Port) -> Graph:
+    """A graph where a value is at its default, at all frames."""
+    graph.value(port)
+    graph = graph.animate(port, None) if port in graph.animation else graph
+    item = graph.node(port.node)
+    if isinstance(item, Group):
+        values = {name: plain for name, plain in item.values.items() if name != port.socket}
+        return replace(graph, nodes={**graph.nodes, port.node: replace(item, values=values)})
+    return graph.put(port, item.values[port.socket].default) if isinstance(item, Node) else graph
