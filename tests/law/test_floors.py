@@ -30,6 +30,7 @@ FLOORS = (
 
 ROOMS = {
     "compiler": ("ir", "lowering", "fusion", "codegen", "scheduling", "tiling"),
+    "authoring": ("edits", "state", "commands", "recovery", "session", "background", "render_queue", "preview"),
     "renderer": ("opengl", "execution", "viewing", "jobs", "provenance"),
 }
 """Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""
