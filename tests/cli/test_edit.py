@@ -31,6 +31,7 @@ count = [0]
 def broken_later(self, *_):
     count[0] += 1
     if count[0] == 5:
+        from halation.authoring.commands import SetValue
         from halation.graph import Port
         self.editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
     if count[0] > 8:
@@ -189,6 +190,7 @@ EDITED = """
 import sys
 from time import monotonic
 from halation.editor.window import heartbeat
+from halation.authoring.commands import SetValue
 from halation.graph import Port
 
 beat, heard = heartbeat.Heartbeat.beat, []

@@ -26,6 +26,7 @@ STOPS, AUTOSAVE = Port("tone", "exposure"), 0.5
 EDITING = """
 import sys, time
 from halation.editor.window.frame_updater import FrameUpdater
+from halation.authoring.commands import SetValue
 from halation.graph import Port
 
 update, count = FrameUpdater.update, 0

@@ -17,7 +17,7 @@ from ...document import load, loads, save
 from ...errors import GraphError, UsageError
 from ...graph import INPUTS, Graph, Output, Port
 from ...graph.keys import rounded
-from ...renderer.provenance.finding import made_by
+from ...renderer.provenance.file_finder import load_graph_of_picture
 from ...resources.atomic_write import write_text_atomically
 from ..commands.coding import LinkCodeFile
 from ..commands.command import EditCommand, Edited
@@ -179,7 +179,7 @@ class Session(OpenDocument):
 
     def open_made(self, path: str | Path) -> None:
         """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
-        root = made_by(Path(path), self.types)
+        root = load_graph_of_picture(Path(path), self.types)
         self._restart(root, None, root)
         self._title = Path(path).stem
 
