@@ -152,7 +152,8 @@ def test_a_read_only_file_is_opened_and_not_replaced(gui, look: Path) -> None:
 def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp_path: Path) -> None:
     script = (
         "import sys, time; sys.path.append(sys.argv[1])\n"
-        "from pathlib import Path\nfrom gui_driver import drive\nfrom halation.authoring.commands import SetValue\nfrom halation.graph import Port\n"
+        "from pathlib import Path\nfrom gui_driver import drive\n"
+        "from halation.authoring.commands import SetValue\nfrom halation.graph import Port\n"
         "def body(ui):\n"
         "    ui.session.apply(SetValue(Port('tone', 'exposure'), 2.5))\n"
         "    ui.until(lambda: list((Path(sys.argv[2]) / 'state' / 'recovery').glob('*.json')))\n"
