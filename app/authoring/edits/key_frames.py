@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from ...graph import Animation, Graph, Keys
-from ...graph.keys import rounded
+from ...graph.keys import round_keys
 
 
 def whole_key_frames(animation: Animation | None) -> tuple[int, ...]:
     """The whole frames nearest to the keys of a value, in order."""
     frames = animation.frames if isinstance(animation, Keys) else ()
-    return tuple(sorted({rounded(frame) for frame in frames}))
+    return tuple(sorted({round_keys(frame) for frame in frames}))
 
 
 def list_key_frames(graph: Graph, chosen: Collection[str]) -> tuple[int, ...]:

@@ -16,7 +16,7 @@ from halation.nodes import Node
 from ...document import load, loads, save
 from ...errors import GraphError, UsageError
 from ...graph import INPUTS, Graph, Output, Port
-from ...graph.keys import rounded
+from ...graph.keys import round_keys
 from ...renderer.provenance.file_finder import load_graph_of_picture
 from ...resources.atomic_write import write_text_atomically
 from ..commands.coding import LinkCodeFile
@@ -120,7 +120,7 @@ class Session(OpenDocument):
 
     def seek(self, frame: float) -> None:
         """Make a frame the current one; it may lie outside of the range."""
-        self._frame = min(max(rounded(frame), -MAX_FRAME), MAX_FRAME)
+        self._frame = min(max(round_keys(frame), -MAX_FRAME), MAX_FRAME)
 
     def view(self, port: Port, side: Side = "A") -> None:
         """Show an output of a node, or an end of the graph, on one side of the viewer."""

@@ -32,7 +32,7 @@ from ...graph import (
     Problem,
     Settings,
     animation_fault,
-    keyed_range,
+    find_key_range,
     value_at,
 )
 from ...graph.graph import declared
@@ -394,4 +394,4 @@ class OpenDocument:
         if self.measure is not None:
             with suppress(HalationError):
                 return self.measure(self.root, self.bindings)
-        return keyed_range(self.root)
+        return find_key_range(self.root)
