@@ -116,7 +116,7 @@ def _load_nodes(plugin: Plugin, folder: Path) -> dict[str, type[Node]]:
             node = find_class(importlib.import_module(module), f"{plugin.namespace}.{name}")
         except (Exception, SystemExit) as fault:
             raise ImportError(f"nodes/{menu}/{name}.py: {type(fault).__name__}: {fault}") from fault
-        node.package = plugin.requirement
+        node.required_package = plugin.requirement
         nodes[node.id] = node
     return nodes
 

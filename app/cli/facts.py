@@ -62,7 +62,7 @@ def facts_of(node: type[Node]) -> dict[str, Any]:
         "id": node.id,
         "category": node.category,
         "version": node.version,
-        **({"package": node.package} if node.package else {}),
+        **({"package": node.required_package} if node.required_package else {}),
         "doc": doc_of(node),
         "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
         "outputs": {name: _socket_facts(output.socket) for name, output in node.outputs.items()},

@@ -59,8 +59,8 @@ def _menu(nodes: Iterable[type[Node]]) -> str:
 
 def _section(node: type[Node]) -> Iterator[str]:
     yield f"### {node.id}"
-    if node.package:
-        yield _paragraph(f"From the plug-in {node.package.replace('==', ' ')}.")
+    if node.required_package:
+        yield _paragraph(f"From the plug-in {node.required_package.replace('==', ' ')}.")
     for paragraph in doc_of(node).split("\n\n"):
         yield _paragraph(paragraph)
     outputs = {name: output.socket for name, output in node.outputs.items()}

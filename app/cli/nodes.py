@@ -78,12 +78,12 @@ def _list(classes: list[type[Node]]) -> None:
         if node.category != category:
             category = node.category
             print(f"\n{category}")
-        source = f" ({node.package.replace('==', ' ')})" if node.package else ""
+        source = f" ({node.required_package.replace('==', ' ')})" if node.required_package else ""
         print(f"  {node.id:<{width}}  {doc_of(node).splitlines()[0]}{source}")
 
 
 def _page(node: type[Node]) -> None:
-    source = f", from {node.package.replace('==', ' ')}" if node.package else ""
+    source = f", from {node.required_package.replace('==', ' ')}" if node.required_package else ""
     print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{doc_of(node)}\n")
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("inputs", node.inputs), ("outputs", outputs)):

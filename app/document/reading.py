@@ -243,13 +243,13 @@ class _BodyReader(Struct):
         except _DAMAGED:
             fault = f"these are no values of version {record.version} of '{kind.id}'"
             raise DocumentError(self.file, member(at, "values"), fault) from None
-        if record.package and (record.version == kind.version or not kind.package):
+        if record.package and (record.version == kind.version or not kind.required_package):
             self.keep_package(id, record.package, kind)
         return kind(**self.read_values(f"nodes.{id}", values, kind.values, at))
 
     def keep_package(self, id: str, package: str, kind: type[Node]) -> None:
         """Note which plug-in a file asks for: it stays as it is until a newer version of the node type is saved."""
-        if package != kind.package:
+        if package != kind.required_package:
             self.extra[f"nodes.{id}"] = {**self.extra.get(f"nodes.{id}", {}), "package": package}
 
     def read_code_node(self, id: str, raw: dict[str, Any], language: Language, at: str) -> Item:

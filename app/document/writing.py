@@ -126,8 +126,8 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
     what = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
-    if item.package:
-        what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.package)
+    if item.required_package:
+        what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
     return {"type": item.id} | what | muted | ({"values": values} if values else {})
 
 

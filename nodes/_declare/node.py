@@ -37,7 +37,7 @@ class Node:
     """What people call it: the id with spaces, `soft glow (acme glow)` for one of a plug-in."""
     category: ClassVar[str] = ""
     """The folder's name, which is the menu."""
-    package: ClassVar[str] = ""
+    required_package: ClassVar[str] = ""
     """The plug-in that brings it, as pip installs it: `acme-glow==1.2.0`."""
     version: ClassVar[int] = 1
     function: ClassVar[str] = ""

@@ -76,7 +76,7 @@ def test_its_nodes_have_its_name_in_front(site: Site) -> None:
     node = catalogue()["acme_tone.dim"]
     assert (node.id, node.category, node.function) == ("acme_tone.dim", "tone", "acme_tone_dim")
     assert (node.shader, node.title) == ("acme_tone/tone/dim", "dim (acme tone)")
-    assert node.package == "acme-tone==2.1"
+    assert node.required_package == "acme-tone==2.1"
     menus = [kind.category for kind in catalogue().values()]
     assert menus == sorted(menus) and len(catalogue()) == len(menus) == len([*catalogue()])
 
@@ -194,6 +194,6 @@ def test_another_version_of_a_plugin_changes_no_file(site: Site) -> None:
     )
     forget()
     graph = document.loads(text)
-    assert catalogue()["acme_tone.dim"].package == "acme-tone==2.2"
+    assert catalogue()["acme_tone.dim"].required_package == "acme-tone==2.2"
     assert document.dumps(graph) == text
     assert not [item for item in problems(graph) if item.rule.name == "unknown-key"]
