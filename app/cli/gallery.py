@@ -124,7 +124,7 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
     from halation.nodes import catalogue
     from halation.presets import sample
 
-    from ..editor.theme.palette import DARK
+    from ..media.comparison.category_colors import category_color
     from ..media.comparison.contact_sheet import make_grouped_sheet
     from .specimen import drawable_outputs
 
@@ -133,7 +133,7 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
     for node in nodes:
         step(node.id)
         groups[node.category][node.id] = picture_of(node, renderer, sample())
-    colors = {name: DARK.category(name) for name in groups}
+    colors = {name: category_color(name) for name in groups}
     light = make_grouped_sheet(groups, _COLUMNS, _WIDTH, letters=_LETTERS, colors=colors)
     return Sheet(light, tuple(node.id for node in nodes))
 
@@ -163,8 +163,8 @@ def light_of(kind: Kind, array: Array) -> Array:
     """An output as light of the display, which a picture that stays within 0..1 is taken to be already."""
     from halation.nodes import Kind
 
-    from ..authoring.preview.data_range import are_normals, balance_range, find_data_range
     from ..media.comparison.contact_sheet import show_any_light, show_data, show_over_checker
+    from ..media.comparison.data_range import are_normals, balance_range, find_data_range
 
     if kind in (Kind.IMAGE, Kind.COLOR):
         return show_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")

@@ -232,3 +232,14 @@ def test_importing_stays_light(module: str, absent: tuple[str, ...]) -> None:
     code = f"import sys, {module}; print(*(name for name in {absent!r} if name in sys.modules))"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == ""
+
+
+@pytest.mark.parametrize("command", ["bench", "gallery", "render", "reproduce", "sweep", "test", "watch"])
+def test_commands_without_windows_know_no_editor(command: str) -> None:
+    """Neither their modules nor anything that these import, inside of functions too."""
+    reached, waiting = set[str](), [f"halation.cli.{command}"]
+    while waiting:
+        for target in (imports(waiting.pop()) & MODULES.keys()) - reached:
+            reached.add(target)
+            waiting.append(target)
+    assert not [module for module in reached if floor_of(module) in ("authoring", "editor")]

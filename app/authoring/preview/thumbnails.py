@@ -9,9 +9,9 @@ from halation.nodes import ColorSettings, Kind
 
 from ...color.management import DEFAULT_COLOR
 from ...compiler import Plan, scale_size
+from ...media.comparison.data_range import are_normals, balance_range, find_data_range
 from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
 from .color_fallback import ColorFallback
-from .data_range import are_normals, balance_range, find_data_range
 from .request import PreviewRequest, canvas_path, pixel_kind
 
 LARGEST = (160, 90)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from halation.authoring.preview import data_range as data
+from halation.media.comparison import data_range as data
 
 
 def test_ranges_ignore_stray_extremes() -> None:
