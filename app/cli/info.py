@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from ..media.layers import Layer
     from ..media.sequences import FrameSequence
-    from ..render_layers.analysis import Survey
-    from ..render_layers.camera import Solved
+    from ..render_layers.analysis import RenderAnalysis
+    from ..render_layers.camera import CameraSolution
 
 
 def info(
@@ -31,17 +31,17 @@ def info(
     """Show the parts, layers and metadata of a picture, what each layer of a render is, how its data are meant, and the
     camera."""
     from ..media.sequences import check_has_files, find_sequence
-    from ..render_layers.analysis import survey
-    from ..render_layers.report import report
+    from ..render_layers.analysis import analyze_render
+    from ..render_layers.report import format_report
 
     shot = find_sequence(str(file))
     if shot is not None:
         check_has_files(shot)
-    survey_result = survey(shot.path(shot.frames[0]) if shot else file, before)
+    survey_result = analyze_render(shot.path(shot.frames[0]) if shot else file, before)
     if as_json:
         print_json({**(_shot_facts(shot) if shot else {}), **_facts(survey_result)})
         return 0
-    head, gap, rest = "\n".join(report(survey_result)).partition("\n\n")
+    head, gap, rest = "\n".join(format_report(survey_result)).partition("\n\n")
     print(f"{_shot_lines(shot)}\n\n{head}" if shot else f"{head}{_neighbors(str(file))}", rest, sep=gap)
     return 0
 
@@ -80,7 +80,7 @@ def _shot_facts(shot: FrameSequence) -> dict[str, Any]:
     }
 
 
-def _facts(survey: Survey) -> dict[str, Any]:
+def _facts(survey: RenderAnalysis) -> dict[str, Any]:
     """Everything, for machines."""
     from ..media.color_spaces import describe_color_spaces
 
@@ -121,7 +121,7 @@ def _facts(survey: Survey) -> dict[str, Any]:
         "conventions": {
             role: {
                 "kind": rule.kind,
-                "measured": rule.measured,
+                "measured": rule.is_measured,
                 "reason": rule.reason,
                 "scale": list(rule.scale),
                 "offset": list(rule.offset),
@@ -144,10 +144,10 @@ def _layer_facts(layer: Layer) -> dict[str, Any]:
     }
 
 
-def _camera_facts(camera: Camera | None, reason: str, solved: Solved | None) -> dict[str, Any]:
+def _camera_facts(camera: Camera | None, reason: str, solved: CameraSolution | None) -> dict[str, Any]:
     if camera is None:
         return {"reason": reason}
-    from ..render_layers.report import field_of_view
+    from ..render_layers.report import measure_field_of_view
 
     facts = {
         "reason": reason,
@@ -158,7 +158,7 @@ def _camera_facts(camera: Camera | None, reason: str, solved: Solved | None) -> 
         "down": camera.down,
         "focal": camera.focal,
         "center": camera.center,
-        "field_of_view": field_of_view(camera),
+        "field_of_view": measure_field_of_view(camera),
     }
     if solved is not None:
         facts |= {"residual_px": solved.residual, "worst_px": solved.worst, "share": solved.share}

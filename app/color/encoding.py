@@ -7,13 +7,13 @@ from halation.nodes import ColorSettings
 from msgspec import Struct, field
 
 from ..errors import UsageError
-from .management import LINEAR_REC709, Managed, Space, managed, ocio
-from .primaries import chromaticities
-from .transforms import Array, check_shown, find_display, find_view, from_working, quantized, straight, to_display
+from .management import LINEAR_REC709, ColorManager, ColorSpace, get_color_manager, load_ocio
+from .primaries import find_chromaticities
+from .transforms import Array, check_view, find_display, find_view, from_working, quantize, to_display, unpremultiply
 
 SRGB = "srgb_rec709_scene"
 _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")
-_SHARED = "<USE_DISPLAY_NAME>"
+_USE_DISPLAY_NAME = "<USE_DISPLAY_NAME>"
 
 
 class Encoding(Struct, frozen=True):
@@ -27,42 +27,42 @@ class Encoding(Struct, frozen=True):
     color: ColorSettings = field(default_factory=ColorSettings)
 
     @property
-    def manager(self) -> Managed:
+    def manager(self) -> ColorManager:
         """How colors are managed."""
-        return managed(self.color)
+        return get_color_manager(self.color)
 
     @property
-    def plain(self) -> bool:
+    def is_plain(self) -> bool:
         """True for the numbers of linear Rec.709, as they are."""
-        return not self.space and self.manager.plain
+        return not self.space and self.manager.is_plain
 
-    def check(self) -> None:
+    def check_names(self) -> None:
         """Refuse what there is not. Raises UsageError; GraphError where the graph's own config is at fault."""
         if self.space and (self.view or self.display or self.look):
             raise UsageError("a picture is written through a view or into a color space: give one of them")
         if self.space:
             _ = self._target
         if self.view or self.display or self.look:
-            check_shown(self.view, self.display, self.look, self.color)
+            check_view(self.view, self.display, self.look, self.color)
 
-    def numbers(self, array: Array) -> Array:
+    def to_numbers(self, array: Array) -> Array:
         """Working-space color [h, w, c], premultiplied where it has four channels, in the space that is written."""
-        if self.plain or not self.space or array.shape[2] < 3:
+        if self.is_plain or not self.space or array.shape[2] < 3:
             return array
-        return self._changed(array, self._target)
+        return self._convert(array, self._target)
 
-    def radiance(self, array: Array) -> Array:
+    def to_radiance(self, array: Array) -> Array:
         """The same for Radiance files, which hold linear Rec.709 unless somebody says otherwise."""
-        if self.plain:
+        if self.is_plain:
             return array
-        found = self._target if self.space else self.manager.find(LINEAR_REC709)
-        return self._changed(array, found or Space(LINEAR_REC709, False))
+        target = self._target if self.space else self.manager.find(LINEAR_REC709)
+        return self._convert(array, target or ColorSpace(LINEAR_REC709, False))
 
-    def codes(self, array: Array, bits: int) -> Array:
+    def to_codes(self, array: Array, bits: int) -> Array:
         """Color [h, w, 3 or 4] as integers: through the view, or in the color space; alpha is straight."""
         depth = 8 if bits == 8 else 16
         if not self.space:
-            shown = to_display(
+            encoded = to_display(
                 array,
                 self.view,
                 bits=32 if bits == 10 else depth,
@@ -71,64 +71,68 @@ class Encoding(Struct, frozen=True):
                 color=self.color,
             )
         else:
-            shown = straight(array)
-            shown[..., :3] = from_working(shown[..., :3], self._target, self.manager)
-        if shown.dtype != np.float32:
-            return shown
+            encoded = unpremultiply(array)
+            encoded[..., :3] = from_working(encoded[..., :3], self._target, self.manager)
+        if encoded.dtype != np.float32:
+            return encoded
         if bits == 10:  # in the upper bits of 16
-            return np.rint(quantized(shown, 10) * (65535 / 1023)).astype(np.uint16)
-        return quantized(shown, depth)
+            return np.rint(quantize(encoded, 10) * (65535 / 1023)).astype(np.uint16)
+        return quantize(encoded, depth)
 
     @property
-    def header(self) -> str:
+    def header_space(self) -> str:
         """What a header calls the space of `numbers`."""
-        if self.plain:
+        if self.is_plain:
             return LINEAR_REC709
-        return self.manager.header_name(self._target) if self.space else self.manager.interop
+        return self.manager.find_header_name(self._target) if self.space else self.manager.header_name
 
     @property
-    def gamut(self) -> tuple[float, ...]:
+    def header_chromaticities(self) -> tuple[float, ...]:
         """The chromaticities of `numbers`, where they are not those that a header without any means."""
-        if self.plain or self.header == LINEAR_REC709:
+        if self.is_plain or self.header_space == LINEAR_REC709:
             return ()
-        return chromaticities(self.manager, self._target if self.space else self.manager.working)
+        return find_chromaticities(self.manager, self._target if self.space else self.manager.working)
 
     @property
-    def shown_as(self) -> str:
+    def display_space(self) -> str:
         """What a header calls the space of `codes`."""
         if self.space:
-            return self.manager.header_name(self._target)
-        if not self.display and self.manager.plain:
+            return self.manager.find_header_name(self._target)
+        if not self.display and self.manager.is_plain:
             return SRGB
         config, display = self.manager.config, find_display(self.display, self.color)
         view = find_view(self.view, display, self.color)
         name = config.getDisplayViewColorSpaceName(display, view) if view in config.getViews(display) else ""
-        found = config.getColorSpace(display if name == _SHARED else name)
-        said = str(getattr(found, "getInteropID", str)() or "") if found else ""
-        return said.removesuffix("_display") + "_scene" if said.endswith("_display") else said or SRGB
+        space = config.getColorSpace(display if name == _USE_DISPLAY_NAME else name)
+        interop_name = str(getattr(space, "getInteropID", str)() or "") if space else ""
+        return (
+            interop_name.removesuffix("_display") + "_scene"
+            if interop_name.endswith("_display")
+            else interop_name or SRGB
+        )
 
     @property
-    def _target(self) -> Space:
+    def _target(self) -> ColorSpace:
         manager = self.manager
-        found = manager.find(self.space)
-        if found is None:
-            raise UsageError(f"there is no color space '{self.space}'{manager.hint(self.space)}")
-        return found
+        space = manager.find(self.space)
+        if space is None:
+            raise UsageError(f"there is no color space '{self.space}'{manager.suggest_space(self.space)}")
+        return space
 
-    def _changed(self, array: Array, target: Space) -> Array:
+    def _convert(self, array: Array, target: ColorSpace) -> Array:
         manager = self.manager
         config = manager.spaces if target.own else None
-        if array.shape[2] < 4 or (config and config.isColorSpaceLinear(target.name, ocio().REFERENCE_SPACE_SCENE)):
-            made = np.array(array, dtype=np.float32)
-            made[..., :3] = from_working(made[..., :3], target, manager)
-            return made
-        made = straight(array)
-        alpha = made[..., 3:]
-        made[..., :3] = from_working(made[..., :3], target, manager)
-        np.multiply(made[..., :3], alpha, out=made[..., :3], where=alpha > 0.0)
-        return made
+        if array.shape[2] < 4 or (config and config.isColorSpaceLinear(target.name, load_ocio().REFERENCE_SPACE_SCENE)):
+            converted = np.array(array, dtype=np.float32)
+            converted[..., :3] = from_working(converted[..., :3], target, manager)
+            return converted
+        converted = unpremultiply(array)
+        alpha = converted[..., 3:]
+        converted[..., :3] = from_working(converted[..., :3], target, manager)
+        np.multiply(converted[..., :3], alpha, out=converted[..., :3], where=alpha > 0.0)
+        return converted
 
 
-def png_space(name: str) -> str:
+def choose_png_space(name: str) -> str:
     """A space that PNG has chunks for; "" for others, which would be told wrongly."""
     return name if name in _IN_PNG else ""

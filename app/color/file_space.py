@@ -8,15 +8,15 @@ import numpy as np
 from msgspec import Struct
 
 from ..errors import GraphError, InputError
-from .management import LINEAR_REC709, Managed, Space
+from .management import LINEAR_REC709, ColorManager, ColorSpace
 
 AUTO = ("", "auto")
 """What stands for finding out."""
 
 SRGB = "srgb_rec709_scene"
-_AS_IT_IS = ("linear", "scene_linear")
+_LINEAR_TAGS = ("linear", "scene_linear")
 _PROFILES = {"Display P3": "srgb_p3d65_scene", "Adobe RGB (1998)": "g22_adobergb_scene"}
-GAMUTS = {
+CHROMATICITIES = {
     "lin_rec709_scene": (0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290),
     "lin_ap1_scene": (0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767),
     "lin_ap0_scene": (0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077, 0.32168, 0.33767),
@@ -26,7 +26,7 @@ GAMUTS = {
 """Linear spaces by the chromaticities of red, green, blue and white."""
 
 
-class Hints(Struct, frozen=True):
+class ColorHints(Struct, frozen=True):
     """What a header says of color: a tag that someone wrote, what its format means without one, an ICC profile,
     chromaticities, and whether it holds integers."""
 
@@ -42,10 +42,10 @@ class FileSpace(Struct, frozen=True):
 
     name: str
     reason: str
-    space: Space | None = None
+    space: ColorSpace | None = None
 
 
-def space_of(path: str, hints: Hints, managed: Managed, wanted: str = "") -> FileSpace:
+def find_file_space(path: str, hints: ColorHints, managed: ColorManager, requested: str = "") -> FileSpace:
     """The space of color in a file: what is `wanted`, what its header says, what a rule of the config says, else what
     is usual for such files: sRGB for integers, the working space for the rest.
 
@@ -53,64 +53,64 @@ def space_of(path: str, hints: Hints, managed: Managed, wanted: str = "") -> Fil
         GraphError: what is wanted is unknown.
         InputError: what the header or a rule says is unknown.
     """
-    if found := check_wanted(wanted, managed):
-        return FileSpace(found.name, "as color_space says", found)
-    for name, reason in _said(hints):
-        if name.casefold() in _AS_IT_IS and not (managed.chosen and managed.find(name)):
-            return FileSpace(managed.working.name if not managed.plain else LINEAR_REC709, reason)
-        if managed.plain and name in (LINEAR_REC709, SRGB):
-            return FileSpace(name, reason, None if name == LINEAR_REC709 else Space(SRGB, True))
-        found = managed.find(name)
-        if found is not None:
-            return FileSpace(name, reason, found)
+    if space := find_requested_space(requested, managed):
+        return FileSpace(space.name, "as color_space says", space)
+    for name, reason in _read_hints(hints):
+        if name.casefold() in _LINEAR_TAGS and not (managed.is_chosen and managed.find(name)):
+            return FileSpace(managed.working.name if not managed.is_plain else LINEAR_REC709, reason)
+        if managed.is_plain and name in (LINEAR_REC709, SRGB):
+            return FileSpace(name, reason, None if name == LINEAR_REC709 else ColorSpace(SRGB, True))
+        space = managed.find(name)
+        if space is not None:
+            return FileSpace(name, reason, space)
         raise InputError(
-            f"{path}: its color space '{name}' is unknown: give the input a color_space{managed.hint(name)}"
+            f"{path}: its color space '{name}' is unknown: give the input a color_space{managed.suggest_space(name)}"
         )
-    if managed.chosen and (found := _ruled(path, managed)):
-        return found
+    if managed.is_chosen and (space := _apply_file_rule(path, managed)):
+        return space
     usual = hints.usual or (SRGB if hints.integer else "")
     if usual == SRGB:
         reason = "integers are sRGB unless someone says otherwise"
-        return FileSpace(SRGB, reason, Space(SRGB, True) if managed.plain else managed.find(SRGB))
-    if usual and not managed.plain:
+        return FileSpace(SRGB, reason, ColorSpace(SRGB, True) if managed.is_plain else managed.find(SRGB))
+    if usual and not managed.is_plain:
         return FileSpace(usual, "that is what such files hold", managed.find(usual))
-    working = LINEAR_REC709 if managed.plain else managed.working.name
+    working = LINEAR_REC709 if managed.is_plain else managed.working.name
     return FileSpace(working, "the working space, for nothing says otherwise")
 
 
-def check_wanted(name: str, managed: Managed) -> Space | None:
+def find_requested_space(name: str, managed: ColorManager) -> ColorSpace | None:
     """The space of that name; None for finding out. Raises GraphError for one that nobody knows."""
     if name in AUTO:
         return None
-    found = managed.find(name)
-    if found is None:
-        raise GraphError(f"color_space '{name}' is unknown{managed.hint(name)}")
-    return found
+    space = managed.find(name)
+    if space is None:
+        raise GraphError(f"color_space '{name}' is unknown{managed.suggest_space(name)}")
+    return space
 
 
-def _said(hints: Hints) -> list[tuple[str, str]]:
+def _read_hints(hints: ColorHints) -> list[tuple[str, str]]:
     """The name that the header gives, the strongest first, with the reason."""
     if hints.profile in _PROFILES:
         return [(_PROFILES[hints.profile], f"its ICC profile is {hints.profile}")]
     if hints.tag:
         return [(hints.tag, "its header says so")]
-    for name, gamut in GAMUTS.items():
+    for name, gamut in CHROMATICITIES.items():
         if len(hints.primaries) == 8 and np.allclose(hints.primaries[:6], gamut[:6], atol=1e-3):
             return [(name, "its chromaticities")]
     return []
 
 
-def _ruled(path: str, managed: Managed) -> FileSpace | None:
+def _apply_file_rule(path: str, managed: ColorManager) -> FileSpace | None:
     """What a rule of the config says of a path; the last one, for whatever matches no other, says nothing."""
     config = managed.config
     full = Path(path).absolute().as_posix()
     if config.filepathOnlyMatchesDefaultRule(full):
         return None
     name, number = config.getColorSpaceFromFilepath(full)
-    found = managed.find(name)
+    space = managed.find(name)
     rule = config.getFileRules().getName(number)
-    if found is None:
+    if space is None:
         raise InputError(
             f"{path}: the file rule '{rule}' of {managed.where} names the color space '{name}', which it does not have"
         )
-    return FileSpace(found.name, f"the file rule '{rule}'", found)
+    return FileSpace(space.name, f"the file rule '{rule}'", space)

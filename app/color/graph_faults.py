@@ -9,8 +9,8 @@ from halation.nodes import Kind
 
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
-from .file_space import check_wanted
-from .management import managed
+from .file_space import find_requested_space
+from .management import get_color_manager
 from .transforms import NO_VIEW, find_view
 
 
@@ -24,21 +24,21 @@ class ColorFault:
     at: str
 
 
-def color_faults(graph: Graph) -> Iterator[ColorFault]:
+def find_color_faults(graph: Graph) -> Iterator[ColorFault]:
     """A config that cannot be read, a working space, views of outputs and color spaces of inputs that nobody knows."""
     color = color_settings(graph)
-    manager = managed(color)
+    manager = get_color_manager(color)
     views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}
     spaces = {
         name: end.color_space
         for name, end in graph.inputs.items()
         if end.color_space and end.kind in (Kind.IMAGE, Kind.COLOR)
     }
-    if manager.plain and not views and not spaces:
+    if manager.is_plain and not views and not spaces:
         return
-    asked = color.config or color.working or views or spaces
+    names_something = color.config or color.working or views or spaces
     try:
-        if asked:
+        if names_something:
             _ = manager.config, manager.working
     except HalationError as error:
         yield ColorFault(error, "", "", "settings.color")
@@ -47,11 +47,11 @@ def color_faults(graph: Graph) -> Iterator[ColorFault]:
         try:
             find_view(view, "", color)
         except HalationError as error:
-            said = type(error)(f"output '{name}': {error}")
-            yield ColorFault(said, OUTPUTS, name, f"outputs.{name}.view")
+            fault = type(error)(f"output '{name}': {error}")
+            yield ColorFault(fault, OUTPUTS, name, f"outputs.{name}.view")
     for name, space in spaces.items():
         try:
-            check_wanted(space, manager)
+            find_requested_space(space, manager)
         except HalationError as error:
-            said = type(error)(f"input '{name}': {error}")
-            yield ColorFault(said, f"inputs.{name}", "", f"inputs.{name}.color_space")
+            fault = type(error)(f"input '{name}': {error}")
+            yield ColorFault(fault, f"inputs.{name}", "", f"inputs.{name}.color_space")

@@ -20,18 +20,18 @@ from msgspec import Struct
 
 from ..errors import GraphError, HalationError, UsageError
 from ..resources.sandbox import outside
-from .config_files import config_fault
+from .config_files import find_config_fault
 
 BUILT_IN = "ocio://default"
 DEFAULT_COLOR = ColorSettings()
 LINEAR_REC709 = "lin_rec709_scene"
 _STUDIO = "ocio://studio-config-latest"
-_DEFAULTS = frozenset({"", "linear rec709", LINEAR_REC709, "linear rec.709 (srgb)"})
+_DEFAULT_NAMES = frozenset({"", "linear rec709", LINEAR_REC709, "linear rec.709 (srgb)"})
 _BUILT_IN_MARK = "ocio://"
-_NUMBERS = ("raw", "data", "unknown", "none")
+_DATA_NAMES = ("raw", "data", "unknown", "none")
 
 
-class Space(Struct, frozen=True):
+class ColorSpace(Struct, frozen=True):
     """A color space of a config; `own` is False for one of the studio config. `data` are numbers without color."""
 
     name: str
@@ -39,214 +39,224 @@ class Space(Struct, frozen=True):
     data: bool = False
 
 
-class Managed:
+class ColorManager:
     """A config, and the working space in it.
 
     Asking for anything loads the config, which raises GraphError or UsageError where it cannot be read.
     """
 
     def __init__(self, source: str, chosen: bool, fault: type[HalationError], working: str) -> None:
-        self.source, self.chosen = source, chosen
+        self.source, self.is_chosen = source, chosen
         """Where the config comes from, and whether anyone asked for it."""
-        self._fault, self._wanted = fault, working
-        self._found: dict[str, Space | None] = {}
+        self._error, self._working_name = fault, working
+        self._spaces_by_name: dict[str, ColorSpace | None] = {}
 
     @property
-    def plain(self) -> bool:
+    def is_plain(self) -> bool:
         """True for linear Rec.709 in the built-in config: reading sRGB needs no library then."""
-        return not self.chosen and self._wanted.casefold() in _DEFAULTS
+        return not self.is_chosen and self._working_name.casefold() in _DEFAULT_NAMES
 
     @property
     def where(self) -> str:
         """What messages call the config."""
-        return f"$OCIO: {self.source}" if self._fault is UsageError and self.chosen else self.source
+        return f"$OCIO: {self.source}" if self._error is UsageError and self.is_chosen else self.source
 
     @cached_property
     def config(self) -> Any:
         """What displays, views, looks and file rules come from."""
-        return self._read(self.source)
+        return self._read_config(self.source)
 
     @cached_property
     def spaces(self) -> Any:
         """What color spaces come from: where nobody chose a config the studio one, for it knows cameras too."""
-        return self.config if self.chosen else studio()
+        return self.config if self.is_chosen else load_studio_config()
 
     @cached_property
-    def working(self) -> Space:
+    def working(self) -> ColorSpace:
         """The space between nodes. Raises GraphError for one that nobody knows."""
-        if self._wanted.casefold() not in _DEFAULTS:
-            found = self.find(self._wanted)
-            if found is None or found.data:
-                fault = "holds numbers, not color" if found else "is unknown"
-                raise GraphError(f"settings.color.working: '{self._wanted}' {fault}{self.hint(self._wanted)}")
+        if self._working_name.casefold() not in _DEFAULT_NAMES:
+            space = self.find(self._working_name)
+            if space is None or space.data:
+                fault = "holds numbers, not color" if space else "is unknown"
+                raise GraphError(
+                    f"settings.color.working: '{self._working_name}' {fault}{self.suggest_space(self._working_name)}"
+                )
         else:
-            found = self.find(LINEAR_REC709) or Space(LINEAR_REC709, False)
-        if not found.own and self.chosen:
-            self._check_bridge(found)
-        config = self.spaces if found.own else studio()
-        if not config.isColorSpaceLinear(found.name, ocio().REFERENCE_SPACE_SCENE):
+            space = self.find(LINEAR_REC709) or ColorSpace(LINEAR_REC709, False)
+        if not space.own and self.is_chosen:
+            self._check_bridge(space)
+        config = self.spaces if space.own else load_studio_config()
+        if not config.isColorSpaceLinear(space.name, load_ocio().REFERENCE_SPACE_SCENE):
             raise GraphError(
-                f"settings.color.working: '{self._wanted or found.name}' is not scene-linear: light is added and "
+                f"settings.color.working: '{self._working_name or space.name}' is not scene-linear: light is added and "
                 "blurred in the working space; choose one such as ACEScg"
             )
-        return found
+        return space
 
     @cached_property
-    def interop(self) -> str:
+    def header_name(self) -> str:
         """What a header calls the working space."""
-        return self.header_name(self.working)
+        return self.find_header_name(self.working)
 
-    def find(self, name: str) -> Space | None:
+    def find(self, name: str) -> ColorSpace | None:
         """A space by name, alias or role in any case, or by the name that nodes call it; None if nobody knows it."""
         if name.casefold() == WORKING_SPACE:
             return self.working
-        if name not in self._found:
-            self._found[name] = self._find(name)
-        return self._found[name]
+        if name not in self._spaces_by_name:
+            self._spaces_by_name[name] = self._find(name)
+        return self._spaces_by_name[name]
 
-    def _find(self, name: str) -> Space | None:
-        if found := self.spaces.getColorSpace(name):
-            return Space(found.getName(), True, found.isData())
-        if name.casefold() in _NUMBERS:
-            return Space(name, True, True)
-        known = studio().getColorSpace(SPACES.get(name.casefold(), name))  # type: ignore[arg-type]
-        if not known:
+    def _find(self, name: str) -> ColorSpace | None:
+        if space := self.spaces.getColorSpace(name):
+            return ColorSpace(space.getName(), True, space.isData())
+        if name.casefold() in _DATA_NAMES:
+            return ColorSpace(name, True, True)
+        studio_space = load_studio_config().getColorSpace(SPACES.get(name.casefold(), name))  # type: ignore[arg-type]
+        if not studio_space:
             return None
-        for alias in (known.getName(), *known.getAliases()):
-            if found := self.spaces.getColorSpace(alias):
-                return Space(found.getName(), True, found.isData())
-        return self._same(known) or Space(known.getName(), False, known.isData())
+        for alias in (studio_space.getName(), *studio_space.getAliases()):
+            if space := self.spaces.getColorSpace(alias):
+                return ColorSpace(space.getName(), True, space.isData())
+        return self._find_equal_space(studio_space) or ColorSpace(studio_space.getName(), False, studio_space.isData())
 
-    def names(self) -> tuple[str, ...]:
+    def list_spaces(self) -> tuple[str, ...]:
         """The color spaces of the config that pictures can be in."""
-        api = ocio()
+        api = load_ocio()
         kinds = (api.SEARCH_REFERENCE_SPACE_SCENE, api.SEARCH_REFERENCE_SPACE_DISPLAY)
         return tuple(name for kind in kinds for name in self.spaces.getColorSpaceNames(kind, api.COLORSPACE_ACTIVE))
 
-    def hint(self, name: str) -> str:
+    def suggest_space(self, name: str) -> str:
         """The rest of a sentence about a space that nobody knows."""
-        known = {word.casefold(): word for word in (*SPACES, *self.spaces.getRoleNames(), *self.names())}
-        near = difflib.get_close_matches(name.casefold(), known, 1, 0.5)
-        some = f"did you mean '{known[near[0]]}'? It" if near else "it"
-        return f": {some} must be a color space or role of {self.where}, such as {_few(self.names())}"
+        names = {word.casefold(): word for word in (*SPACES, *self.spaces.getRoleNames(), *self.list_spaces())}
+        close_names = difflib.get_close_matches(name.casefold(), names, 1, 0.5)
+        start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
+        return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
-    def processor(self, source: Space, target: Space) -> Any:
+    def make_processor(self, source: ColorSpace, target: ColorSpace) -> Any:
         """From one space to another. Raises GraphError or UsageError where the config cannot say how."""
         if source.data or target.data or source == target:
-            return self._made(lambda: ocio().Config.CreateRaw().getProcessor(ocio().MatrixTransform()))
-        return self._made(lambda: self._between(source, target))
+            return self._run(lambda: load_ocio().Config.CreateRaw().getProcessor(load_ocio().MatrixTransform()))
+        return self._run(lambda: self._make_processor(source, target))
 
-    def header_name(self, space: Space) -> str:
+    def find_header_name(self, space: ColorSpace) -> str:
         """What a header calls a space: its interchange name if there is one."""
-        found = (self.spaces if space.own else studio()).getColorSpace(space.name)
-        said = str(getattr(found, "getInteropID", str)() or "") if found else ""
-        return said or space.name
+        space = (self.spaces if space.own else load_studio_config()).getColorSpace(space.name)
+        interop_name = str(getattr(space, "getInteropID", str)() or "") if space else ""
+        return interop_name or space.name
 
-    def bridged(self) -> tuple[Any, str]:
+    def bridge_to_views(self) -> tuple[Any, str]:
         """What brings the working space into the config of the views, and the space there."""
-        group, working = ocio().GroupTransform(), self.working
-        if found := self.config.getColorSpace(working.name) if working.own or not self.chosen else None:
-            return group, found.getName()
+        group, working = load_ocio().GroupTransform(), self.working
+        if space := self.config.getColorSpace(working.name) if working.own or not self.is_chosen else None:
+            return group, space.getName()
         anchor = self.config.getColorSpace("scene_linear") or self.config.getColorSpace("aces_interchange")
-        inside = Space(anchor.getName(), True)
-        group.appendTransform(self.processor(working, inside).createGroupTransform())
+        inside = ColorSpace(anchor.getName(), True)
+        group.appendTransform(self.make_processor(working, inside).createGroupTransform())
         return group, inside.name
 
     def attempt(self, make: Any) -> Any:
         """What OpenColorIO makes, or its complaint about the config as a sentence."""
-        return self._made(make)
+        return self._run(make)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _between(self, source: Space, target: Space) -> Any:
+    def _make_processor(self, source: ColorSpace, target: ColorSpace) -> Any:
         if source.own == target.own:
-            return (self.spaces if source.own else studio()).getProcessor(source.name, target.name)
-        first, second = (self.spaces if space.own else studio() for space in (source, target))
-        return ocio().Config.GetProcessorFromConfigs(first, source.name, second, target.name)
+            return (self.spaces if source.own else load_studio_config()).getProcessor(source.name, target.name)
+        first, second = (self.spaces if space.own else load_studio_config() for space in (source, target))
+        return load_ocio().Config.GetProcessorFromConfigs(first, source.name, second, target.name)
 
-    def _same(self, known: Any) -> Space | None:
+    def _find_equal_space(self, studio_space: Any) -> ColorSpace | None:
         """A space of the config that computes the same under another name, where OpenColorIO finds one."""
-        if not self.chosen or known.isData():
+        if not self.is_chosen or studio_space.isData():
             return None
         try:
-            name = ocio().Config.IdentifyBuiltinColorSpace(self.spaces, studio(), known.getName())
-        except faults():
+            name = load_ocio().Config.IdentifyBuiltinColorSpace(
+                self.spaces, load_studio_config(), studio_space.getName()
+            )
+        except ocio_errors():
             return None
-        return Space(name, True) if name else None
+        return ColorSpace(name, True) if name else None
 
-    def _check_bridge(self, space: Space) -> None:
-        names = self.names()
+    def _check_bridge(self, space: ColorSpace) -> None:
+        names = self.list_spaces()
         try:
-            self._between(space, Space(names[0], True))
-        except (*faults(), IndexError):
-            raise self._fault(
+            self._make_processor(space, ColorSpace(names[0], True))
+        except (*ocio_errors(), IndexError):
+            raise self._error(
                 f"{self.where}: has neither '{space.name}' nor the role aces_interchange that would lead to it: set "
-                f"settings.color.working to a space or role of this config, such as {_few(names)}"
+                f"settings.color.working to a space or role of this config, such as {_shorten_list(names)}"
             ) from None
 
-    def _made(self, make: Any) -> Any:
+    def _run(self, make: Any) -> Any:
         try:
             return make()
-        except faults() as error:
-            raise self._fault(f"{self.where}: {_first_line(error)}") from error
+        except ocio_errors() as error:
+            raise self._error(f"{self.where}: {_first_line(error)}") from error
 
-    def _read(self, source: str) -> Any:
-        theirs = self._fault is GraphError and not source.startswith("ocio://")
-        if theirs and (said := outside(source)):
-            raise self._fault(f"{self._said(source)}: {said}")
+    def _read_config(self, source: str) -> Any:
+        is_from_graph = self._error is GraphError and not source.startswith("ocio://")
+        if is_from_graph and (reason := outside(source)):
+            raise self._error(f"{self._describe_source(source)}: {reason}")
         if not source.startswith("ocio://") and not Path(source).is_file():
             folder = Path(source).parent
-            near = difflib.get_close_matches(Path(source).name, _listed(folder), 1)
-            raise self._fault(f"{self._said(source)}: there is no such color config{_suggested(near)}")
+            near = difflib.get_close_matches(Path(source).name, _list_names(folder), 1)
+            raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
         try:
-            found = builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
-            if theirs and (said := config_fault(found)):
-                raise self._fault(f"{self._said(source)}: {said}")
-            return found
-        except faults() as error:
-            said = f"is no color config that can be read: {_first_line(error)}"
+            config = (
+                load_builtin_config(source)
+                if source.startswith("ocio://")
+                else load_ocio().Config.CreateFromFile(source)
+            )
+            if is_from_graph and (reason := find_config_fault(config)):
+                raise self._error(f"{self._describe_source(source)}: {reason}")
+            return config
+        except ocio_errors() as error:
+            reason = f"is no color config that can be read: {_first_line(error)}"
             if source.startswith("ocio://"):
-                near = difflib.get_close_matches(source, builtin_configs(), 1, 0.3)
-                said = f"there is no such built-in config{_suggested(near)}"
-            raise self._fault(f"{self._said(source)}: {said}") from None
+                near = difflib.get_close_matches(source, list_builtin_configs(), 1, 0.3)
+                reason = f"there is no such built-in config{_suggest(near)}"
+            raise self._error(f"{self._describe_source(source)}: {reason}") from None
 
-    def _said(self, source: str) -> str:
-        return f"$OCIO: {source}" if self._fault is UsageError else f"settings.color.config: {source}"
+    def _describe_source(self, source: str) -> str:
+        return f"$OCIO: {source}" if self._error is UsageError else f"settings.color.config: {source}"
 
 
-def managed(color: ColorSettings = DEFAULT_COLOR) -> Managed:
+def get_color_manager(color: ColorSettings = DEFAULT_COLOR) -> ColorManager:
     """How colors are managed by these settings, whose config is a path as it stands."""
-    named = os.environ.get("OCIO", "").strip()
-    source = color.config or named or BUILT_IN
-    fault = GraphError if color.config or not named else UsageError
-    return _managed(source, _version(source), bool(color.config or named), fault, color.working)
+    environment_config = os.environ.get("OCIO", "").strip()
+    source = color.config or environment_config or BUILT_IN
+    fault = GraphError if color.config or not environment_config else UsageError
+    return _make_manager(
+        source, _config_version(source), bool(color.config or environment_config), fault, color.working
+    )
 
 
-def color_mark(color: ColorSettings) -> str:
+def mark_color_settings(color: ColorSettings) -> str:
     """Changes when the config does."""
-    found = managed(color)
-    return f"{found.source} {_version(found.source)} {color.working}"
+    manager = get_color_manager(color)
+    return f"{manager.source} {_config_version(manager.source)} {color.working}"
 
 
-def color_digest(color: ColorSettings) -> str:
+def digest_color_settings(color: ColorSettings) -> str:
     """The same wherever colors are managed in the same way: "" for linear Rec.709 in the built-in config."""
-    found = managed(color)
-    if found.plain:
+    manager = get_color_manager(color)
+    if manager.is_plain:
         return ""
-    if found.source.startswith(_BUILT_IN_MARK):
-        return f"{found.source} {color.working}"
+    if manager.source.startswith(_BUILT_IN_MARK):
+        return f"{manager.source} {color.working}"
     try:
-        return f"{sha256(Path(found.source).read_bytes()).hexdigest()} {color.working}"
+        return f"{sha256(Path(manager.source).read_bytes()).hexdigest()} {color.working}"
     except OSError:
-        return f"{found.source} {color.working}"
+        return f"{manager.source} {color.working}"
 
 
 @lru_cache(maxsize=16)
-def _managed(source: str, version: str, chosen: bool, fault: type[HalationError], working: str) -> Managed:
-    return Managed(source, chosen, fault, working)
+def _make_manager(source: str, version: str, chosen: bool, fault: type[HalationError], working: str) -> ColorManager:
+    return ColorManager(source, chosen, fault, working)
 
 
-def _version(source: str) -> str:
+def _config_version(source: str) -> str:
     if source.startswith("ocio://"):
         return ""
     try:
@@ -257,7 +267,7 @@ def _version(source: str) -> str:
 
 
 @cache
-def ocio() -> Any:
+def load_ocio() -> Any:
     """OpenColorIO, which comes without types. It is quiet: what is wrong is said in sentences of ours."""
     import PyOpenColorIO
 
@@ -267,26 +277,26 @@ def ocio() -> Any:
     return api
 
 
-def faults() -> tuple[type[Exception], ...]:
+def ocio_errors() -> tuple[type[Exception], ...]:
     """What OpenColorIO raises."""
-    return ocio().Exception, ocio().ExceptionMissingFile
+    return load_ocio().Exception, load_ocio().ExceptionMissingFile
 
 
 @cache
-def builtin(name: str) -> Any:
+def load_builtin_config(name: str) -> Any:
     """A config that comes with OpenColorIO, such as `ocio://default`."""
-    return ocio().Config.CreateFromBuiltinConfig(name)
+    return load_ocio().Config.CreateFromBuiltinConfig(name)
 
 
-def studio() -> Any:
+def load_studio_config() -> Any:
     """The config whose names changes of space go by: it knows what cameras write."""
-    return builtin(_STUDIO)
+    return load_builtin_config(_STUDIO)
 
 
-def builtin_configs() -> tuple[str, ...]:
+def list_builtin_configs() -> tuple[str, ...]:
     """The configs that come with OpenColorIO, the default first."""
-    known = [f"ocio://{name}" for name, *_ in ocio().BuiltinConfigRegistry().getBuiltinConfigs()]
-    return (BUILT_IN, "ocio://cg-config-latest", _STUDIO, *known)
+    names = [f"ocio://{name}" for name, *_ in load_ocio().BuiltinConfigRegistry().getBuiltinConfigs()]
+    return (BUILT_IN, "ocio://cg-config-latest", _STUDIO, *names)
 
 
 def _first_line(error: Exception) -> str:
@@ -294,16 +304,16 @@ def _first_line(error: Exception) -> str:
     return lines[0].rstrip(".") if lines else "OpenColorIO gave no reason"
 
 
-def _few(names: Iterable[str]) -> str:
+def _shorten_list(names: Iterable[str]) -> str:
     listed = list(names)
     return ", ".join(listed[:12]) + (f" and {len(listed) - 12} more" if len(listed) > 12 else "")
 
 
-def _suggested(near: list[str]) -> str:
+def _suggest(near: list[str]) -> str:
     return f"; did you mean '{near[0]}'?" if near else ": check the name"
 
 
-def _listed(folder: Path) -> list[str]:
+def _list_names(folder: Path) -> list[str]:
     try:
         return [item.name for item in folder.iterdir()]
     except OSError:

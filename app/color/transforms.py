@@ -15,7 +15,17 @@ from halation.nodes import ColorSettings
 from ..errors import UsageError
 from ..resources.machine import available_cores
 from .file_space import FileSpace
-from .management import BUILT_IN, DEFAULT_COLOR, LINEAR_REC709, Managed, Space, builtin, managed, ocio, studio
+from .management import (
+    BUILT_IN,
+    DEFAULT_COLOR,
+    LINEAR_REC709,
+    ColorManager,
+    ColorSpace,
+    get_color_manager,
+    load_builtin_config,
+    load_ocio,
+    load_studio_config,
+)
 
 NO_VIEW = "none"
 NO_LOOK = "none"
@@ -26,12 +36,16 @@ _LARGEST = 65504.0
 Array = np.ndarray
 
 
-def is_working(found: FileSpace, manager: Managed) -> bool:
+def is_in_working_space(file_space: FileSpace, manager: ColorManager) -> bool:
     """True where the numbers of a file are used as they are."""
-    return found.space is None or found.space.data or (not manager.plain and found.space == manager.working)
+    return (
+        file_space.space is None
+        or file_space.space.data
+        or (not manager.is_plain and file_space.space == manager.working)
+    )
 
 
-def to_working(rgb: Array, found: FileSpace, manager: Managed) -> Array:
+def to_working(rgb: Array, file_space: FileSpace, manager: ColorManager) -> Array:
     """Colors [..., 3] of any dtype (integers fill 0..1) in the working space, float32.
 
     sRGB by IEC 61966-2-1 unless someone chose a config; other spaces through OpenColorIO.
@@ -39,24 +53,24 @@ def to_working(rgb: Array, found: FileSpace, manager: Managed) -> Array:
     Raises:
         GraphError, UsageError: the config cannot say how.
     """
-    if is_working(found, manager):
-        return np.ascontiguousarray(as_float(rgb), dtype=np.float32)
-    assert found.space is not None
-    if not manager.chosen and _is_srgb(found.space):
-        srgb = rgb.dtype == np.uint8 or rgb.dtype == np.uint16
-        light = _srgb_table(rgb.dtype.str)[rgb] if srgb else decode_srgb(rgb).astype(np.float32)
-        if manager.plain:
+    if is_in_working_space(file_space, manager):
+        return np.ascontiguousarray(to_float(rgb), dtype=np.float32)
+    assert file_space.space is not None
+    if not manager.is_chosen and _is_srgb(file_space.space):
+        has_table = rgb.dtype == np.uint8 or rgb.dtype == np.uint16
+        light = _make_srgb_table(rgb.dtype.str)[rgb] if has_table else decode_srgb(rgb).astype(np.float32)
+        if manager.is_plain:
             return light
-        return _through(light, rgb, manager, Space(LINEAR_REC709, True))
-    return _through(np.ascontiguousarray(as_float(rgb), dtype=np.float32), rgb, manager, found.space)
+        return _convert_to_working(light, rgb, manager, ColorSpace(LINEAR_REC709, True))
+    return _convert_to_working(np.ascontiguousarray(to_float(rgb), dtype=np.float32), rgb, manager, file_space.space)
 
 
-def from_working(rgb: Array, space: Space, manager: Managed) -> Array:
+def from_working(rgb: Array, space: ColorSpace, manager: ColorManager) -> Array:
     """Working-space colors [..., 3] in another space, float32. Raises as `to_working`."""
-    made = np.array(rgb, dtype=np.float32, order="C")
+    converted = np.array(rgb, dtype=np.float32, order="C")
     if not space.data and space != manager.working:
-        _apply(_exact(manager.processor(manager.working, space)), made)
-    return made
+        _apply(_make_exact(manager.make_processor(manager.working, space)), converted)
+    return converted
 
 
 def decode_srgb(encoded: Array) -> Array:
@@ -65,40 +79,40 @@ def decode_srgb(encoded: Array) -> Array:
     return np.copysign(np.where(size <= 0.04045, size / 12.92, ((size + 0.055) / 1.055) ** 2.4), encoded)
 
 
-def as_float(array: Array) -> Array:
+def to_float(array: Array) -> Array:
     """8- and 16-bit integers as 0..1 in float32; 32-bit ones are counts and stay; floats stay."""
     if array.dtype in (np.uint8, np.uint16):
         return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
     return array.astype(np.float32) if array.dtype.kind in "ui" else array
 
 
-def displays(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_displays(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The kinds of screen that pictures can be shown on, the default first.
 
     Raises:
         GraphError, UsageError: no config.
     """
-    config = managed(color).config
+    config = get_color_manager(color).config
     first = config.getDefaultDisplay()
     return (*([first] if first else ()), *(name for name in config.getDisplays() if name != first))
 
 
-def views(display: str = "", color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_views(display: str = "", color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
 
     Raises:
         UsageError: unknown display.
         GraphError, UsageError: no config.
     """
-    config, screen = managed(color).config, find_display(display, color)
+    config, screen = get_color_manager(color).config, find_display(display, color)
     first = config.getDefaultView(screen) if screen else ""
-    known = tuple(config.getViews(screen)) if screen else ()
-    return (*([first] if first in known else ()), *(name for name in known if name != first), NO_VIEW)
+    names = tuple(config.getViews(screen)) if screen else ()
+    return (*([first] if first in names else ()), *(name for name in names if name != first), NO_VIEW)
 
 
-def looks(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_looks(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The looks of the config. Raises GraphError, UsageError: no config."""
-    return tuple(managed(color).config.getLookNames())
+    return tuple(get_color_manager(color).config.getLookNames())
 
 
 def find_view(name: str, display: str = "", color: ColorSettings = DEFAULT_COLOR) -> str:
@@ -107,38 +121,38 @@ def find_view(name: str, display: str = "", color: ColorSettings = DEFAULT_COLOR
     Raises:
         UsageError: there is none, or more than one.
     """
-    known = views(display, color)
-    return known[0] if not name else _found(name, known, "view")
+    choices = list_views(display, color)
+    return choices[0] if not name else _match_name(name, choices, "view")
 
 
 def find_display(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
     """The display that `name`, or its beginning in any case, means; "" is the default. Raises UsageError."""
-    known = displays(color)
-    return (known[0] if known else "") if not name else _found(name, known, "display")
+    choices = list_displays(color)
+    return (choices[0] if choices else "") if not name else _match_name(name, choices, "display")
 
 
 def find_look(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
     """The look that `name` means: "" is that of the view, `none` none at all. Raises UsageError."""
-    return name if name in ("", NO_LOOK) else _found(name, (*looks(color), NO_LOOK), "look")
+    return name if name in ("", NO_LOOK) else _match_name(name, (*list_looks(color), NO_LOOK), "look")
 
 
-def check_shown(view: str, display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR) -> None:
+def check_view(view: str, display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR) -> None:
     """Raise UsageError for a view, display or look that the config does not have."""
     find_view(view, display, color)
     find_look(look, color)
 
 
-def _found(name: str, known: tuple[str, ...], what: str) -> str:
-    wanted = name.casefold()
-    match = [one for one in known if one.casefold() == wanted] or [
-        one for one in known if one.casefold().startswith(wanted)
+def _match_name(name: str, choices: tuple[str, ...], noun: str) -> str:
+    word = name.casefold()
+    matches = [one for one in choices if one.casefold() == word] or [
+        one for one in choices if one.casefold().startswith(word)
     ]
-    if len(match) == 1:
-        return match[0]
-    folded = {word: one for one in known for word in (one.casefold(), one.casefold().split()[0])}
-    guess = difflib.get_close_matches(wanted, folded, 1, 0.4)
-    hint = f"did you mean '{folded[guess[0]]}'? Choose" if guess else "choose"
-    raise UsageError(f"there is no {what} '{name}': {hint} from {', '.join(known)}")
+    if len(matches) == 1:
+        return matches[0]
+    folded = {word: one for one in choices for word in (one.casefold(), one.casefold().split()[0])}
+    close_names = difflib.get_close_matches(word, folded, 1, 0.4)
+    hint = f"did you mean '{folded[close_names[0]]}'? Choose" if close_names else "choose"
+    raise UsageError(f"there is no {noun} '{name}': {hint} from {', '.join(choices)}")
 
 
 def to_display(
@@ -161,15 +175,15 @@ def to_display(
         UsageError: unknown view, display or look.
         GraphError, UsageError: no config.
     """
-    processor = display_processor(view, display, look, color).getDefaultCPUProcessor()
-    pixels = straight(array)
+    processor = make_display_processor(view, display, look, color).getDefaultCPUProcessor()
+    pixels = unpremultiply(array)
     rgb = np.ascontiguousarray(pixels[..., :3])
     _apply(processor, rgb)
     pixels[..., :3] = rgb
-    return pixels if bits == 32 else quantized(pixels, bits)
+    return pixels if bits == 32 else quantize(pixels, bits)
 
 
-def straight(array: Array) -> Array:
+def unpremultiply(array: Array) -> Array:
     """A copy of pixels [h, w, 3 or 4] in float32, finite and within half floats, color not multiplied by alpha."""
     pixels = np.array(array, dtype=np.float32)
     np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST)
@@ -181,13 +195,13 @@ def straight(array: Array) -> Array:
     return pixels
 
 
-def quantized(pixels: Array, bits: Literal[8, 10, 12, 16]) -> Array:
+def quantize(pixels: Array, bits: Literal[8, 10, 12, 16]) -> Array:
     """0..1 as integers of so many bits, rounded, in uint8 or uint16."""
     top = (1 << bits) - 1
     return (np.clip(pixels, 0.0, 1.0) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def display_processor(view: str, display: str, look: str = "", color: ColorSettings = DEFAULT_COLOR) -> Any:
+def make_display_processor(view: str, display: str, look: str = "", color: ColorSettings = DEFAULT_COLOR) -> Any:
     """From the working space to what a display shows. A `look` stands in place of those of the view.
 
     Raises:
@@ -195,40 +209,46 @@ def display_processor(view: str, display: str, look: str = "", color: ColorSetti
         GraphError, UsageError: no config, or one that lacks something.
     """
     if view.casefold() == NO_VIEW and look in ("", NO_LOOK):
-        return _plain_processor(managed(color))
-    screen, chosen, how = find_display(display, color), find_view(view, display, color), find_look(look, color)
-    if chosen == NO_VIEW and how in ("", NO_LOOK):
-        return _plain_processor(managed(color))
-    return _display_processor(managed(color), screen, chosen, how)
+        return _make_plain_processor(get_color_manager(color))
+    screen, chosen_view, chosen_look = (
+        find_display(display, color),
+        find_view(view, display, color),
+        find_look(look, color),
+    )
+    if chosen_view == NO_VIEW and chosen_look in ("", NO_LOOK):
+        return _make_plain_processor(get_color_manager(color))
+    return _make_view_processor(get_color_manager(color), screen, chosen_view, chosen_look)
 
 
 @lru_cache(maxsize=64)
-def _plain_processor(manager: Managed) -> Any:
+def _make_plain_processor(manager: ColorManager) -> Any:
     """From the working space to sRGB."""
-    return manager.attempt(lambda: _views_of(manager, builtin(BUILT_IN), _DISPLAY, _PLAIN_VIEW))
+    return manager.attempt(
+        lambda: _make_builtin_view_processor(manager, load_builtin_config(BUILT_IN), _DISPLAY, _PLAIN_VIEW)
+    )
 
 
-def _views_of(manager: Managed, config: Any, display: str, view: str) -> Any:
-    forward, working = ocio().TRANSFORM_DIR_FORWARD, manager.working
-    if not manager.chosen and (known := config.getColorSpace(working.name)):
-        return config.getProcessor(known.getName(), display, view, forward)
-    source = manager.spaces if working.own else studio()
-    return ocio().Config.GetProcessorFromConfigs(source, working.name, config, display, view, forward)
+def _make_builtin_view_processor(manager: ColorManager, config: Any, display: str, view: str) -> Any:
+    forward, working = load_ocio().TRANSFORM_DIR_FORWARD, manager.working
+    if not manager.is_chosen and (space := config.getColorSpace(working.name)):
+        return config.getProcessor(space.getName(), display, view, forward)
+    source = manager.spaces if working.own else load_studio_config()
+    return load_ocio().Config.GetProcessorFromConfigs(source, working.name, config, display, view, forward)
 
 
 @lru_cache(maxsize=64)
-def _display_processor(manager: Managed, display: str, view: str, look: str) -> Any:
-    api = ocio()
-    if not manager.chosen and not look:
-        return manager.attempt(lambda: _views_of(manager, manager.config, display, view))
+def _make_view_processor(manager: ColorManager, display: str, view: str, look: str) -> Any:
+    api = load_ocio()
+    if not manager.is_chosen and not look:
+        return manager.attempt(lambda: _make_builtin_view_processor(manager, manager.config, display, view))
 
     def make() -> Any:
-        group, space = manager.bridged()
+        group, space = manager.bridge_to_views()
         if look not in ("", NO_LOOK):
             group.appendTransform(api.LookTransform(space, space, look))
         if view == NO_VIEW:
             plain = api.Config.GetProcessorFromConfigs(
-                manager.config, space, builtin(BUILT_IN), _DISPLAY, _PLAIN_VIEW, api.TRANSFORM_DIR_FORWARD
+                manager.config, space, load_builtin_config(BUILT_IN), _DISPLAY, _PLAIN_VIEW, api.TRANSFORM_DIR_FORWARD
             )
             group.appendTransform(plain.createGroupTransform())
             return manager.config.getProcessor(group)
@@ -238,31 +258,31 @@ def _display_processor(manager: Managed, display: str, view: str, look: str) -> 
     return manager.attempt(make)
 
 
-def _is_srgb(space: Space) -> bool:
+def _is_srgb(space: ColorSpace) -> bool:
     return space.name in ("srgb_rec709_scene", "sRGB Encoded Rec.709 (sRGB)")
 
 
-def _through(light: Array, given: Array, manager: Managed, space: Space) -> Array:
+def _convert_to_working(light: Array, source_array: Array, manager: ColorManager, space: ColorSpace) -> Array:
     """Colors through OpenColorIO; what is not a copy of what was given yet becomes one."""
-    light = light.copy() if light is given or np.shares_memory(light, given) else light
-    _apply(_reading(manager, space), light)
+    light = light.copy() if light is source_array or np.shares_memory(light, source_array) else light
+    _apply(_make_reading_processor(manager, space), light)
     return light
 
 
 @lru_cache(maxsize=256)
-def _reading(manager: Managed, space: Space) -> Any:
+def _make_reading_processor(manager: ColorManager, space: ColorSpace) -> Any:
     """From a space to the working space."""
-    known = manager.find(space.name) if space.name == LINEAR_REC709 else space
-    return _exact(manager.processor(known or space, manager.working))
+    source = manager.find(space.name) if space.name == LINEAR_REC709 else space
+    return _make_exact(manager.make_processor(source or space, manager.working))
 
 
-def _exact(processor: Any) -> Any:
+def _make_exact(processor: Any) -> Any:
     """On the CPU without short cuts: a fifth slower, and those are off by a part of a thousand of log codes."""
-    return processor.getOptimizedCPUProcessor(ocio().OPTIMIZATION_LOSSLESS)
+    return processor.getOptimizedCPUProcessor(load_ocio().OPTIMIZATION_LOSSLESS)
 
 
 @cache
-def _srgb_table(dtype: str) -> Array:
+def _make_srgb_table(dtype: str) -> Array:
     count = np.iinfo(dtype).max
     return decode_srgb(np.arange(count + 1) / count).astype(np.float32)
 

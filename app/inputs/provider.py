@@ -138,21 +138,21 @@ class MediaProvider:
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color. Raises InputError for a file that cannot be read."""
-        from ..color.gpu_programs import recolor
+        from ..color.gpu_programs import write_color_change
 
-        return recolor(change)
+        return write_color_change(change)
 
     def working(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space. Raises GraphError for one that nobody knows."""
-        from ..color.primaries import working_of
+        from ..color.primaries import find_working_space
 
-        return working_of(color)
+        return find_working_space(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds. Raises InputError for one that cannot be read."""
-        from ..render_layers.render import find_render
+        from ..render_layers.render import read_render
 
-        return (self.look or find_render)(path, named)
+        return (self.look or read_render)(path, named)
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""
@@ -227,27 +227,27 @@ def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Ar
 
 def _conversion_mark(picture: Picture) -> str:
     """A mark that changes when the color of a file is converted in another way."""
-    from ..color.file_space import check_wanted
-    from ..color.management import color_mark, managed
+    from ..color.file_space import find_requested_space
+    from ..color.management import get_color_manager, mark_color_settings
 
-    manager = managed(picture.color)
-    check_wanted(picture.space, manager)
-    if not manager.plain:
+    manager = get_color_manager(picture.color)
+    find_requested_space(picture.space, manager)
+    if not manager.is_plain:
         _ = manager.config, manager.working  # a config that is wrong is an error before anything is read
-    return "" if manager.plain and not picture.space else f" {picture.space} {color_mark(picture.color)}"
+    return "" if manager.is_plain and not picture.space else f" {picture.space} {mark_color_settings(picture.color)}"
 
 
 def _changes_numbers(picture: Picture, layer: str) -> bool:
     """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
-    from ..color.management import managed
-    from ..color.transforms import is_working
+    from ..color.management import get_color_manager
+    from ..color.transforms import is_in_working_space
     from ..media.color_spaces import find_layer_spaces
 
     try:
         space = find_layer_spaces(picture.path, picture.color, picture.space).get(layer)
     except InputError:  # reading the file raises it again
         return True
-    return space is not None and not is_working(space, managed(picture.color))
+    return space is not None and not is_in_working_space(space, get_color_manager(picture.color))
 
 
 def _array_fingerprint(array: Array) -> str:

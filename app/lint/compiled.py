@@ -190,9 +190,9 @@ def _color_faults(graph: Graph) -> Iterator[ColorFault]:
     """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
     named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
     if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
-        from ..color.graph_faults import color_faults
+        from ..color.graph_faults import find_color_faults
 
-        yield from color_faults(graph)
+        yield from find_color_faults(graph)
 
 
 def _rule(fault: HalationError) -> Rule:

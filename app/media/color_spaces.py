@@ -7,8 +7,8 @@ from pathlib import Path
 
 from halation.nodes import ColorSettings
 
-from ..color.file_space import FileSpace, space_of
-from ..color.management import DEFAULT_COLOR, managed
+from ..color.file_space import FileSpace, find_file_space
+from ..color.management import DEFAULT_COLOR, get_color_manager
 from ..errors import HalationError
 from ..graph.frames import is_video
 from .pictures.color_hints import read_color_hints
@@ -33,7 +33,7 @@ def find_layer_spaces(
             if not layer.is_data:
                 picture.seek_subimage(layer.part, 0)
                 hints = read_color_hints(picture.spec(), info.format, layer.format.startswith("uint"))
-                spaces[layer.full_name] = space_of(str(path), hints, managed(color), space)
+                spaces[layer.full_name] = find_file_space(str(path), hints, get_color_manager(color), space)
     return spaces
 
 

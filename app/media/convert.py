@@ -12,9 +12,9 @@ import OpenImageIO as oiio
 from halation.nodes import ColorSettings, Kind
 from msgspec import Struct, field
 
-from ..color.file_space import space_of
-from ..color.management import managed
-from ..color.transforms import Array, as_float, is_working, to_working
+from ..color.file_space import find_file_space
+from ..color.management import get_color_manager
+from ..color.transforms import Array, is_in_working_space, to_float, to_working
 from .layers import ImageInfo, Layer
 from .pictures.color_hints import read_color_hints
 from .pictures.finite import find_non_finite, has_non_finite
@@ -64,10 +64,10 @@ def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.
         array = _to_light(block, layer, request, spec, info)
     elif request.wants_color:
         rgb, alpha = _split_alpha(block, layer)
-        array = _join_rgba(as_float(rgb), None if alpha is None else as_float(alpha))
+        array = _join_rgba(to_float(rgb), None if alpha is None else to_float(alpha))
     else:
         width = request.width if request.kind is Kind.VECTOR else 1
-        array = _fit_width(as_float(block[..., :width]), width)
+        array = _fit_width(to_float(block[..., :width]), width)
     array, repaired = _repair(np.ascontiguousarray(array), is_color)
     array = _place_in_display_window(array, spec)
     array = np.ascontiguousarray(_turn_upright(array, spec.get_int_attribute("Orientation", 1)))
@@ -88,22 +88,22 @@ def _to_light(block: Array, layer: Layer, request: LayerRequest, spec: oiio.Imag
     A file stores color either straight or multiplied by alpha after encoding. Encoding is not linear, so the second
     has to be divided out before it is undone, and alpha is applied to linear color in the end.
     """
-    manager = managed(request.color)
+    manager = get_color_manager(request.color)
     hints = read_color_hints(spec, info.format, block.dtype.kind in "ui")
-    space = space_of(info.path, hints, manager, request.space)
+    space = find_file_space(info.path, hints, manager, request.space)
     is_straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
-    keeps_numbers = is_working(space, manager)
+    keeps_numbers = is_in_working_space(space, manager)
     if keeps_numbers and not is_straight and tuple(map(str.casefold, layer.channels)) in _RGBA_LAYOUTS:
-        return as_float(block)
+        return to_float(block)
     rgb, alpha = _split_alpha(block, layer)
     if alpha is not None:
-        alpha = as_float(alpha)
+        alpha = to_float(alpha)
     if keeps_numbers:
-        rgb = as_float(rgb)
+        rgb = to_float(rgb)
     elif alpha is None or is_straight:
         rgb = to_working(rgb, space, manager)
     else:
-        rgb = np.divide(as_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
+        rgb = np.divide(to_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
         rgb = to_working(rgb, space, manager) * alpha
     if alpha is not None and is_straight:
         rgb = rgb * alpha

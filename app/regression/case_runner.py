@@ -138,7 +138,7 @@ def _find_fault(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mappi
     return find_unusable(
         case,
         {
-            name: StoredPart(array, letters.get(array.shape[2], ("X",)), encoded=False)
+            name: StoredPart(array, letters.get(array.shape[2], ("X",)), is_encoded=False)
             for name, array in pictures.items()
         },
     )

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import HalationError
 from ..media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
-from ..media.pictures.stored import StoredPart, describe_maker, read_stored
+from ..media.pictures.stored import StoredPart, describe_maker, read_stored_parts
 from .cases import METRICS, PER_PIXEL, Case, format_number
 from .results import PictureCheck
 
@@ -20,12 +20,12 @@ Parts = Mapping[str, StoredPart]
 
 def judge_picture(case: Case, actual: Path, golden: Path, frame: int) -> tuple[PictureCheck, Parts, Parts]:
     """What there is to say of a picture, and the parts of both files. Nothing is raised for a bad golden."""
-    made, made_by = read_stored(actual), describe_maker(actual)
+    made, made_by = read_stored_parts(actual), describe_maker(actual)
     fresh = PictureCheck(golden, frame, made_by=made_by)
     if not golden.is_file():
         return replace(fresh, sentence=f"the golden {golden} is missing: --update makes it"), made, {}
     try:
-        wanted, golden_by = read_stored(golden), describe_maker(golden)
+        wanted, golden_by = read_stored_parts(golden), describe_maker(golden)
     except HalationError as fault:
         return replace(fresh, sentence=str(fault)), made, {}
     fresh = replace(fresh, golden_by=golden_by)
@@ -40,9 +40,9 @@ def find_unusable(case: Case, parts: Parts) -> str:
     """Why a picture should not become a golden, or pass where none is asked for; "" if nothing speaks against it."""
     if "nonfinite" not in case.allow:
         for name, part in parts.items():
-            if part.unusable:
+            if part.count_unusable:
                 of = f" of '{name}'" if name else ""
-                return f'{part.unusable} pixels{of} are not finite; allow = ["nonfinite"] if they may be'
+                return f'{part.count_unusable} pixels{of} are not finite; allow = ["nonfinite"] if they may be'
     if "black" not in case.allow and not any(part.array[..., :3].any() for part in parts.values()):
         return 'the picture is all black; allow = ["black"] if it may be'
     return ""
@@ -62,7 +62,7 @@ def _compare(case: Case, made: StoredPart, wanted: StoredPart, perceptual: bool)
         wanted.array,
         threshold=threshold,
         relative=case.metric != "max_abs",
-        linear=made.linear and wanted.linear,
+        linear=made.is_linear and wanted.is_linear,
         perceptual=perceptual,
     )
 

@@ -88,4 +88,4 @@ def _choose_gain(difference: Array) -> float:
 def _measure_range(part: StoredPart) -> tuple[float, float]:
     """What is black and what is white where data is shown."""
     finite = part.array[np.isfinite(part.array)]
-    return (float(finite.min()), float(finite.max())) if part.data and finite.size else (0.0, 1.0)
+    return (float(finite.min()), float(finite.max())) if part.is_data and finite.size else (0.0, 1.0)

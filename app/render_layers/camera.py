@@ -18,23 +18,23 @@ from halation.nodes import Camera, Size
 from ..color.transforms import Array
 from ..errors import InputError
 
-_SAMPLES = 3000
-_FEWEST = 12
-_FAR = 1e9
-_DRAWS = 160
-_JUDGES = 1500
-_STEPS = 4
-_SLICE = 128
+SAMPLES = 3000
+_FEWEST_POINTS = 12
+FARTHEST = 1e9
+_CONSENSUS_DRAWS = 160
+_CONSENSUS_JUDGES = 1500
+_FIT_ROUNDS = 4
+_SLICE_ROWS = 128
 _SEED = 20
-_CLOSE = 1.0
-_GOOD = 0.5
-_REPEATED = 0.01
+_INLIER_PIXELS = 1.0
+_WORST_MEDIAN_PIXELS = 0.5
+_REPEATED_SHARE = 0.01
 _NO_PINHOLE = "no pinhole camera sees these positions where the picture has them"
 _MIXER = np.array([1.0, 2.0**0.5, 3.0**0.5])
 
 
 @dataclass(frozen=True)
-class Solved:
+class CameraSolution:
     """A camera and how well it explains the picture.
 
     `residual` is the median, `worst` the 99th percentile of the distance in pixels between where a place is seen and
@@ -48,26 +48,28 @@ class Solved:
 
 
 @dataclass(frozen=True)
-class _Seen:
+class _Correspondences:
     """Places, homogeneous, and where they are seen, as fractions of the picture; depths where they are known."""
 
-    places: Array
-    at: Array
+    points: Array
+    image_points: Array
     depths: Array | None
     size: Size
 
-    def of(self, keep: Array) -> _Seen:
-        return _Seen(self.places[keep], self.at[keep], None if self.depths is None else self.depths[keep], self.size)
+    def select(self, keep: Array) -> _Correspondences:
+        return _Correspondences(
+            self.points[keep], self.image_points[keep], None if self.depths is None else self.depths[keep], self.size
+        )
 
-    def error(self, matrix: Array) -> Array:
+    def reprojection_error(self, matrix: Array) -> Array:
         """Distances in pixels; infinite behind the camera."""
-        seen = self.places @ matrix.T
+        projected = self.points @ matrix.T
         with np.errstate(divide="ignore", invalid="ignore"):
-            apart = np.hypot(*((seen[:, :2] / seen[:, 2:] - self.at) * self.size).T)
-        return np.where(seen[:, 2] > 0.0, apart, np.inf)
+            apart = np.hypot(*((projected[:, :2] / projected[:, 2:] - self.image_points) * self.size).T)
+        return np.where(projected[:, 2] > 0.0, apart, np.inf)
 
 
-def solve_camera(position: Array, depth: Array | None = None) -> Solved:
+def solve_camera(position: Array, depth: Array | None = None) -> CameraSolution:
     """The camera that took a picture of positions [h, w, 3], and planar depths [h, w] if they are known.
 
     Background and what was averaged over silhouettes is left out.
@@ -75,30 +77,32 @@ def solve_camera(position: Array, depth: Array | None = None) -> Solved:
     Raises:
         InputError: the rest of a sentence about the picture that says why it has no camera.
     """
-    seen = _seen(np.asarray(position), None if depth is None else np.asarray(depth))
-    if len(seen.places) < _FEWEST:
+    correspondences = _collect_correspondences(np.asarray(position), None if depth is None else np.asarray(depth))
+    if len(correspondences.points) < _FEWEST_POINTS:
         raise InputError("too few pixels have a position")
-    matrix = _fitted(seen.of(_agreed(seen)))
-    error = seen.error(matrix)
-    close = error < max(_CLOSE, 6.0 * float(np.median(error)))
-    if float(np.median(error)) > _GOOD or np.count_nonzero(close) < 0.5 * len(error):
+    matrix = _fit_robustly(correspondences.select(_find_inliers(correspondences)))
+    error = correspondences.reprojection_error(matrix)
+    close = error < max(_INLIER_PIXELS, 6.0 * float(np.median(error)))
+    if float(np.median(error)) > _WORST_MEDIAN_PIXELS or np.count_nonzero(close) < 0.5 * len(error):
         raise InputError(_NO_PINHOLE)
     camera = Camera(tuple(float(part) for part in matrix.ravel()))
-    return Solved(camera, float(np.median(error[close])), float(np.percentile(error[close], 99)), float(close.mean()))
+    return CameraSolution(
+        camera, float(np.median(error[close])), float(np.percentile(error[close], 99)), float(close.mean())
+    )
 
 
-def residual_of(camera: Camera, position: Array) -> Solved:
+def measure_camera(camera: Camera, position: Array) -> CameraSolution:
     """How well a camera that is known explains a picture of positions. Raises InputError where there are too few."""
-    seen = _seen(np.asarray(position), None)
-    if len(seen.places) < _FEWEST:
+    correspondences = _collect_correspondences(np.asarray(position), None)
+    if len(correspondences.points) < _FEWEST_POINTS:
         raise InputError("too few pixels have a position")
-    error = seen.error(np.reshape(camera.rows, (3, 4)))
+    error = correspondences.reprojection_error(np.reshape(camera.rows, (3, 4)))
     finite = error[np.isfinite(error)] if np.isfinite(error).any() else np.array([np.inf])
-    share = float((error < _CLOSE).mean())
-    return Solved(camera, float(np.median(finite)), float(np.percentile(finite, 99)), share)
+    share = float((error < _INLIER_PIXELS).mean())
+    return CameraSolution(camera, float(np.median(finite)), float(np.percentile(finite, 99)), share)
 
 
-def sampled(size: Size, samples: int = _SAMPLES, margin: int = 0) -> tuple[Array, Array]:
+def sample_pixels(size: Size, samples: int = SAMPLES, margin: int = 0) -> tuple[Array, Array]:
     """Rows and columns of about this many pixels, evenly spread and away from the border."""
     width, height = size
     step = max(1.0, (width * height / samples) ** 0.5)
@@ -111,84 +115,88 @@ def sampled(size: Size, samples: int = _SAMPLES, margin: int = 0) -> tuple[Array
     return grid[0].ravel(), grid[1].ravel()
 
 
-def valid(places: Array) -> Array:
+def find_surface_points(places: Array) -> Array:
     """True where positions [n, 3] are those of a surface: finite, not at zero, and not the same in many pixels."""
     with np.errstate(invalid="ignore"):
-        good = (np.abs(places) < _FAR).all(axis=1) & (places != 0.0).any(axis=1)
+        good = (np.abs(places) < FARTHEST).all(axis=1) & (places != 0.0).any(axis=1)
     if good.any():
         mixed = places[good] @ _MIXER
         _, which, counts = np.unique(mixed, return_inverse=True, return_counts=True)
-        good[good] = counts[which] <= max(3.0, _REPEATED * len(places))
+        good[good] = counts[which] <= max(3.0, _REPEATED_SHARE * len(places))
     return good
 
 
-def _seen(position: Array, depth: Array | None) -> _Seen:
+def _collect_correspondences(position: Array, depth: Array | None) -> _Correspondences:
     """A sample of the pixels that show a surface."""
     size = (position.shape[1], position.shape[0])
-    rows, columns = sampled(size)
+    rows, columns = sample_pixels(size)
     places = position[rows, columns, :3].astype(np.float64)
-    keep = valid(places)
+    keep = find_surface_points(places)
     depths = None
     if depth is not None:
         depths = depth[rows, columns].astype(np.float64).reshape(-1)
         with np.errstate(invalid="ignore"):
-            keep &= (depths > 0.0) & (depths < _FAR)
+            keep &= (depths > 0.0) & (depths < FARTHEST)
         depths = depths[keep]
     at = (np.stack([columns, rows], axis=1) + 0.5) / size
-    return _Seen(np.pad(places[keep], ((0, 0), (0, 1)), constant_values=1.0), at[keep], depths, size)
+    return _Correspondences(np.pad(places[keep], ((0, 0), (0, 1)), constant_values=1.0), at[keep], depths, size)
 
 
-def _fitted(seen: _Seen) -> Array:
+def _fit_robustly(correspondences: _Correspondences) -> Array:
     """The matrix with the least error, found again and again without what fits badly."""
-    if len(seen.places) < _FEWEST:
+    if len(correspondences.points) < _FEWEST_POINTS:
         raise InputError(_NO_PINHOLE)
-    weights = np.ones(len(seen.places))
-    matrix, kept = np.empty((3, 4)), seen
-    for _ in range(_STEPS):
-        matrix = _linear(kept, weights)
-        error = seen.error(matrix)
+    weights = np.ones(len(correspondences.points))
+    matrix, inliers = np.empty((3, 4)), correspondences
+    for _ in range(_FIT_ROUNDS):
+        matrix = _fit_linearly(inliers, weights)
+        error = correspondences.reprojection_error(matrix)
         limit = max(1e-6, 5.0 * float(np.median(error)))
         keep = error <= limit
-        if not np.isfinite(limit) or np.count_nonzero(keep) < _FEWEST:
+        if not np.isfinite(limit) or np.count_nonzero(keep) < _FEWEST_POINTS:
             break
-        kept = seen.of(keep)
-        weights = 1.0 / (kept.places @ matrix[2])
+        inliers = correspondences.select(keep)
+        weights = 1.0 / (inliers.points @ matrix[2])
     return matrix
 
 
-def _linear(seen: _Seen, weights: Array) -> Array:
+def _fit_linearly(correspondences: _Correspondences, weights: Array) -> Array:
     """The matrix of least squares; its third row is of unit length, so that d is in world units."""
-    middle = seen.places[:, :3].mean(axis=0)
-    spread = float(seen.places[:, :3].std()) or 1.0
-    shift = _shift(middle, spread)
-    places = seen.places @ shift.T
-    at = 2.0 * seen.at - 1.0
-    solved = _direct(places, at, weights) if seen.depths is None else _with_depth(places, at, seen.depths)
+    middle = correspondences.points[:, :3].mean(axis=0)
+    spread = float(correspondences.points[:, :3].std()) or 1.0
+    shift = _normalizing_matrix(middle, spread)
+    places = correspondences.points @ shift.T
+    at = 2.0 * correspondences.image_points - 1.0
+    solved = (
+        _solve_without_depth(places, at, weights)
+        if correspondences.depths is None
+        else _solve_with_depth(places, at, correspondences.depths)
+    )
     matrix = np.array([[0.5, 0.0, 0.5], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]]) @ solved @ shift
     length = float(np.linalg.norm(matrix[2, :3]))
     if length * spread < 1e-5 * abs(float(matrix[2] @ np.append(middle, 1.0))):
         raise InputError("the picture has no perspective: its camera is orthographic, or everything is far away")
-    ahead = float(np.median(seen.places @ matrix[2]))
+    ahead = float(np.median(correspondences.points @ matrix[2]))
     return matrix / (length if ahead > 0.0 else -length)
 
 
-def _direct(places: Array, at: Array, weights: Array) -> Array:
+def _solve_without_depth(places: Array, at: Array, weights: Array) -> Array:
     """Without depth: the direction in which the equations of all pixels come closest to zero."""
-    _, sizes, rows = np.linalg.svd(_triangle(_equations(places * weights[:, None], at)))
+    _, sizes, rows = np.linalg.svd(_reduce_rows(_make_equations(places * weights[:, None], at)))
     if sizes[-2] < 1e-6 * sizes[0] or sizes[-1] > 0.3 * sizes[-2]:
         raise InputError("the positions lie in one plane, or are too coarse, which leaves the camera open")
     return rows[-1].reshape(3, 4)
 
 
-def _triangle(rows: Array) -> Array:
+def _reduce_rows(rows: Array) -> Array:
     """R of the QR decomposition of many rows, slice by slice: for all at once, threads cost more than they save."""
-    while len(rows) > 2 * _SLICE:
-        slices = np.pad(rows, ((0, -len(rows) % _SLICE), (0, 0))).reshape(-1, _SLICE, rows.shape[1])
+    while len(rows) > 2 * _SLICE_ROWS:
+        slices = np.pad(rows, ((0, -len(rows) % _SLICE_ROWS), (0, 0))).reshape(-1, _SLICE_ROWS, rows.shape[1])
         rows = np.asarray(np.linalg.qr(slices, mode="r")).reshape(-1, rows.shape[1])
     return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
-def _with_depth(places: Array, at: Array, depths: Array) -> Array:
+def _solve_with_depth(places: Array, at: Array, depths: Array) -> Array:
     sides = np.concatenate([at, np.ones((len(at), 1))], axis=1)
     rows, _, rank, sizes = np.linalg.lstsq(places / depths[:, None], sides, rcond=None)
     if rank < 4 or sizes[-1] < 1e-6 * sizes[0]:
@@ -196,7 +204,7 @@ def _with_depth(places: Array, at: Array, depths: Array) -> Array:
     return rows.T
 
 
-def _equations(places: Array, at: Array) -> Array:
+def _make_equations(places: Array, at: Array) -> Array:
     """Two rows per pixel, [..., 2 n, 12]."""
     zero = np.zeros_like(places)
     across = np.concatenate([places, zero, -at[..., :1] * places], axis=-1)
@@ -204,60 +212,65 @@ def _equations(places: Array, at: Array) -> Array:
     return np.concatenate([across, down], axis=-2)
 
 
-def _agreed(seen: _Seen) -> Array:
+def _find_inliers(correspondences: _Correspondences) -> Array:
     """True for places that one camera sees: all, if a first fit is good, else those that most agree on."""
     with contextlib.suppress(InputError):
-        good = seen.error(_linear(seen, np.ones(len(seen.places)))) < _CLOSE
+        good = (
+            correspondences.reprojection_error(_fit_linearly(correspondences, np.ones(len(correspondences.points))))
+            < _INLIER_PIXELS
+        )
         if np.count_nonzero(good) > 0.9 * len(good):
             return good
-    return seen.error(_consensus(seen)) < 1.5 * _CLOSE
+    return correspondences.reprojection_error(_fit_by_consensus(correspondences)) < 1.5 * _INLIER_PIXELS
 
 
-def _consensus(seen: _Seen) -> Array:
+def _fit_by_consensus(correspondences: _Correspondences) -> Array:
     """The matrix through six places that most others agree with (Fischler and Bolles, 1981)."""
     random = np.random.default_rng(_SEED)
-    draws = random.integers(0, len(seen.places), (_DRAWS, 6))
-    middle = np.median(seen.places[:, :3], axis=0)
-    spread = float(np.median(np.abs(seen.places[:, :3] - middle))) or 1.0
-    shift = _shift(middle, spread)
-    _, _, rows = np.linalg.svd(_equations(seen.places[draws] @ shift.T, seen.at[draws]))
-    judges = seen.of(random.permutation(len(seen.places))[:_JUDGES])
+    draws = random.integers(0, len(correspondences.points), (_CONSENSUS_DRAWS, 6))
+    middle = np.median(correspondences.points[:, :3], axis=0)
+    spread = float(np.median(np.abs(correspondences.points[:, :3] - middle))) or 1.0
+    shift = _normalizing_matrix(middle, spread)
+    _, _, rows = np.linalg.svd(
+        _make_equations(correspondences.points[draws] @ shift.T, correspondences.image_points[draws])
+    )
+    judges = correspondences.select(random.permutation(len(correspondences.points))[:_CONSENSUS_JUDGES])
     best, most = np.eye(3, 4), -1
     for row in rows[:, -1]:
         matrix = row.reshape(3, 4) @ shift
-        matrix *= np.sign(np.median(judges.places @ matrix[2])) or 1.0
-        count = int(np.count_nonzero(judges.error(matrix) < _CLOSE))
+        matrix *= np.sign(np.median(judges.points @ matrix[2])) or 1.0
+        count = int(np.count_nonzero(judges.reprojection_error(matrix) < _INLIER_PIXELS))
         if count > most:
             best, most = matrix, count
     return best
 
 
-def _shift(middle: Array, spread: float) -> Array:
+def _normalizing_matrix(middle: Array, spread: float) -> Array:
     """The 4 x 4 matrix that brings places around the origin, for the sake of rounding."""
     return np.diag([1.0 / spread] * 3 + [1.0]) @ np.concatenate(
         [np.eye(4, 3), np.append(-middle, 1.0)[:, None]], axis=1
     )
 
 
-def header_camera(attributes: Mapping[str, object], size: Size) -> Camera | None:
+def read_header_camera(attributes: Mapping[str, object], size: Size) -> Camera | None:
     """The camera that the header names: `worldToNDC` or `worldToScreen`, else `worldToCamera` and `screenWindowWidth`.
 
     OpenEXR leaves open whether such coordinates go from 0 to 1, downward, or from -1 to 1, upward: what tells is
     where the axis of the camera meets the picture, 0.5 or 0.
     """
-    matrices = {name.casefold(): _matrix(value) for name, value in attributes.items()}
+    matrices = {name.casefold(): _parse_matrix(value) for name, value in attributes.items()}
     for name in ("worldtondc", "worldtoscreen"):
-        if (matrix := matrices.get(name)) is not None and (camera := _projected(matrix)) is not None:
+        if (matrix := matrices.get(name)) is not None and (camera := _from_projection(matrix)) is not None:
             return camera
     matrix, window = matrices.get("worldtocamera"), attributes.get("screenWindowWidth", 1.0)
     if matrix is None or not isinstance(window, int | float) or window in (0.0, 1.0):
         return None  # 1 is what writers put that do not know
     pixel = attributes.get("PixelAspectRatio", 1.0)
     aspect = size[0] / size[1] * (pixel if isinstance(pixel, int | float) and pixel > 0.0 else 1.0)
-    return _placed(matrix, float(window), aspect)
+    return _from_placement(matrix, float(window), aspect)
 
 
-def _matrix(value: object) -> Array | None:
+def _parse_matrix(value: object) -> Array | None:
     """16 numbers for row vectors, as Imath has them, as a matrix for columns."""
     if not isinstance(value, tuple) or len(value) != 16:
         return None
@@ -265,7 +278,7 @@ def _matrix(value: object) -> Array | None:
     return matrix if np.isfinite(matrix).all() else None
 
 
-def _projected(matrix: Array) -> Camera | None:
+def _from_projection(matrix: Array) -> Camera | None:
     """From a projection of the world; None where it has no perspective."""
     rows = matrix[[0, 1, 3]]
     length = float(np.linalg.norm(rows[2, :3]))
@@ -275,20 +288,20 @@ def _projected(matrix: Array) -> Camera | None:
     center = rows[:2, :3] @ rows[2, :3]
     if np.abs(center).max() < np.abs(center - 0.5).max():
         rows = np.array([[0.5, 0.0, 0.5], [0.0, -0.5, 0.5], [0.0, 0.0, 1.0]]) @ rows
-    return _camera(rows)
+    return _make_camera(rows)
 
 
-def _placed(matrix: Array, window: float, aspect: float) -> Camera | None:
+def _from_placement(matrix: Array, window: float, aspect: float) -> Camera | None:
     """From the camera's place, and the width of the picture at distance 1. Left-handed cameras look along +z."""
     length = float(np.linalg.norm(matrix[2, :3]))
     if length < 1e-12:
         return None
     axes = matrix[:3] / length
     ahead = axes[2] if np.linalg.det(axes[:, :3]) < 0.0 else -axes[2]
-    return _camera(np.stack([axes[0] / window + 0.5 * ahead, -axes[1] * aspect / window + 0.5 * ahead, ahead]))
+    return _make_camera(np.stack([axes[0] / window + 0.5 * ahead, -axes[1] * aspect / window + 0.5 * ahead, ahead]))
 
 
-def _camera(rows: Array) -> Camera | None:
+def _make_camera(rows: Array) -> Camera | None:
     """None if the rows are flat: nothing could be seen through it."""
     if abs(np.linalg.det(rows[:, :3])) < 1e-12:
         return None

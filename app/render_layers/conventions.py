@@ -11,7 +11,7 @@ from enum import StrEnum
 from types import MappingProxyType
 
 from ..media.layers import normalize_name
-from .naming import Renderer, Role
+from .naming import RenderProgram, Role
 
 
 class DepthKind(StrEnum):
@@ -29,7 +29,7 @@ class DepthKind(StrEnum):
     """Planar, brought between 0 and 1."""
 
 
-class Space(StrEnum):
+class VectorSpace(StrEnum):
     """Whose axes vectors refer to."""
 
     WORLD = "world"
@@ -39,7 +39,7 @@ class Space(StrEnum):
     """x right, y up, z away from the viewer."""
 
 
-class Motion(StrEnum):
+class MotionDirection(StrEnum):
     """Which two frames motion is between, once `Convention.scale` has made it pixels, x right and y down."""
 
     FROM_PREVIOUS = "from_previous"
@@ -58,7 +58,7 @@ class Convention:
 
     kind: str
     reason: str
-    measured: bool = False
+    is_measured: bool = False
     scale: tuple[float, ...] = (1.0,)
     offset: tuple[float, ...] = (0.0,)
 
@@ -72,68 +72,80 @@ class Convention:
 class _Habit:
     """What one renderer writes under one of some names, as long as nothing proves otherwise."""
 
-    renderer: Renderer
+    renderer: RenderProgram
     role: Role
     names: str
     convention: Convention
 
 
-def _habit(
-    renderer: Renderer, role: Role, names: str, kind: str, reason: str, scale: tuple[float, ...] = (1.0,)
+def _make_habit(
+    renderer: RenderProgram, role: Role, names: str, kind: str, reason: str, scale: tuple[float, ...] = (1.0,)
 ) -> _Habit:
     return _Habit(renderer, role, names, Convention(kind, reason, scale=scale))
 
 
 _UP = "in pixels, y up"
 _HABITS: Sequence[_Habit] = (
-    _habit(Renderer.BLENDER, Role.DEPTH, "depth z", DepthKind.PLANAR, "Blender writes planar depth"),
-    _habit(Renderer.ARNOLD, Role.DEPTH, "z depth", DepthKind.PLANAR, "Arnold's Z is not its ray length"),
-    _habit(Renderer.KARMA, Role.DEPTH, "depth hitpz", DepthKind.PLANAR, "Karma's hitPz is planar"),
-    _habit(Renderer.KARMA, Role.DEPTH, "hitdist", DepthKind.RADIAL, "Karma's hitdist is the length of the ray"),
-    _habit(Renderer.KARMA, Role.DEPTH, "pz", DepthKind.NEGATIVE, "Mantra's Pz is z in camera space", (-1.0,)),
-    _habit(Renderer.RENDERMAN, Role.DEPTH, "z zfiltered depth", DepthKind.PLANAR, "RenderMan's z is its camera's"),
-    _habit(Renderer.MITSUBA, Role.DEPTH, "depth dd", DepthKind.RADIAL, "Mitsuba's depth is the length of the ray"),
-    _habit(Renderer.NUKE, Role.DEPTH, "depth z", DepthKind.INVERSE, "Nuke's ScanlineRender writes 1 / z"),
-    _habit(
-        Renderer.VRAY,
+    _make_habit(RenderProgram.BLENDER, Role.DEPTH, "depth z", DepthKind.PLANAR, "Blender writes planar depth"),
+    _make_habit(RenderProgram.ARNOLD, Role.DEPTH, "z depth", DepthKind.PLANAR, "Arnold's Z is not its ray length"),
+    _make_habit(RenderProgram.KARMA, Role.DEPTH, "depth hitpz", DepthKind.PLANAR, "Karma's hitPz is planar"),
+    _make_habit(
+        RenderProgram.KARMA, Role.DEPTH, "hitdist", DepthKind.RADIAL, "Karma's hitdist is the length of the ray"
+    ),
+    _make_habit(RenderProgram.KARMA, Role.DEPTH, "pz", DepthKind.NEGATIVE, "Mantra's Pz is z in camera space", (-1.0,)),
+    _make_habit(
+        RenderProgram.RENDERMAN, Role.DEPTH, "z zfiltered depth", DepthKind.PLANAR, "RenderMan's z is its camera's"
+    ),
+    _make_habit(
+        RenderProgram.MITSUBA, Role.DEPTH, "depth dd", DepthKind.RADIAL, "Mitsuba's depth is the length of the ray"
+    ),
+    _make_habit(RenderProgram.NUKE, Role.DEPTH, "depth z", DepthKind.INVERSE, "Nuke's ScanlineRender writes 1 / z"),
+    _make_habit(
+        RenderProgram.VRAY,
         Role.DEPTH,
         "vrayzdepth zdepth z",
         "",
         "V-Ray scales, clamps and turns around its Z-depth as its settings say",
     ),
-    _habit(Renderer.BLENDER, Role.NORMAL, "normal", Space.WORLD, "Blender writes normals of the world"),
-    _habit(Renderer.ARNOLD, Role.NORMAL, "n", Space.WORLD, "Arnold's N is in world space"),
-    _habit(Renderer.KARMA, Role.NORMAL, "ngcamera ncamera", Space.CAMERA, "its name says camera"),
-    _habit(Renderer.KARMA, Role.NORMAL, "n ng", Space.WORLD, "Karma's N is in world space"),
-    _habit(Renderer.RENDERMAN, Role.NORMAL, "nn normal", Space.CAMERA_AHEAD, "RenderMan shades in camera space"),
-    _habit(Renderer.RENDERMAN, Role.NORMAL, "nworld", Space.WORLD, "its name says world"),
-    _habit(Renderer.BLENDER, Role.POSITION, "position", Space.WORLD, "Blender writes places in the world"),
-    _habit(Renderer.ARNOLD, Role.POSITION, "p", Space.WORLD, "Arnold's P is in world space"),
-    _habit(Renderer.KARMA, Role.POSITION, "p", Space.WORLD, "Karma's P is in world space"),
-    _habit(Renderer.KARMA, Role.POSITION, "pcamera", Space.CAMERA, "its name says camera"),
-    _habit(Renderer.RENDERMAN, Role.POSITION, "p", Space.CAMERA_AHEAD, "RenderMan shades in camera space"),
-    _habit(Renderer.RENDERMAN, Role.POSITION, "pworld", Space.WORLD, "its name says world"),
-    _habit(
-        Renderer.BLENDER,
+    _make_habit(RenderProgram.BLENDER, Role.NORMAL, "normal", VectorSpace.WORLD, "Blender writes normals of the world"),
+    _make_habit(RenderProgram.ARNOLD, Role.NORMAL, "n", VectorSpace.WORLD, "Arnold's N is in world space"),
+    _make_habit(RenderProgram.KARMA, Role.NORMAL, "ngcamera ncamera", VectorSpace.CAMERA, "its name says camera"),
+    _make_habit(RenderProgram.KARMA, Role.NORMAL, "n ng", VectorSpace.WORLD, "Karma's N is in world space"),
+    _make_habit(
+        RenderProgram.RENDERMAN, Role.NORMAL, "nn normal", VectorSpace.CAMERA_AHEAD, "RenderMan shades in camera space"
+    ),
+    _make_habit(RenderProgram.RENDERMAN, Role.NORMAL, "nworld", VectorSpace.WORLD, "its name says world"),
+    _make_habit(
+        RenderProgram.BLENDER, Role.POSITION, "position", VectorSpace.WORLD, "Blender writes places in the world"
+    ),
+    _make_habit(RenderProgram.ARNOLD, Role.POSITION, "p", VectorSpace.WORLD, "Arnold's P is in world space"),
+    _make_habit(RenderProgram.KARMA, Role.POSITION, "p", VectorSpace.WORLD, "Karma's P is in world space"),
+    _make_habit(RenderProgram.KARMA, Role.POSITION, "pcamera", VectorSpace.CAMERA, "its name says camera"),
+    _make_habit(
+        RenderProgram.RENDERMAN, Role.POSITION, "p", VectorSpace.CAMERA_AHEAD, "RenderMan shades in camera space"
+    ),
+    _make_habit(RenderProgram.RENDERMAN, Role.POSITION, "pworld", VectorSpace.WORLD, "its name says world"),
+    _make_habit(
+        RenderProgram.BLENDER,
         Role.VELOCITY,
         "vector",
-        Motion.FROM_PREVIOUS,
+        MotionDirection.FROM_PREVIOUS,
         f"Blender's X and Y are previous minus current, {_UP}; Z and W current minus next",
         (-1.0, 1.0, -1.0, 1.0),
     ),
-    _habit(
-        Renderer.NUKE,
+    _make_habit(
+        RenderProgram.NUKE,
         Role.VELOCITY,
         "backward",
-        Motion.FROM_PREVIOUS,
+        MotionDirection.FROM_PREVIOUS,
         f"Nuke's backward vectors point to the previous frame, {_UP}",
         (-1.0, 1.0),
     ),
-    _habit(
-        Renderer.NUKE,
+    _make_habit(
+        RenderProgram.NUKE,
         Role.VELOCITY,
         "forward motion",
-        Motion.TO_NEXT,
+        MotionDirection.TO_NEXT,
         f"Nuke's forward vectors point to the next frame, {_UP}",
         (1.0, -1.0),
     ),
@@ -141,23 +153,23 @@ _HABITS: Sequence[_Habit] = (
 _FALLBACKS: Mapping[Role, Convention] = MappingProxyType(
     {
         Role.DEPTH: Convention(DepthKind.PLANAR, "what most renderers write; nothing in the file proves it"),
-        Role.NORMAL: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
-        Role.POSITION: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.NORMAL: Convention(VectorSpace.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.POSITION: Convention(VectorSpace.WORLD, "what most renderers write; nothing in the file proves it"),
         Role.VELOCITY: Convention("", "renderers differ in it; the frame before would tell"),
     }
 )
 
 
-def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None:
+def find_habit(role: Role, name: str, renderer: RenderProgram | None) -> Convention | None:
     """What the renderer is known to write under this name; of an unknown one, what all do that have it.
 
     Else what most renderers do; None for roles that need no telling.
     """
     word = normalize_name(name.rpartition(".")[2])
-    found = [
+    conventions = [
         item.convention
         for item in _HABITS
         if item.role is role and renderer in (None, item.renderer) and word in item.names.split()
     ]
-    agreed = len({(item.kind, item.scale) for item in found}) == 1
-    return found[0] if agreed else _FALLBACKS.get(role)
+    agreed = len({(item.kind, item.scale) for item in conventions}) == 1
+    return conventions[0] if agreed else _FALLBACKS.get(role)

@@ -11,8 +11,8 @@ import numpy as np
 from halation.nodes import Camera
 
 from ..color.transforms import Array
-from .camera import sampled, valid
-from .conventions import Convention, DepthKind, Motion, Space
+from .camera import find_surface_points, sample_pixels
+from .conventions import Convention, DepthKind, MotionDirection, VectorSpace
 
 _SAMPLES = 3000
 _FEWEST = 30
@@ -27,35 +27,35 @@ _STILL = 0.5
 _LIKELY = 1.15
 
 
-def depth_by_position(depth: Array, position: Array, camera: Camera) -> Convention | None:
+def match_depth_with_positions(depth: Array, position: Array, camera: Camera) -> Convention | None:
     """Which depth [h, w] this is, by the distances of the places [h, w, 3]; None if it is none that is known."""
-    rows, columns = sampled((depth.shape[1], depth.shape[0]), _SAMPLES)
+    rows, columns = sample_pixels((depth.shape[1], depth.shape[0]), _SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), depth[rows, columns].astype(np.float64).ravel()
     with np.errstate(invalid="ignore"):
-        keep = valid(places) & (np.abs(stored) < _FAR)
+        keep = find_surface_points(places) & (np.abs(stored) < _FAR)
     places, stored = places[keep], stored[keep]
     ahead = places @ np.array(camera.rows[8:11]) + camera.rows[11]
     if len(stored) < _FEWEST or float(ahead.min()) <= 0.0:
         return None
     away = np.linalg.norm(places - np.array(camera.eye), axis=1)
-    told = {
+    candidates = {
         DepthKind.PLANAR: (ahead, "the distance of every place along the camera's axis"),
         DepthKind.RADIAL: (away, "the distance of every place from the eye"),
         DepthKind.INVERSE: (1.0 / ahead, "1 / the distance of every place along the camera's axis"),
         DepthKind.NEGATIVE: (-ahead, "minus the distance of every place along the camera's axis"),
     }
-    errors = {kind: float(np.median(np.abs(stored / guess - 1.0))) for kind, (guess, _) in told.items()}
+    errors = {kind: float(np.median(np.abs(stored / guess - 1.0))) for kind, (guess, _) in candidates.items()}
     kind = min(errors, key=lambda kind: errors[kind])
     if errors[kind] > _EXACT:
-        return _normalized(stored, ahead)
-    return Convention(kind, f"{told[kind][1]}, to {errors[kind]:.0e}", True, _sign(kind))
+        return _match_normalized_depth(stored, ahead)
+    return Convention(kind, f"{candidates[kind][1]}, to {errors[kind]:.0e}", True, _sign_scale(kind))
 
 
-def _sign(kind: DepthKind) -> tuple[float]:
+def _sign_scale(kind: DepthKind) -> tuple[float]:
     return (-1.0,) if kind is DepthKind.NEGATIVE else (1.0,)
 
 
-def _normalized(stored: Array, ahead: Array) -> Convention | None:
+def _match_normalized_depth(stored: Array, ahead: Array) -> Convention | None:
     """Between 0 and 1, and a straight line over planar depth where it is not clamped."""
     if stored.min() < 0.0 or stored.max() > 1.0:
         return None
@@ -76,7 +76,7 @@ def _normalized(stored: Array, ahead: Array) -> Convention | None:
     return Convention(DepthKind.NORMALIZED, reason, True, (scale,), (offset,))
 
 
-def depth_alone(depth: Array) -> Convention | None:
+def judge_depth_by_planes(depth: Array) -> Convention | None:
     """Which depth [h, w] this is where nothing is to compare it with: by its sign, or by what makes planes flat.
 
     Over the picture of a plane 1 / planar depth is linear, and so is inverse depth as it is, and, for the right focal
@@ -87,81 +87,89 @@ def depth_alone(depth: Array) -> Convention | None:
     reach = max(1, min(width, height) // 48)
     if min(width, height) < 2 * reach + 3:
         return None
-    rows, columns = sampled((width, height), 4 * _SAMPLES, reach)
+    rows, columns = sample_pixels((width, height), 4 * _SAMPLES, reach)
     rows, columns = rows.clip(reach, height - reach - 1), columns.clip(reach, width - reach - 1)
     steps = reach * np.array([(0, 0), (0, -1), (0, 1), (-1, 0), (1, 0)])
     at = np.stack([rows, columns], axis=1) + steps[:, None]
     cross = depth[at[..., 0], at[..., 1]].astype(np.float64)
     finite = np.isfinite(cross[0]) & (np.abs(cross[0]) < _FAR)
-    below = finite.any() and bool((cross[0][finite] < 0.0).mean() > 0.99)
-    cross = -cross if below else cross
+    is_negative = finite.any() and bool((cross[0][finite] < 0.0).mean() > 0.99)
+    cross = -cross if is_negative else cross
     with np.errstate(invalid="ignore"):
         keep = ((cross > 0.0) & (cross < _FAR)).all(axis=0) & (cross[1:] != cross[0]).any(axis=0)
     at, cross = at[:, keep], cross[:, keep]
-    found = _flattest(cross, (at - ((height - 1) / 2, (width - 1) / 2)) / width) if len(at[0]) >= _FEWEST else None
-    if not below:
-        return found
+    convention = (
+        _find_flattest_kind(cross, (at - ((height - 1) / 2, (width - 1) / 2)) / width)
+        if len(at[0]) >= _FEWEST
+        else None
+    )
+    if not is_negative:
+        return convention
     return (
         None
-        if found and found.kind != DepthKind.PLANAR
-        else Convention(DepthKind.NEGATIVE, "all of it is below zero", True, _sign(DepthKind.NEGATIVE))
+        if convention and convention.kind != DepthKind.PLANAR
+        else Convention(DepthKind.NEGATIVE, "all of it is below zero", True, _sign_scale(DepthKind.NEGATIVE))
     )
 
 
-def _flattest(cross: Array, away: Array) -> Convention | None:
+def _find_flattest_kind(cross: Array, away: Array) -> Convention | None:
     """Depths of five pixels each, and how far these are from the middle as fractions of the width."""
     square = (away**2).sum(axis=2)
     bends = {
-        DepthKind.PLANAR: _bend(1.0 / cross),
-        DepthKind.INVERSE: _bend(cross),
-        DepthKind.RADIAL: min(_bend(np.sqrt(1.0 + square / focal**2) / cross) for focal in _FOCALS),
+        DepthKind.PLANAR: _measure_bend(1.0 / cross),
+        DepthKind.INVERSE: _measure_bend(cross),
+        DepthKind.RADIAL: min(_measure_bend(np.sqrt(1.0 + square / focal**2) / cross) for focal in _FOCALS),
     }
     if bends[DepthKind.PLANAR] < _CLEARLY * bends[DepthKind.RADIAL]:
         del bends[DepthKind.RADIAL]  # of a far camera, there is no difference
     first, second = sorted(bends, key=lambda kind: bends[kind])[:2]
     if bends[first] > _FLAT or bends[second] < _CLEARLY * bends[first]:
         return None
-    made = {DepthKind.PLANAR: "planar, ", DepthKind.INVERSE: "inverse, ", DepthKind.RADIAL: "radial, "}[first]
-    return Convention(first, f"read as {made}planes in the picture come out flat, to {bends[first]:.0e}", True)
+    words = {DepthKind.PLANAR: "planar, ", DepthKind.INVERSE: "inverse, ", DepthKind.RADIAL: "radial, "}[first]
+    return Convention(first, f"read as {words}planes in the picture come out flat, to {bends[first]:.0e}", True)
 
 
-def _bend(field: Array) -> float:
+def _measure_bend(field: Array) -> float:
     """The second difference that three tenths of the pixels stay below, as a fraction of the value."""
     across, down = (np.abs(field[i] + field[i + 1] - 2.0 * field[0]) for i in (1, 3))
     return float(np.quantile(np.maximum(across, down) / field[0], _FLAT_SHARE))
 
 
-def position_space(camera: Camera, position: Array) -> Convention:
+def find_position_space(camera: Camera, position: Array) -> Convention:
     """Whose axes positions refer to, by where the camera that was solved from them stands."""
-    rows, columns = sampled((position.shape[1], position.shape[0]), _SAMPLES)
+    rows, columns = sample_pixels((position.shape[1], position.shape[0]), _SAMPLES)
     places = position[rows, columns, :3].astype(np.float64)
-    places = places[valid(places)]
+    places = places[find_surface_points(places)]
     size = float(np.median(np.linalg.norm(places, axis=1))) if len(places) else 1.0
     home = math.hypot(*camera.eye) < 1e-3 * size
-    for space, ahead in ((Space.CAMERA, -1.0), (Space.CAMERA_AHEAD, 1.0)):
+    for space, ahead in ((VectorSpace.CAMERA, -1.0), (VectorSpace.CAMERA_AHEAD, 1.0)):
         if home and camera.forward[2] * ahead > 0.9999 and camera.right[0] > 0.9999 and camera.down[1] < -0.9999:
             return Convention(space, "the camera that sees them stands at 0 and looks along z", True)
     eye = ", ".join(f"{part:.4g}" for part in camera.eye)
-    return Convention(Space.WORLD, f"the camera that sees them stands at {eye}", True)
+    return Convention(VectorSpace.WORLD, f"the camera that sees them stands at {eye}", True)
 
 
-def normal_by_position(normal: Array, position: Array, camera: Camera, home: Space = Space.WORLD) -> Convention | None:
+def match_normals_with_positions(
+    normal: Array, position: Array, camera: Camera, home: VectorSpace = VectorSpace.WORLD
+) -> Convention | None:
     """Whose axes normals refer to, by how the places around each pixel lie; `home` is what positions refer to."""
     height, width = normal.shape[:2]
     if min(width, height) < 3:
         return None
-    rows, columns = sampled((width, height), _SAMPLES, 1)
+    rows, columns = sample_pixels((width, height), _SAMPLES, 1)
     rows, columns = rows.clip(1, height - 2), columns.clip(1, width - 2)
     place = {
         step: position[rows + step[0], columns + step[1], :3].astype(np.float64)
         for step in ((0, 0), (0, -1), (0, 1), (-1, 0), (1, 0))
     }
     stored = normal[rows, columns, :3].astype(np.float64)
-    scale, offset = _encoding(stored)
+    scale, offset = _find_normal_encoding(stored)
     stored = stored * scale + offset
     with np.errstate(invalid="ignore", over="ignore"):
         length = np.linalg.norm(stored, axis=1)
-        keep = np.all([valid(places) for places in place.values()], axis=0) & (np.abs(length - 1.0) < 0.05)
+        keep = np.all([find_surface_points(places) for places in place.values()], axis=0) & (
+            np.abs(length - 1.0) < 0.05
+        )
     facing = np.cross(place[0, 1][keep] - place[0, -1][keep], place[1, 0][keep] - place[-1, 0][keep])
     facing *= np.sign(((np.array(camera.eye) - place[0, 0][keep]) * facing).sum(axis=1))[:, None]
     size = np.linalg.norm(facing, axis=1)
@@ -170,50 +178,57 @@ def normal_by_position(normal: Array, position: Array, camera: Camera, home: Spa
         return None
     up, ahead = -np.array(camera.down), np.array(camera.forward)
     axes = {
-        Space.CAMERA: np.stack([camera.right, up, -ahead]),
-        Space.CAMERA_AHEAD: np.stack([camera.right, up, ahead]),
+        VectorSpace.CAMERA: np.stack([camera.right, up, -ahead]),
+        VectorSpace.CAMERA_AHEAD: np.stack([camera.right, up, ahead]),
         home: np.eye(3),
     }
-    off = {space: _angle(stored, facing @ turned.T) for space, turned in axes.items()}
-    space = min(off, key=lambda space: off[space])
-    if off[home] < off[space] + 0.5:
+    angles = {space: _median_angle(stored, facing @ turned.T) for space, turned in axes.items()}
+    space = min(angles, key=lambda space: angles[space])
+    if angles[home] < angles[space] + 0.5:
         space = home
-    if off[space] > _ANGLE:
+    if angles[space] > _ANGLE:
         return None
-    whose = {Space.WORLD: "the world", Space.CAMERA: "the camera", Space.CAMERA_AHEAD: "the camera, z ahead"}[space]
+    whose = {
+        VectorSpace.WORLD: "the world",
+        VectorSpace.CAMERA: "the camera",
+        VectorSpace.CAMERA_AHEAD: "the camera, z ahead",
+    }[space]
     coded = ", once 2 n - 1 decodes them" if offset else ""
-    reason = f"{off[space]:.2g} degrees off the surfaces of the positions in the axes of {whose}{coded}"
+    reason = f"{angles[space]:.2g} degrees off the surfaces of the positions in the axes of {whose}{coded}"
     return Convention(space, reason, True, (scale,) * 3, (offset,) * 3)
 
 
-def _encoding(vectors: Array) -> tuple[float, float]:
+def _find_normal_encoding(vectors: Array) -> tuple[float, float]:
     """Scale and offset that make unit vectors: those of pictures of normals are brought between 0 and 1."""
     with np.errstate(invalid="ignore"):
-        there = vectors[np.isfinite(vectors).all(axis=1) & (vectors != 0.0).any(axis=1)]
-    if len(there) and there.min() >= 0.0 and there.max() <= 1.0:
-        off = np.abs(np.linalg.norm(2.0 * there - 1.0, axis=1) - 1.0)
-        if float(np.median(off)) < 0.02 and float(np.median(np.abs(np.linalg.norm(there, axis=1) - 1.0))) > 0.02:
+        vectors_there = vectors[np.isfinite(vectors).all(axis=1) & (vectors != 0.0).any(axis=1)]
+    if len(vectors_there) and vectors_there.min() >= 0.0 and vectors_there.max() <= 1.0:
+        off = np.abs(np.linalg.norm(2.0 * vectors_there - 1.0, axis=1) - 1.0)
+        if (
+            float(np.median(off)) < 0.02
+            and float(np.median(np.abs(np.linalg.norm(vectors_there, axis=1) - 1.0))) > 0.02
+        ):
             return 2.0, -1.0
     return 1.0, 0.0
 
 
-def _angle(a: Array, b: Array) -> float:
+def _median_angle(a: Array, b: Array) -> float:
     """The median angle between unit vectors, in degrees."""
     return float(np.degrees(np.median(np.arccos(np.clip((a * b).sum(axis=1), -1.0, 1.0)))))
 
 
-def velocity_by_cameras(velocity: Array, position: Array, here: Camera, before: Camera) -> Convention | None:
+def match_velocity_with_cameras(velocity: Array, position: Array, here: Camera, before: Camera) -> Convention | None:
     """Which way motion [h, w, 2] points and in what unit, by where two cameras see the same places; most must stand
     still in the world. None if the camera hardly moves or the motion is another."""
     height, width = velocity.shape[:2]
-    rows, columns = sampled((width, height), _SAMPLES)
+    rows, columns = sample_pixels((width, height), _SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), velocity[rows, columns, :2].astype(np.float64)
-    keep = valid(places) & np.isfinite(stored).all(axis=1)
+    keep = find_surface_points(places) & np.isfinite(stored).all(axis=1)
     places, stored = np.pad(places[keep], ((0, 0), (0, 1)), constant_values=1.0), stored[keep]
-    now, then = (_seen(camera, places) for camera in (here, before))
-    moved = (now - then) * (width, height)
-    there = np.isfinite(moved).all(axis=1)
-    moved, stored = moved[there], stored[there]
+    image_now, image_before = (_project(camera, places) for camera in (here, before))
+    moved = (image_now - image_before) * (width, height)
+    finite = np.isfinite(moved).all(axis=1)
+    moved, stored = moved[finite], stored[finite]
     ratios: list[float] = []
     for axis in (0, 1):
         moves = np.abs(moved[:, axis]) > _STILL
@@ -221,66 +236,68 @@ def velocity_by_cameras(velocity: Array, position: Array, here: Camera, before: 
         if abs(ratio) < 1e-9:
             return None
         ratios.append(1.0 / ratio)
-    scale, unit = _unit((ratios[0], ratios[1]), (width, height))
+    scale, unit = _find_unit((ratios[0], ratios[1]), (width, height))
     off = np.abs(stored * scale - moved)
     if float(np.median(off)) > 0.02 * float(np.median(np.abs(moved))) + 0.02:
         return None
     way = "current minus previous" if scale[0] > 0.0 else "previous minus current"
     up = "down" if (scale[0] > 0.0) == (scale[1] > 0.0) else "up"
     reason = f"{way} {unit}, y {up}: where the cameras of both frames see the same places, to {np.median(off):.1g} px"
-    return Convention(Motion.FROM_PREVIOUS, reason, True, scale)
+    return Convention(MotionDirection.FROM_PREVIOUS, reason, True, scale)
 
 
-def _seen(camera: Camera, places: Array) -> Array:
-    seen = places @ np.reshape(camera.rows, (3, 4)).T
+def _project(camera: Camera, places: Array) -> Array:
+    projected = places @ np.reshape(camera.rows, (3, 4)).T
     with np.errstate(divide="ignore", invalid="ignore"):
-        return seen[:, :2] / seen[:, 2:]
+        return projected[:, :2] / projected[:, 2:]
 
 
-def _unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tuple[float, float], str]:
+def _find_unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tuple[float, float], str]:
     """Factors to pixels, exact where the unit is a usual one, and its name."""
     units = (("in pixels", (1.0, 1.0)), ("in pictures", size), ("in half pictures", (size[0] / 2, size[1] / 2)))
     for name, usual in units:
-        if all(abs(abs(ratio) / one - 1.0) < 0.02 for ratio, one in zip(ratios, usual, strict=True)):
+        if all(abs(abs(ratio) / factor - 1.0) < 0.02 for ratio, factor in zip(ratios, usual, strict=True)):
             return (math.copysign(usual[0], ratios[0]), math.copysign(usual[1], ratios[1])), name
     return ratios, f"in pixels times {1.0 / abs(ratios[0]):.4g}"
 
 
-def velocity_by_pictures(velocity: Array, here: Array, before: Array) -> Convention | None:
+def match_velocity_with_pictures(velocity: Array, here: Array, before: Array) -> Convention | None:
     """Which way motion [h, w, 2] in pixels points, by which of four ways takes the picture [h, w, 3] before best into
     this one; None if nothing moves or none is clearly better."""
     height, width = velocity.shape[:2]
-    rows, columns = sampled((width, height), 4 * _SAMPLES)
+    rows, columns = sample_pixels((width, height), 4 * _SAMPLES)
     stored = velocity[rows, columns, :2].astype(np.float64)
     with np.errstate(invalid="ignore"):
         keep = (np.abs(stored) > _STILL).all(axis=1) & (np.abs(stored) < width).all(axis=1)
     rows, columns, stored = rows[keep], columns[keep], stored[keep]
     if len(stored) < _FEWEST:
         return None
-    now = np.log1p(np.maximum(_light(here, rows, columns), 0.0))
-    off: dict[tuple[float, float], float] = {}
+    light_now = np.log1p(np.maximum(_read_light(here, rows, columns), 0.0))
+    errors: dict[tuple[float, float], float] = {}
     for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
-        then = _at(before, columns - sign[0] * stored[:, 0], rows - sign[1] * stored[:, 1])
-        apart = np.abs(np.log1p(np.maximum(then, 0.0)) - now).mean(axis=1)
-        off[sign] = float(np.mean(np.sort(apart)[: -len(apart) // 10]))
-    first, second = sorted(off, key=lambda sign: off[sign])[:2]
-    if off[second] < _LIKELY * off[first] or off[second] == 0.0:
+        light_before = _sample_between_pixels(before, columns - sign[0] * stored[:, 0], rows - sign[1] * stored[:, 1])
+        apart = np.abs(np.log1p(np.maximum(light_before, 0.0)) - light_now).mean(axis=1)
+        errors[sign] = float(np.mean(np.sort(apart)[: -len(apart) // 10]))
+    first, second = sorted(errors, key=lambda sign: errors[sign])[:2]
+    if errors[second] < _LIKELY * errors[first] or errors[second] == 0.0:
         return None
     way = "along with the motion" if first[0] > 0.0 else "against the motion"
     up = "down" if first[0] == first[1] else "up"
-    return Convention(Motion.FROM_PREVIOUS, f"{way} in pixels, y {up}: so the frame before fits best", True, first)
+    return Convention(
+        MotionDirection.FROM_PREVIOUS, f"{way} in pixels, y {up}: so the frame before fits best", True, first
+    )
 
 
-def _at(picture: Array, x: Array, y: Array) -> Array:
+def _sample_between_pixels(picture: Array, x: Array, y: Array) -> Array:
     """The picture between pixels, linear; its border goes on."""
     x, y = x.clip(0, picture.shape[1] - 1), y.clip(0, picture.shape[0] - 1)
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     right, low = (left + 1).clip(max=picture.shape[1] - 1), (top + 1).clip(max=picture.shape[0] - 1)
     s, t = (x - left)[:, None], (y - top)[:, None]
-    upper = _light(picture, top, left) * (1.0 - s) + _light(picture, top, right) * s
-    return upper * (1.0 - t) + (_light(picture, low, left) * (1.0 - s) + _light(picture, low, right) * s) * t
+    upper = _read_light(picture, top, left) * (1.0 - s) + _read_light(picture, top, right) * s
+    return upper * (1.0 - t) + (_read_light(picture, low, left) * (1.0 - s) + _read_light(picture, low, right) * s) * t
 
 
-def _light(picture: Array, rows: Array, columns: Array) -> Array:
+def _read_light(picture: Array, rows: Array, columns: Array) -> Array:
     """Pixels of a picture; what is not finite is black."""
     return np.nan_to_num(picture[rows, columns, :3].astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)

@@ -23,9 +23,9 @@ from ..errors import InputError
 from ..media.layers import normalize_name
 from ..media.pixels import read_layer
 from ..resources.sandbox import outside
-from .analysis import Survey, survey
+from .analysis import RenderAnalysis, analyze_render
 from .naming import Role
-from .recognition import Pass
+from .recognition import RenderPass
 
 _NAME = re.compile(r"cryptomatte/(\w+)/name")
 _ROLES = MappingProxyType(
@@ -38,23 +38,25 @@ _ROLES = MappingProxyType(
 )
 
 
-def mattes_of(found: Survey) -> tuple[Matte, ...]:
+def find_mattes(analysis: RenderAnalysis) -> tuple[Matte, ...]:
     """All of them, in the order of the layers. A manifest that cannot be read has no names."""
-    groups: dict[str, list[Pass]] = {}
-    for item in found.passes:
+    groups: dict[str, list[RenderPass]] = {}
+    for item in analysis.passes:
         if item.role in _ROLES:
             groups.setdefault(item.layer.full_name[:-2], []).append(item)
-    said = found.header.attributes
-    keys = {normalize_name(str(value)): match[1] for name, value in said.items() if (match := _NAME.fullmatch(name))}
-    made: list[Matte] = []
+    attributes = analysis.header.attributes
+    keys = {
+        normalize_name(str(value)): match[1] for name, value in attributes.items() if (match := _NAME.fullmatch(name))
+    }
+    mattes: list[Matte] = []
     for name, items in groups.items():
         items.sort(key=lambda item: item.rank)
         key = keys.get(normalize_name(name))
-        ids = _manifest(said, key, Path(found.header.info.path).parent) if key else {}
+        ids = _read_manifest(attributes, key, Path(analysis.header.info.path).parent) if key else {}
         role = items[0].role
         assert role is not None
-        made.append(Matte(_ROLES[role], tuple(item.layer.full_name for item in items), MappingProxyType(ids)))
-    return tuple(made)
+        mattes.append(Matte(_ROLES[role], tuple(item.layer.full_name for item in items), MappingProxyType(ids)))
+    return tuple(mattes)
 
 
 @dataclass(frozen=True)
@@ -64,38 +66,42 @@ class IdMap:
     ids: Array
     names: Mapping[int, str]
 
-    def at(self, u: float, v: float) -> int:
+    def id_at(self, u: float, v: float) -> int:
         """The id at a point of the picture, given as fractions; 0 outside."""
         height, width = self.ids.shape
         x, y = math.floor(u * width), math.floor(v * height)
         return int(self.ids[y, x]) if 0 <= x < width and 0 <= y < height else 0
 
 
-def id_map(path: str, first: str) -> IdMap:
+def read_id_map(path: str, first: str) -> IdMap:
     """What is where, by the first layer of a cryptomatte.
 
     Raises:
         InputError: as `read`, also for a layer that is none of a cryptomatte.
     """
-    matte = next((matte for matte in mattes_of(survey(path)) if matte.layers[0] == first), None)
+    matte = next((matte for matte in find_mattes(analyze_render(path)) if matte.layers[0] == first), None)
     if matte is None:
         raise InputError(f"{path}: '{first}' is no cryptomatte")
     ranks = read_layer(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
     ids, covered = np.ascontiguousarray(ranks[..., 0::2]).view(np.uint32), ranks[..., 1::2]
-    found = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
-    found[~(covered.max(axis=2) > 0.0)] = 0
-    return IdMap(found, MappingProxyType({float_bits(bits): name for name, bits in matte.ids.items()}))
+    ids_on_top = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
+    ids_on_top[~(covered.max(axis=2) > 0.0)] = 0
+    return IdMap(ids_on_top, MappingProxyType({float_bits(bits): name for name, bits in matte.ids.items()}))
 
 
-def _manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[str, int]:
+def _read_manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[str, int]:
     """Ids by name."""
     try:
-        said = attributes.get(f"cryptomatte/{key}/manifest")
-        beside = attributes.get(f"cryptomatte/{key}/manif_file")
-        file = folder / Path(str(beside)).name
-        text = file.read_text(encoding="utf-8") if said is None and beside and not outside(file) else str(said or "{}")
-        found = json.loads(text)
-        names = cast("dict[str, object]", found if isinstance(found, dict) else {})
+        embedded = attributes.get(f"cryptomatte/{key}/manifest")
+        file_name = attributes.get(f"cryptomatte/{key}/manif_file")
+        file = folder / Path(str(file_name)).name
+        text = (
+            file.read_text(encoding="utf-8")
+            if embedded is None and file_name and not outside(file)
+            else str(embedded or "{}")
+        )
+        parsed = json.loads(text)
+        names = cast("dict[str, object]", parsed if isinstance(parsed, dict) else {})
         return {name: int(str(number), 16) for name, number in names.items()}
     except (OSError, ValueError):
         return {}

@@ -79,7 +79,7 @@ class Role(StrEnum):
         return self.value.replace("_", " ")
 
 
-PLURAL = frozenset(
+PLURAL_ROLES = frozenset(
     {
         Role.LIGHT_GROUP,
         Role.MATTE,
@@ -93,7 +93,7 @@ PLURAL = frozenset(
 """Roles that many layers may have side by side."""
 
 
-class Renderer(StrEnum):
+class RenderProgram(StrEnum):
     """Who made the file."""
 
     BLENDER = "Blender"
@@ -107,26 +107,26 @@ class Renderer(StrEnum):
 
 
 @dataclass(frozen=True)
-class Scheme:
+class NamingScheme:
     """How one renderer names things. `marks` matches `attribute=value` of headers that only it writes."""
 
     marks: re.Pattern[str]
     names: Mapping[Role, tuple[str, ...]]
 
-    def role(self, word: str) -> tuple[Role, int] | None:
+    def find_role(self, word: str) -> tuple[Role, int] | None:
         """The role of a plain name, and how many names of that role go before it."""
         return next(((role, names.index(word)) for role, names in self.names.items() if word in names), None)
 
 
-def _scheme(marks: str, **names: str) -> Scheme:
+def _make_scheme(marks: str, **names: str) -> NamingScheme:
     table = {Role(role): tuple(normalize_name(name) for name in words.split()) for role, words in names.items()}
-    return Scheme(re.compile(marks, re.IGNORECASE), MappingProxyType(table))
+    return NamingScheme(re.compile(marks, re.IGNORECASE), MappingProxyType(table))
 
 
-SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
+SCHEMES: Mapping[RenderProgram, NamingScheme] = MappingProxyType(
     {
         # The short names are those of 2.8 to 4.x, the long ones those of 5.x.
-        Renderer.BLENDER: _scheme(
+        RenderProgram.BLENDER: _make_scheme(
             r"BlenderMultiChannel=.*|Software=Blender.*|cycles\..*",
             beauty="Combined",
             noisy_beauty="Noisy_Image",
@@ -158,7 +158,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             denoise_depth="Denoising_Depth",
             samples="Debug_Sample_Count",
         ),
-        Renderer.ARNOLD: _scheme(
+        RenderProgram.ARNOLD: _make_scheme(
             r"arnold/.*|Software=Arnold.*",
             beauty="RGBA RGB beauty",
             depth="Z depth",
@@ -193,7 +193,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             denoise_depth="Z_denoise Z_noice",
             variance="variance noice_variance",
         ),
-        Renderer.VRAY: _scheme(
+        RenderProgram.VRAY: _make_scheme(
             r"vrayInfo/.*|vfb2_layers_json=.*|Software=V-?Ray.*",
             beauty="RGBA RGB rgb_color effectsResult",
             depth="VRayZDepth zDepth Z",
@@ -224,7 +224,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             denoise_normal="VRayDenoiserNormals denoiserNormals",
             samples="VRaySampleRate sampleRate",
         ),
-        Renderer.KARMA: _scheme(
+        RenderProgram.KARMA: _make_scheme(
             r"(karma|husk|mantra)[:/].*|Software=.*\b(karma|husk|mantra|houdini)\b.*|HoudiniVersion=.*",
             beauty="C RGBA RGB beauty",
             depth="depth hitPz Pz hitdist",
@@ -253,7 +253,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             volume_indirect="indirectvolume",
             object_id="primid element",
         ),
-        Renderer.RENDERMAN: _scheme(
+        RenderProgram.RENDERMAN: _make_scheme(
             r"PRManVersion=.*|(rman|prman|Pixar)[:/].*|Software=.*\b(RenderMan|prman)\b.*",
             beauty="Ci RGBA RGB beauty",
             depth="z zfiltered __depth",
@@ -276,7 +276,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             object_id="id rawId",
             samples="sampleCount",
         ),
-        Renderer.REDSHIFT: _scheme(
+        RenderProgram.REDSHIFT: _make_scheme(
             r"(rs|redshift)/.*|Software=.*\bRedshift\b.*",
             beauty="RGBA RGB beauty",
             depth="Z Depth",
@@ -302,7 +302,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             object_id="ObjectID",
             matte="PuzzleMatte",
         ),
-        Renderer.MITSUBA: _scheme(
+        RenderProgram.MITSUBA: _make_scheme(
             r"generatedBy=Mitsuba.*|Software=Mitsuba.*",
             beauty="img RGBA RGB",
             depth="depth dd",
@@ -312,7 +312,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType(
             albedo="albedo al",
             object_id="shape_index id",
         ),
-        Renderer.NUKE: _scheme(
+        RenderProgram.NUKE: _make_scheme(
             r"nuke/.*|Software=.*\bNuke\b.*",
             beauty="rgba rgb",
             depth="depth",

@@ -10,16 +10,16 @@ from halation.nodes import Matte
 
 from ..errors import InputError
 from ..media.layers import find_layer, suggest_layers
-from .analysis import FoundCamera, Survey, survey
+from .analysis import RenderAnalysis, RenderCamera, analyze_render
 from .conventions import Convention
-from .mattes import mattes_of
+from .mattes import find_mattes
 from .naming import Role
-from .recognition import Pass, chosen
-from .report import either, maker_line, metadata_rows, part_rows, report, size_line
+from .recognition import RenderPass, best_claims
+from .report import describe_maker, describe_size, format_report, join_choices, list_metadata, list_parts
 
 
 @dataclass(frozen=True)
-class Use:
+class RoleUse:
     """What fills a role: the `layer` in use and the one that was `found`, "" for none.
 
     `reason` says why that one, or why none; `open` that somebody has to choose. `fault` is what is wrong with the
@@ -27,23 +27,23 @@ class Use:
     """
 
     layer: str
-    found: str
+    found_layer: str
     reason: str
-    open: bool = False
+    is_open: bool = False
     fault: str = ""
     rule: Convention | None = None
 
 
 @dataclass(frozen=True)
-class Overview:
+class RenderOverview:
     """What a render turns out to hold; `fault` says why its pixels cannot be looked at."""
 
     size: str
     maker: str
-    uses: Mapping[Role, Use]
-    others: tuple[Pass, ...]
+    uses: Mapping[Role, RoleUse]
+    other_passes: tuple[RenderPass, ...]
     """Layers of no role that was asked for, without cryptomattes."""
-    camera: FoundCamera
+    camera: RenderCamera
     mattes: tuple[Matte, ...]
     parts: tuple[tuple[str, ...], ...]
     metadata: tuple[tuple[str, str], ...]
@@ -51,58 +51,66 @@ class Overview:
     fault: str = ""
 
 
-def overview(path: str, roles: Sequence[Role], named: Mapping[Role, str] = MappingProxyType({})) -> Overview:
+def summarize_render(
+    path: str, roles: Sequence[Role], named: Mapping[Role, str] = MappingProxyType({})
+) -> RenderOverview:
     """Look at a render for some roles; `named` are layers that somebody chose for them.
 
     Raises:
         InputError: the file cannot be read.
     """
-    plain = survey(path)
-    faults = dict(_faults(plain, named))
-    found = survey(path, named={role: layer for role, layer in named.items() if role not in faults})
+    unchosen = analyze_render(path)
+    faults = dict(_find_faults(unchosen, named))
+    analysis = analyze_render(path, named={role: layer for role, layer in named.items() if role not in faults})
     try:
-        rules, camera, fault, text = found.conventions, found.camera, "", "\n".join(report(found))
+        rules, camera, fault, text = analysis.conventions, analysis.camera, "", "\n".join(format_report(analysis))
     except InputError as error:
-        rules, camera, fault, text = {}, FoundCamera(None, str(error)), str(error), ""
-    uses = {role: _use(plain, found, role, faults.get(role, ""), rules.get(role)) for role in roles}
+        rules, camera, fault, text = {}, RenderCamera(None, str(error)), str(error), ""
+    uses = {role: _find_use(unchosen, analysis, role, faults.get(role, ""), rules.get(role)) for role in roles}
     used = {use.layer for use in uses.values()}
-    others = tuple(
+    other_passes = tuple(
         item
-        for item in found.passes
+        for item in analysis.passes
         if item.layer.name not in used and not (item.role and item.role.value.startswith("cryptomatte"))
     )
-    return Overview(
-        size_line(found),
-        maker_line(found),
+    return RenderOverview(
+        describe_size(analysis),
+        describe_maker(analysis),
         MappingProxyType(uses),
-        others,
+        other_passes,
         camera,
-        mattes_of(found),
-        tuple(part_rows(found)),
-        tuple(metadata_rows(found)),
+        find_mattes(analysis),
+        tuple(list_parts(analysis)),
+        tuple(list_metadata(analysis)),
         text,
         fault,
     )
 
 
-def _faults(found: Survey, named: Mapping[Role, str]) -> Iterator[tuple[Role, str]]:
+def _find_faults(analysis: RenderAnalysis, named: Mapping[Role, str]) -> Iterator[tuple[Role, str]]:
     for role, layer in named.items():
         try:
-            find_layer(found.header.info, layer)
+            find_layer(analysis.header.info, layer)
         except InputError:
-            near = suggest_layers(found.header.info.layers, layer)
-            yield role, f"no layer '{layer}' in this file{f': did you mean {either(near)}?' if near else ''}"
+            near = suggest_layers(analysis.header.info.layers, layer)
+            yield role, f"no layer '{layer}' in this file{f': did you mean {join_choices(near)}?' if near else ''}"
 
 
-def _use(plain: Survey, found: Survey, role: Role, fault: str, rule: Convention | None) -> Use:
-    usual, layer = plain.layer(role), found.layer(role)
+def _find_use(
+    unchosen: RenderAnalysis, analysis: RenderAnalysis, role: Role, fault: str, rule: Convention | None
+) -> RoleUse:
+    usual, layer = unchosen.find_layer(role), analysis.find_layer(role)
     name = usual.name if usual else ""
-    if role in found.named or fault:
-        return Use(layer.name if layer else "", name, "chosen by hand", False, fault, rule)
+    if role in analysis.chosen_layers or fault:
+        return RoleUse(layer.name if layer else "", name, "chosen by hand", False, fault, rule)
     if layer is not None:
-        return Use(layer.name, name, chosen(found.passes, role)[0].reason, rule=rule)
-    if role in found.rivals:
-        layers = [rival.name for rival in found.rivals[role]]
-        return Use("", "", f"may be {either(layers)}: choose one", True)
-    maybe = [item.layer.name for item in found.passes if item.role is None and role in item.candidates]
-    return Use("", "", f"may be {either(maybe)}", True) if maybe else Use("", "", "not in this file")
+        return RoleUse(layer.name, name, best_claims(analysis.passes, role)[0].reason, rule=rule)
+    if role in analysis.rivals:
+        layers = [rival.name for rival in analysis.rivals[role]]
+        return RoleUse("", "", f"may be {join_choices(layers)}: choose one", True)
+    candidates = [item.layer.name for item in analysis.passes if item.role is None and role in item.candidates]
+    return (
+        RoleUse("", "", f"may be {join_choices(candidates)}", True)
+        if candidates
+        else RoleUse("", "", "not in this file")
+    )

@@ -14,7 +14,7 @@ from types import MappingProxyType
 
 from ..media.channels import is_depth
 from ..media.layers import Layer, normalize_name
-from .naming import HINTS, PATTERNS, SCHEMES, Renderer, Role
+from .naming import HINTS, PATTERNS, SCHEMES, RenderProgram, Role
 
 _GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)
 _RANKS = re.compile(r"u?(?P<name>.*crypto.*?)(?P<rank>\d\d)?", re.IGNORECASE)
@@ -30,7 +30,7 @@ _MANIFEST = re.compile(r"cryptomatte/\w+/name")
 _VECTORS = (Role.NORMAL, Role.POSITION, Role.VELOCITY)
 
 
-class Grounds(IntEnum):
+class RoleGrounds(IntEnum):
     """What a role rests on, the firmest first."""
 
     HEADER = 0
@@ -42,7 +42,7 @@ class Grounds(IntEnum):
 
 
 @dataclass(frozen=True)
-class Pass:
+class RenderPass:
     """A layer and its role, which is None where `candidates` says what it may be, or nothing is known.
 
     `rank` counts what would be better layers for the same role; `name` is the word that says what it is,
@@ -51,7 +51,7 @@ class Pass:
 
     layer: Layer
     role: Role | None
-    grounds: Grounds
+    grounds: RoleGrounds
     reason: str
     candidates: tuple[Role, ...] = ()
     rank: int = 0
@@ -60,49 +60,49 @@ class Pass:
 
 
 @dataclass(frozen=True)
-class Maker:
+class FileMaker:
     """Who made a file, and how that is known; None where nothing says so."""
 
-    renderer: Renderer | None
+    renderer: RenderProgram | None
     reason: str
 
 
-def maker_of(attributes: Mapping[str, object], layers: Sequence[Layer]) -> Maker:
+def find_maker(attributes: Mapping[str, object], layers: Sequence[Layer]) -> FileMaker:
     """The renderer: by what it writes into headers, else by names of layers that only it uses."""
     for name, value in sorted(attributes.items(), key=lambda item: item[0] != "Software"):  # it tells the version
         line = f"{name}={value}"
         for renderer, scheme in SCHEMES.items():
             if scheme.marks.fullmatch(line):
-                said = f"{name} is '{value}'" if name == "Software" else f"its header has {name}"
-                return Maker(renderer, said)
-    own = {renderer: _own_names(renderer, layers) for renderer in SCHEMES}
-    most = sorted(own.items(), key=lambda item: -len(item[1]))
-    if len(most[0][1]) > len(most[1][1]):
-        return Maker(most[0][0], f"nobody else calls layers {' or '.join(most[0][1][:3])}")
-    return Maker(None, "neither its header nor its layers say who made it")
+                reason = f"{name} is '{value}'" if name == "Software" else f"its header has {name}"
+                return FileMaker(renderer, reason)
+    own = {renderer: _find_own_names(renderer, layers) for renderer in SCHEMES}
+    by_count = sorted(own.items(), key=lambda item: -len(item[1]))
+    if len(by_count[0][1]) > len(by_count[1][1]):
+        return FileMaker(by_count[0][0], f"nobody else calls layers {' or '.join(by_count[0][1][:3])}")
+    return FileMaker(None, "neither its header nor its layers say who made it")
 
 
-def passes_of(
+def recognize_passes(
     layers: Sequence[Layer],
     attributes: Mapping[str, object],
-    renderer: Renderer | None,
+    renderer: RenderProgram | None,
     seen_by: Mapping[int, str] = MappingProxyType({}),
-) -> tuple[Pass, ...]:
+) -> tuple[RenderPass, ...]:
     """What every layer is; `seen_by` names the views of those parts that are of one."""
     manifests = {normalize_name(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
-    several = attributes.get("multiView")
-    views = [str(view).casefold() for view in several] if isinstance(several, tuple) else []
-    readings = [_read(layer, views, seen_by.get(layer.part, "")) for layer in layers]
-    found = [
-        replace(_pass(layer, word, renderer, manifests), name=word, group=group)
+    view_names = attributes.get("multiView")
+    views = [str(view).casefold() for view in view_names] if isinstance(view_names, tuple) else []
+    readings = [_read_name(layer, views, seen_by.get(layer.part, "")) for layer in layers]
+    passes = [
+        replace(_recognize_pass(layer, word, renderer, manifests), name=word, group=group)
         for layer, (word, group) in zip(layers, readings, strict=True)
     ]
-    if not any(item.role is Role.BEAUTY for item in found):
-        found = list(_with_beauty(found))
-    return tuple(found)
+    if not any(item.role is Role.BEAUTY for item in passes):
+        passes = list(_choose_beauty(passes))
+    return tuple(passes)
 
 
-def chosen(passes: Iterable[Pass], role: Role) -> tuple[Pass, ...]:
+def best_claims(passes: Iterable[RenderPass], role: Role) -> tuple[RenderPass, ...]:
     """The passes that have the best claim to a role: several only where nothing decides between them.
 
     Of several view layers that of the picture counts.
@@ -110,7 +110,7 @@ def chosen(passes: Iterable[Pass], role: Role) -> tuple[Pass, ...]:
     passes = tuple(passes)
     home = next((item.group for item in passes if item.role is Role.BEAUTY), "")
 
-    def claim(item: Pass) -> tuple[int, ...]:
+    def claim(item: RenderPass) -> tuple[int, ...]:
         return (item.group != home, item.grounds, item.rank)
 
     claims = [item for item in passes if item.role is role]
@@ -118,129 +118,141 @@ def chosen(passes: Iterable[Pass], role: Role) -> tuple[Pass, ...]:
     return tuple(item for item in claims if claim(item) == best)
 
 
-def _read(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
+def _read_name(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
     """The word that says what a layer is, and the view or view layer that it belongs to.
 
     OpenEXR has `view.channel` and `layer.view.channel`, the first of `views` goes without saying, and parts that are
     of a `view` often end in its name.
     """
-    known = {*_EYES, *views}
+    view_words = {*_EYES, *views}
     words = layer.name.split(".")
-    mine = [word.casefold() for word in words if word.casefold() in known] or ([view.casefold()] if view else [])
+    own_views = [word.casefold() for word in words if word.casefold() in view_words] or (
+        [view.casefold()] if view else []
+    )
     ending = re.compile(rf"(?<=.)[_ -]?{re.escape(view)}$" if view else r"(?!)", re.IGNORECASE)
-    named = [ending.sub("", word) for word in words if word.casefold() not in known]
-    last = named[-1] if named else "".join(layer.channels)
-    above = [word for word in named[:-1] if normalize_name(word) != normalize_name(last)]
-    return last, ".".join([*above, *(name for name in mine if name != (views or [""])[0])])
+    name_words = [ending.sub("", word) for word in words if word.casefold() not in view_words]
+    last = name_words[-1] if name_words else "".join(layer.channels)
+    above = [word for word in name_words[:-1] if normalize_name(word) != normalize_name(last)]
+    return last, ".".join([*above, *(name for name in own_views if name != (views or [""])[0])])
 
 
-def _pass(layer: Layer, name: str, renderer: Renderer | None, manifests: set[str]) -> Pass:
+def _recognize_pass(layer: Layer, name: str, renderer: RenderProgram | None, manifests: set[str]) -> RenderPass:
     word = normalize_name(name)
-    for found in (
-        _cryptomatte(layer, manifests),
-        _by_table(layer, word, renderer),
-        _light_group(layer, name),
-        _by_pattern(layer, word),
-        _by_shape(layer, word),
+    for recognized in (
+        _recognize_cryptomatte(layer, manifests),
+        _recognize_by_table(layer, word, renderer),
+        _recognize_light_group(layer, name),
+        _recognize_by_pattern(layer, word),
+        _recognize_by_channels(layer, word),
     ):
-        if found is not None:
-            return found
-    return Pass(layer, None, Grounds.NONE, "its name says nothing that is known")
+        if recognized is not None:
+            return recognized
+    return RenderPass(layer, None, RoleGrounds.NONE, "its name says nothing that is known")
 
 
-def _cryptomatte(layer: Layer, manifests: set[str]) -> Pass | None:
+def _recognize_cryptomatte(layer: Layer, manifests: set[str]) -> RenderPass | None:
     """A layer of ids and coverages: its manifest names it, or its own name does."""
     full, last = normalize_name(layer.full_name), layer.name.rpartition(".")[2]
     match = _RANKS.fullmatch(normalize_name(last))
-    listed = full[:-2] in manifests and full[-2:].isdigit()
-    if match is None and not listed:
+    is_in_manifest = full[:-2] in manifests and full[-2:].isdigit()
+    if match is None and not is_in_manifest:
         return None
     role = next((role for part, role in _CRYPTOMATTES if part in full), Role.CRYPTOMATTE)
     rank = match["rank"] if match else full[-2:]
     if rank is None:
-        return Pass(layer, None, Grounds.NONE, "a picture of a cryptomatte to look at, not its ids")
+        return RenderPass(layer, None, RoleGrounds.NONE, "a picture of a cryptomatte to look at, not its ids")
     if len(layer.channels) != 4 or layer.format not in ("float32", "uint32"):
-        return Pass(layer, None, Grounds.NONE, "named like a cryptomatte, but its ids need four channels of 32 bits")
-    reason = "the manifest in the header names it" if listed else "it is named like a cryptomatte"
-    return Pass(layer, role, Grounds.HEADER if listed else Grounds.PATTERN, reason, rank=int(rank))
+        return RenderPass(
+            layer, None, RoleGrounds.NONE, "named like a cryptomatte, but its ids need four channels of 32 bits"
+        )
+    reason = "the manifest in the header names it" if is_in_manifest else "it is named like a cryptomatte"
+    return RenderPass(
+        layer, role, RoleGrounds.HEADER if is_in_manifest else RoleGrounds.PATTERN, reason, rank=int(rank)
+    )
 
 
-def _by_table(layer: Layer, word: str, renderer: Renderer | None) -> Pass | None:
+def _recognize_by_table(layer: Layer, word: str, renderer: RenderProgram | None) -> RenderPass | None:
     """By what the renderer of the file calls it, else by what the others do, as long as they agree."""
-    if renderer is not None and (known := SCHEMES[renderer].role(word)):
-        role, rank = known
-        return Pass(layer, role, Grounds.TABLE, f"{renderer.value}'s name for {role.words}", rank=rank)
+    if renderer is not None and (entry := SCHEMES[renderer].find_role(word)):
+        role, rank = entry
+        return RenderPass(layer, role, RoleGrounds.TABLE, f"{renderer.value}'s name for {role.words}", rank=rank)
     claims: dict[Role, list[str]] = {}
     ranks: list[int] = []
-    for other, scheme in SCHEMES.items():
-        if known := scheme.role(word):
-            claims.setdefault(known[0], []).append(other.value)
-            ranks.append(known[1])
+    for program, scheme in SCHEMES.items():
+        if entry := scheme.find_role(word):
+            claims.setdefault(entry[0], []).append(program.value)
+            ranks.append(entry[1])
     if not claims:
         return None
     if len(claims) > 1:
-        told = "; ".join(f"{role.words} in {_listed(names)}" for role, names in claims.items())
-        return Pass(layer, None, Grounds.NONE, f"the name means {told}", tuple(claims))
+        claims_text = "; ".join(f"{role.words} in {_join_names(names)}" for role, names in claims.items())
+        return RenderPass(layer, None, RoleGrounds.NONE, f"the name means {claims_text}", tuple(claims))
     role, names = next(iter(claims.items()))
-    return Pass(layer, role, Grounds.OTHER_TABLE, f"the name for {role.words} in {_listed(names)}", rank=min(ranks))
+    return RenderPass(
+        layer, role, RoleGrounds.OTHER_TABLE, f"the name for {role.words} in {_join_names(names)}", rank=min(ranks)
+    )
 
 
-def _light_group(layer: Layer, last: str) -> Pass | None:
+def _recognize_light_group(layer: Layer, last: str) -> RenderPass | None:
     match = _GROUP.fullmatch(last)
     if match is None or layer.is_data:
         return None
-    return Pass(layer, Role.LIGHT_GROUP, Grounds.PATTERN, f"named like the light of the group '{match[1]}'")
+    return RenderPass(layer, Role.LIGHT_GROUP, RoleGrounds.PATTERN, f"named like the light of the group '{match[1]}'")
 
 
-def _by_pattern(layer: Layer, word: str) -> Pass | None:
+def _recognize_by_pattern(layer: Layer, word: str) -> RenderPass | None:
     """By how the name is built."""
     if is_depth(word) and len(layer.channels) <= 3:
-        return Pass(layer, Role.DEPTH, Grounds.PATTERN, "a usual name of depth")
+        return RenderPass(layer, Role.DEPTH, RoleGrounds.PATTERN, "a usual name of depth")
     fits = [role for role, pattern in PATTERNS.items() if pattern.fullmatch(word)]
     if len(fits) == 1:
-        return Pass(layer, fits[0], Grounds.PATTERN, f"a usual name of {fits[0].words}")
-    return Pass(layer, None, Grounds.NONE, "a name of several things", tuple(fits)) if fits else None
+        return RenderPass(layer, fits[0], RoleGrounds.PATTERN, f"a usual name of {fits[0].words}")
+    return RenderPass(layer, None, RoleGrounds.NONE, "a name of several things", tuple(fits)) if fits else None
 
 
-def _by_shape(layer: Layer, word: str) -> Pass | None:
+def _recognize_by_channels(layer: Layer, word: str) -> RenderPass | None:
     """By its channels; a word in the name may narrow down what a vector is, but decides nothing."""
     letters = "".join(channel.casefold() for channel in layer.channels)
     if letters == "z":
-        return Pass(layer, Role.DEPTH, Grounds.SHAPE, "its only channel is Z")
+        return RenderPass(layer, Role.DEPTH, RoleGrounds.SHAPE, "its only channel is Z")
     hints = tuple(role for role, hint in HINTS.items() if hint.fullmatch(word))
     if hints == (Role.MATTE,) and len(layer.channels) == 1:
-        return Pass(layer, Role.MATTE, Grounds.SHAPE, "one channel, and a word for matte in its name")
+        return RenderPass(layer, Role.MATTE, RoleGrounds.SHAPE, "one channel, and a word for matte in its name")
     if hints:
-        return Pass(layer, None, Grounds.NONE, f"its name has a word for {_listed([r.words for r in hints])}", hints)
+        return RenderPass(
+            layer, None, RoleGrounds.NONE, f"its name has a word for {_join_names([r.words for r in hints])}", hints
+        )
     if letters == "xyz":
-        return Pass(layer, None, Grounds.NONE, "a vector of three, of which the name says nothing", _VECTORS)
+        return RenderPass(layer, None, RoleGrounds.NONE, "a vector of three, of which the name says nothing", _VECTORS)
     if letters in ("uv", "xy"):
-        return Pass(layer, None, Grounds.NONE, "two numbers, of which the name says nothing", (Role.UV, Role.VELOCITY))
+        return RenderPass(
+            layer, None, RoleGrounds.NONE, "two numbers, of which the name says nothing", (Role.UV, Role.VELOCITY)
+        )
     return None
 
 
-def _with_beauty(passes: Sequence[Pass]) -> Iterator[Pass]:
+def _choose_beauty(passes: Sequence[RenderPass]) -> Iterator[RenderPass]:
     """The same where nothing is called a picture: the first color layer without a role is."""
     free = [item for item in passes if item.role is None and not item.candidates and not item.layer.is_data]
     for item in passes:
         if free and item is free[0]:
             only = "only" if len(free) == 1 else "first"
             reason = f"the {only} layer of color that is nothing else"
-            yield replace(item, role=Role.BEAUTY, grounds=Grounds.SHAPE, reason=reason)
+            yield replace(item, role=Role.BEAUTY, grounds=RoleGrounds.SHAPE, reason=reason)
         else:
             yield item
 
 
-def _own_names(renderer: Renderer, layers: Sequence[Layer]) -> list[str]:
+def _find_own_names(renderer: RenderProgram, layers: Sequence[Layer]) -> list[str]:
     """Names of layers that the table of this renderer has and no other."""
-    found: list[str] = []
+    names: list[str] = []
     for layer in layers:
         last = layer.name.rpartition(".")[2]
-        users = [other for other, scheme in SCHEMES.items() if scheme.role(normalize_name(last))]
+        users = [program for program, scheme in SCHEMES.items() if scheme.find_role(normalize_name(last))]
         if users == [renderer]:
-            found.append(last)
-    return found
+            names.append(last)
+    return names
 
 
-def _listed(names: Sequence[str]) -> str:
+def _join_names(names: Sequence[str]) -> str:
     return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from halation.nodes import Meaning, Render
 
 from ..errors import HalationError
-from .analysis import survey
-from .mattes import mattes_of
+from .analysis import analyze_render
+from .mattes import find_mattes
 from .naming import Role
 
 _DATA = frozenset(
@@ -34,7 +34,7 @@ _DATA = frozenset(
 """What makes a picture a render: layers that effects work from."""
 
 
-def find_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+def read_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
     """What the file of a render holds; roles that several layers claim alike are left out.
 
     `named` are layers that are to have a role, by that.
@@ -42,24 +42,24 @@ def find_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> R
     Raises:
         InputError: the file cannot be read, or has no such layer.
     """
-    found = survey(path, named={Role(role): layer for role, layer in named.items()})
-    layers = {role: layer for role in found.roles if (layer := found.layer(role))}
+    analysis = analyze_render(path, named={Role(role): layer for role, layer in named.items()})
+    layers = {role: layer for role in analysis.roles if (layer := analysis.find_layer(role))}
     return Render(
         MappingProxyType({role.value: layer.full_name for role, layer in layers.items()}),
         MappingProxyType({role.value: len(layer.channels) for role, layer in layers.items()}),
         MappingProxyType(
-            {role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()}
+            {role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in analysis.conventions.items()}
         ),
-        found.camera.camera,
-        mattes_of(found),
+        analysis.camera.camera,
+        find_mattes(analysis),
     )
 
 
 def is_render(path: str | Path) -> bool:
     """True for a file of several layers of which one is, or may be, what effects work from; only its header is read."""
     try:
-        found = survey(path)
+        analysis = analyze_render(path)
     except HalationError:
         return False
-    told = {role for item in found.passes for role in (item.role, *item.candidates) if role is not None}
-    return len(found.passes) > 1 and bool(told & _DATA)
+    roles = {role for item in analysis.passes for role in (item.role, *item.candidates) if role is not None}
+    return len(analysis.passes) > 1 and bool(roles & _DATA)

@@ -12,7 +12,7 @@ from halation.nodes import Render
 from halation.presets import sample
 from halation.render_layers.mattes import IdMap
 from halation.render_layers.naming import Role
-from halation.render_layers.overview import Overview
+from halation.render_layers.overview import RenderOverview
 
 NEON = Path(str(sample()))
 
@@ -34,7 +34,7 @@ def waited(ask):
 def test_an_overview_comes_later(renders):
     assert renders.overview(NEON) is None
     seen = waited(lambda: renders.overview(NEON, {"depth": ""}))
-    assert isinstance(seen, Overview) and seen.uses[Role.DEPTH].layer == "Depth"
+    assert isinstance(seen, RenderOverview) and seen.uses[Role.DEPTH].layer == "Depth"
 
 
 def test_the_compiler_is_asked_to_wait(renders):

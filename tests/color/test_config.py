@@ -8,9 +8,9 @@ import halation as hal
 import numpy as np
 import pytest
 from halation import document
-from halation.color.management import color_digest, managed
-from halation.color.primaries import working_of, xyz_of
-from halation.color.transforms import displays, looks, views
+from halation.color.management import digest_color_settings, get_color_manager
+from halation.color.primaries import find_working_space, primaries_to_xyz
+from halation.color.transforms import list_displays, list_looks, list_views
 from halation.errors import GraphError, UsageError
 from halation.graph import color_settings
 from halation.graph.paths import rebased
@@ -25,20 +25,24 @@ def graph_of(**color: str):
 
 
 def test_a_graph_comes_before_the_environment_and_that_before_the_built_in_one(house, tmp_path, monkeypatch):
-    assert displays()[0] == "sRGB - Display" and managed().plain
+    assert list_displays()[0] == "sRGB - Display" and get_color_manager().is_plain
     monkeypatch.setenv("OCIO", str(house))
-    assert displays() == ("Screen", "Projector") and not managed().plain
+    assert list_displays() == ("Screen", "Projector") and not get_color_manager().is_plain
     other = write_house(tmp_path, "other.ocio", HOUSE.replace("Screen", "Wall"))
-    assert displays(ColorSettings(str(other))) == ("Wall", "Projector")
-    assert displays(ColorSettings("ocio://default"))[0] == "sRGB - Display"
-    assert views("Screen") == ("Plain", "Warm", "none") and views("proj") == ("Dim", "none") and looks() == ("warm",)
+    assert list_displays(ColorSettings(str(other))) == ("Wall", "Projector")
+    assert list_displays(ColorSettings("ocio://default"))[0] == "sRGB - Display"
+    assert (
+        list_views("Screen") == ("Plain", "Warm", "none")
+        and list_views("proj") == ("Dim", "none")
+        and list_looks() == ("warm",)
+    )
 
 
 def test_a_config_that_changes_is_read_again(house):
     color = ColorSettings(str(house))
-    digest = color_digest(color)
+    digest = digest_color_settings(color)
     house.write_text(HOUSE.replace("Projector", "Laser projector"))
-    assert displays(color) == ("Screen", "Laser projector") and color_digest(color) != digest
+    assert list_displays(color) == ("Screen", "Laser projector") and digest_color_settings(color) != digest
 
 
 def test_paths_start_at_the_folder_of_the_graph():
@@ -71,46 +75,49 @@ def test_a_config_that_is_not_there(house, tmp_path, config, said):
     (tmp_path / "broken.ocio").write_text("hello: [")
     path = config if config.startswith("ocio:") else str(tmp_path / config)
     with pytest.raises(GraphError, match=said) as fault:
-        displays(ColorSettings(path))
+        list_displays(ColorSettings(path))
     assert "\n" not in str(fault.value)
 
 
 def test_a_broken_environment_is_one_of_usage(monkeypatch, tmp_path):
     monkeypatch.setenv("OCIO", str(tmp_path / "gone.ocio"))
     with pytest.raises(UsageError, match=r"^\$OCIO: .*gone\.ocio: there is no such color config"):
-        displays()
-    assert displays(ColorSettings("ocio://default"))
+        list_displays()
+    assert list_displays(ColorSettings("ocio://default"))
 
 
 @pytest.mark.parametrize("name", ["ACEScg", "acescg", "lin_ap1", "scene_linear", "lin_ap1_scene"])
 def test_acescg_by_its_names(name):
-    made = working_of(ColorSettings("", name))
+    made = find_working_space(ColorSettings("", name))
     assert made is not None
     np.testing.assert_allclose(np.reshape(made.to_rec709, (3, 3)), AP1_TO_REC709, atol=1e-6)
     np.testing.assert_allclose(np.reshape(made.from_rec709, (3, 3)), np.linalg.inv(AP1_TO_REC709), atol=1e-6)
     assert made.luminance == pytest.approx(AP1_LUMINANCE, abs=1e-9)
-    np.testing.assert_allclose(xyz_of(AP1)[1], AP1_LUMINANCE, atol=1e-9)
+    np.testing.assert_allclose(primaries_to_xyz(AP1)[1], AP1_LUMINANCE, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["", "linear rec709", "lin_rec709_scene", "Linear Rec.709 (sRGB)", "lin_srgb"])
 def test_linear_rec709_needs_no_other_shaders(name, house):
-    assert working_of(ColorSettings("", name)) is None and working_of(ColorSettings(str(house), name)) is None
+    assert (
+        find_working_space(ColorSettings("", name)) is None
+        and find_working_space(ColorSettings(str(house), name)) is None
+    )
 
 
 def test_a_house_may_call_it_otherwise(house):
-    manager = managed(ColorSettings(str(house)))
+    manager = get_color_manager(ColorSettings(str(house)))
     assert manager.working.name == "house seven"  # found by what it computes
-    assert managed(ColorSettings(str(house), "acescg")).working.name == "house linear"
-    made = working_of(ColorSettings(str(house), "scene_linear"))
+    assert get_color_manager(ColorSettings(str(house), "acescg")).working.name == "house linear"
+    made = find_working_space(ColorSettings(str(house), "scene_linear"))
     assert made is not None and made.luminance == pytest.approx(AP1_LUMINANCE, abs=1e-9)
 
 
 def test_what_a_config_lacks_comes_over_the_interchange_space(house, light):
-    manager = managed(ColorSettings(str(house)))
+    manager = get_color_manager(ColorSettings(str(house)))
     found = manager.find("arri logc4")
     assert found is not None and not found.own
     made = light.reshape(-1, 3).copy()
-    manager.processor(manager.working, found).getDefaultCPUProcessor().applyRGB(made)
+    manager.make_processor(manager.working, found).getDefaultCPUProcessor().applyRGB(made)
     expected = light.reshape(-1, 3).copy()
     studio().getProcessor("lin_rec709_scene", "arri_logc4").getDefaultCPUProcessor().applyRGB(expected)
     np.testing.assert_allclose(made, expected, atol=2e-5)
@@ -127,7 +134,7 @@ def test_what_a_config_lacks_comes_over_the_interchange_space(house, light):
 def test_a_working_space_that_makes_no_sense(house, working, said):
     config = "" if working == "ACESgc" else str(house)
     with pytest.raises(GraphError, match=rf"^settings\.color\.working: {said}") as fault:
-        working_of(ColorSettings(config, working))
+        find_working_space(ColorSettings(config, working))
     assert "\n" not in str(fault.value)
 
 
@@ -137,8 +144,8 @@ def test_a_config_without_a_way_to_rec709_says_what_to_do(tmp_path):
     end = text.index("  - !<ColorSpace>\n    name: house texture")
     alone = write_house(tmp_path, "alone.ocio", text[:start] + text[end:])
     with pytest.raises(GraphError, match=r"set settings\.color\.working to a space or role of this config"):
-        _ = managed(ColorSettings(str(alone))).working
-    assert managed(ColorSettings(str(alone), "scene_linear")).working.name == "house linear"
+        _ = get_color_manager(ColorSettings(str(alone))).working
+    assert get_color_manager(ColorSettings(str(alone), "scene_linear")).working.name == "house linear"
 
 
 def test_a_graph_without_files_minds_no_environment(monkeypatch):

@@ -11,8 +11,8 @@ import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
-from halation.color.gpu_programs import gpu_view
-from halation.color.transforms import displays, find_view, to_display, views
+from halation.color.gpu_programs import write_view_program
+from halation.color.transforms import find_view, list_displays, list_views, to_display
 from halation.errors import InputError, UsageError
 from halation.media import read_layer
 from halation.nodes import Kind
@@ -177,7 +177,7 @@ def test_broken_numbers_do_not_leak() -> None:
 
 def test_names_of_views() -> None:
     known = ocio.Config.CreateFromBuiltinConfig("ocio://default").getViews("sRGB - Display")
-    assert views() == (*known, "none") and find_view("") == views()[0] == ACES
+    assert list_views() == (*known, "none") and find_view("") == list_views()[0] == ACES
     assert find_view("aces") == ACES and find_view("UN-TONE") == "Un-tone-mapped" and find_view("raw") == "Raw"
     with pytest.raises(UsageError, match=r"no view 'Untonemapped': did you mean 'Un-tone-mapped'\? Choose from ACES"):
         find_view("Untonemapped")
@@ -193,11 +193,11 @@ def test_opencolorio_is_loaded_when_needed() -> None:
 
 def test_displays_have_views_of_their_own() -> None:
     known = tuple(ocio.Config.CreateFromBuiltinConfig("ocio://default").getDisplays())
-    assert displays() == known and displays()[0] == "sRGB - Display"
-    assert views(displays()[0]) == views()
-    assert views("Display P3 - Display")[0] == "ACES 2.0 - SDR 100 nits (P3 D65)"
+    assert list_displays() == known and list_displays()[0] == "sRGB - Display"
+    assert list_views(list_displays()[0]) == list_views()
+    assert list_views("Display P3 - Display")[0] == "ACES 2.0 - SDR 100 nits (P3 D65)"
     with pytest.raises(UsageError, match="there is no display 'CRT': choose from sRGB - Display"):
-        views("CRT")
+        list_views("CRT")
     with pytest.raises(UsageError, match=r"there is no view 'ACES 2.0 - SDR 100 nits \(P3 D65\)'"):
         to_display(np.zeros((1, 1, 3)), "ACES 2.0 - SDR 100 nits (P3 D65)")
 
@@ -214,10 +214,10 @@ def test_another_display_shows_other_numbers(rng: Random) -> None:
     np.testing.assert_array_equal(to_display(colors, "none", bits=32, display="Display P3 - Display"), plain)
 
 
-@pytest.mark.parametrize("display", displays())
+@pytest.mark.parametrize("display", list_displays())
 def test_a_view_for_shaders_declares_all_that_it_reads(display: str) -> None:
-    for view in views(display):
-        found = gpu_view(view, display)
+    for view in list_views(display):
+        found = write_view_program(view, display)
         assert f"vec4 {found.function}(vec4" in found.text.body and "sampler1D" not in found.text.body
         assert found.text.body.count("uniform sampler") == len(found.tables)
         for table in found.tables:

@@ -8,7 +8,7 @@ import PyOpenColorIO as ocio
 import pytest
 from device_textures import read_texture, upload_texture
 from halation.color.encoding import Encoding
-from halation.color.gpu_programs import gpu_view
+from halation.color.gpu_programs import write_view_program
 from halation.color.transforms import to_display
 from halation.errors import GraphError, UsageError
 from halation.media import read_layer, write_picture
@@ -108,7 +108,7 @@ def test_the_viewer_shows_the_same(color, light):
     np.testing.assert_allclose(pixels, to_display(weighed, "none", bits=32, color=color)[..., 0], rtol=2e-3, atol=1e-3)
     display.close()
     device.close()
-    assert gpu_view("Warm", "Screen", "", color).function == "view_transform"
+    assert write_view_program("Warm", "Screen", "", color).function == "view_transform"
 
 
 def test_exr_says_what_it_is(tmp_path, light, color):

@@ -35,7 +35,7 @@ def main(count: int, sources: list[Path]) -> int:
     from halation.errors import InputError
     from halation.media import read_info, read_layer, read_metadata
     from halation.nodes import Kind
-    from halation.render_layers.analysis import survey
+    from halation.render_layers.analysis import analyze_render
 
     refused = 0
     for source in sources:
@@ -43,7 +43,7 @@ def main(count: int, sources: list[Path]) -> int:
         for number in range(count):
             print(source.name, number, flush=True)
             path.write_bytes(damaged(whole, number))
-            for act in (read_info, lambda one: read_layer(one, "", Kind.IMAGE), read_metadata, survey):
+            for act in (read_info, lambda one: read_layer(one, "", Kind.IMAGE), read_metadata, analyze_render):
                 try:
                     act(path)
                 except InputError as fault:

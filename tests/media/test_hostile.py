@@ -15,7 +15,7 @@ import pytest
 from halation import media
 from halation.errors import InputError, OutputError
 from halation.nodes import Kind
-from halation.render_layers.analysis import survey
+from halation.render_layers.analysis import analyze_render
 from halation.resources.input_files import content_hash, fingerprint
 from halation.resources.sandbox import fenced
 
@@ -167,7 +167,7 @@ def test_nothing_is_read_or_written_outside_of_a_fence(tmp_path: Path, make: Mak
     (inside / "shot.0001.exr").symlink_to(out)
     with fenced(inside):
         for path in (out, inside / ".." / out.name, inside / "link.exr", inside / "shot.0001.exr"):
-            for act in (media.read_info, media.read_metadata, survey, fingerprint, content_hash):
+            for act in (media.read_info, media.read_metadata, analyze_render, fingerprint, content_hash):
                 with pytest.raises(InputError, match="lies outside of"):
                     act(path)
             with pytest.raises(InputError, match="lies outside of"):

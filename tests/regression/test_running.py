@@ -251,9 +251,9 @@ def test_what_is_not_finite_is_counted(value: float, letters: tuple[str, ...], c
     """Infinity is what depth is where nothing is."""
     array = np.ones((3, 3, len(letters)), np.float32)
     array[1, 1, 0] = array[2, 0, -1] = value
-    parts = {"": StoredPart(array, letters, encoded=False)}
+    parts = {"": StoredPart(array, letters, is_encoded=False)}
     case = Case(Path("a.suite.toml"), "a", Path("graph.json"))
-    assert parts[""].unusable == count
+    assert parts[""].count_unusable == count
     said = f'{count} pixels are not finite; allow = ["nonfinite"] if they may be'
     assert find_unusable(case, parts) == (said if count else "")
     assert find_unusable(replace(case, allow=("nonfinite",)), parts) == ""

@@ -12,7 +12,7 @@ from halation.errors import InputError
 from halation.media import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
-from halation.render_layers.camera import header_camera, residual_of, solve_camera
+from halation.render_layers.camera import read_header_camera, measure_camera, solve_camera
 from raycast import cast_rays
 
 ROOT = Path(__file__).parents[2]
@@ -165,7 +165,7 @@ def to_camera(camera: Camera, ahead: float) -> np.ndarray:
 @pytest.mark.parametrize("name", ["worldToNDC", "worldtoNDC", "worldToScreen"])
 @pytest.mark.parametrize("unit", [False, True])
 def test_a_projection_in_the_header_is_the_camera(name: str, unit: bool) -> None:
-    found = header_camera({name: ndc(CAMERA, unit)}, (WIDTH, HEIGHT))
+    found = read_header_camera({name: ndc(CAMERA, unit)}, (WIDTH, HEIGHT))
     assert found is not None and np.allclose(found.rows, CAMERA.rows, atol=1e-12)
 
 
@@ -176,7 +176,7 @@ def test_a_place_and_a_width_in_the_header_are_the_camera(ahead: float) -> None:
         "screenWindowWidth": 1.0 / FOCAL[0],
         "PixelAspectRatio": 1.0,
     }
-    found = header_camera(attributes, (WIDTH, HEIGHT))
+    found = read_header_camera(attributes, (WIDTH, HEIGHT))
     assert found is not None and np.allclose(found.rows, CAMERA.rows, atol=1e-12)
 
 
@@ -194,13 +194,13 @@ def test_a_place_and_a_width_in_the_header_are_the_camera(ahead: float) -> None:
     ids=["none", "text", "zero", "nan", "orthographic", "no field of view", "zero place"],
 )
 def test_headers_that_name_no_camera(attributes: dict[str, object]) -> None:
-    assert header_camera(attributes, (WIDTH, HEIGHT)) is None
+    assert read_header_camera(attributes, (WIDTH, HEIGHT)) is None
 
 
 def test_a_camera_that_is_known_is_checked() -> None:
-    assert residual_of(CAMERA, SEEN.position).residual < 1e-10
+    assert measure_camera(CAMERA, SEEN.position).residual < 1e-10
     wrong = look_at((2.1, -7.0, 2.5), (0.3, 2.0, 1.0), FOCAL)
-    assert residual_of(wrong, SEEN.position).residual > 0.1
-    assert len(astuple(residual_of(CAMERA, SEEN.position))) == 4
+    assert measure_camera(wrong, SEEN.position).residual > 0.1
+    assert len(astuple(measure_camera(CAMERA, SEEN.position))) == 4
     with pytest.raises(InputError, match="too few"):
-        residual_of(CAMERA, np.zeros((4, 4, 3)))
+        measure_camera(CAMERA, np.zeros((4, 4, 3)))

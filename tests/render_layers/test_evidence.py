@@ -11,8 +11,8 @@ from halation.nodes import Camera
 from halation.nodes._declare.camera import look_at
 from halation.render_layers import evidence
 from halation.render_layers.camera import solve_camera
-from halation.render_layers.conventions import Convention, DepthKind, Motion, Space, habit
-from halation.render_layers.naming import Renderer, Role
+from halation.render_layers.conventions import Convention, DepthKind, MotionDirection, VectorSpace, find_habit
+from halation.render_layers.naming import RenderProgram, Role
 from raycast import RaycastImage, cast_rays
 
 WIDTH, HEIGHT = 160, 90
@@ -47,8 +47,8 @@ def axes_of(camera: Camera, ahead: float) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", ["planar", "radial", "inverse", "negative"])
 def test_positions_tell_the_kind_of_depth(kind: str) -> None:
-    found = evidence.depth_by_position(depth_of(SEEN, kind), SEEN.position, CAMERA)
-    assert found is not None and (found.kind, found.measured) == (kind, True)
+    found = evidence.match_depth_with_positions(depth_of(SEEN, kind), SEEN.position, CAMERA)
+    assert found is not None and (found.kind, found.is_measured) == (kind, True)
     assert found.scale == ((-1.0,) if kind == "negative" else (1.0,))
 
 
@@ -57,7 +57,7 @@ def test_positions_tell_the_kind_of_depth(kind: str) -> None:
     [("normalized", FAR - NEAR, NEAR), ("inverted", -8.0, 12.0)],
 )
 def test_positions_tell_what_0_and_1_stand_for(kind: str, scale: float, offset: float) -> None:
-    found = evidence.depth_by_position(depth_of(SEEN, kind), SEEN.position, CAMERA)
+    found = evidence.match_depth_with_positions(depth_of(SEEN, kind), SEEN.position, CAMERA)
     assert found is not None and found.kind == DepthKind.NORMALIZED
     assert found.scale[0] == pytest.approx(scale, rel=1e-5) and found.offset[0] == pytest.approx(offset, rel=1e-5)
     assert f"0 is {offset:.4g} and 1 is {offset + scale:.4g}" in found.reason
@@ -65,15 +65,15 @@ def test_positions_tell_what_0_and_1_stand_for(kind: str, scale: float, offset: 
 
 def test_other_numbers_are_no_depth() -> None:
     noise = np.random.default_rng(5).random((HEIGHT, WIDTH)).astype(np.float32)
-    assert evidence.depth_by_position(noise, SEEN.position, CAMERA) is None
-    assert evidence.depth_by_position(noise * 50.0, SEEN.position, CAMERA) is None
-    assert evidence.depth_by_position(noise, np.zeros((HEIGHT, WIDTH, 3)), CAMERA) is None
+    assert evidence.match_depth_with_positions(noise, SEEN.position, CAMERA) is None
+    assert evidence.match_depth_with_positions(noise * 50.0, SEEN.position, CAMERA) is None
+    assert evidence.match_depth_with_positions(noise, np.zeros((HEIGHT, WIDTH, 3)), CAMERA) is None
 
 
 @pytest.mark.parametrize("kind", ["planar", "radial", "inverse", "negative"])
 def test_planes_tell_the_kind_of_depth_without_positions(kind: str) -> None:
-    found = evidence.depth_alone(depth_of(WIDE, kind))
-    assert found is not None and (found.kind, found.measured) == (kind, True)
+    found = evidence.judge_depth_by_planes(depth_of(WIDE, kind))
+    assert found is not None and (found.kind, found.is_measured) == (kind, True)
 
 
 @pytest.mark.parametrize(
@@ -90,55 +90,59 @@ def test_planes_tell_the_kind_of_depth_without_positions(kind: str) -> None:
     ids=["zero", "constant", "nan", "one pixel", "two rows", "noise", "normalized"],
 )
 def test_without_planes_nothing_is_claimed(depth: np.ndarray) -> None:
-    assert evidence.depth_alone(depth.astype(np.float32)) is None
+    assert evidence.judge_depth_by_planes(depth.astype(np.float32)) is None
 
 
 # --- positions and normals ----------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("space", "ahead"), [(Space.CAMERA, -1.0), (Space.CAMERA_AHEAD, 1.0)])
-def test_positions_in_the_axes_of_the_camera(space: Space, ahead: float) -> None:
+@pytest.mark.parametrize(("space", "ahead"), [(VectorSpace.CAMERA, -1.0), (VectorSpace.CAMERA_AHEAD, 1.0)])
+def test_positions_in_the_axes_of_the_camera(space: VectorSpace, ahead: float) -> None:
     position = (SEEN.position - np.array(CAMERA.eye)) @ axes_of(CAMERA, ahead).T * SEEN.hit[..., None]
     solved = solve_camera(position).camera
-    assert evidence.position_space(solved, position).kind == space
+    assert evidence.find_position_space(solved, position).kind == space
     normal = SEEN.normal @ axes_of(CAMERA, ahead).T
-    found = evidence.normal_by_position(normal, position, solved, space)
+    found = evidence.match_normals_with_positions(normal, position, solved, space)
     assert found is not None and found.kind == space
-    assert evidence.depth_by_position(depth_of(SEEN, "planar"), position, solved).kind == DepthKind.PLANAR
+    assert evidence.match_depth_with_positions(depth_of(SEEN, "planar"), position, solved).kind == DepthKind.PLANAR
 
 
 def test_positions_in_the_world() -> None:
-    found = evidence.position_space(CAMERA, SEEN.position)
-    assert found.kind == Space.WORLD and "stands at 2, -7, 2.5" in found.reason
+    found = evidence.find_position_space(CAMERA, SEEN.position)
+    assert found.kind == VectorSpace.WORLD and "stands at 2, -7, 2.5" in found.reason
 
 
 @pytest.mark.parametrize(
     ("space", "turned"),
-    [(Space.WORLD, np.eye(3)), (Space.CAMERA, axes_of(CAMERA, -1.0)), (Space.CAMERA_AHEAD, axes_of(CAMERA, 1.0))],
+    [
+        (VectorSpace.WORLD, np.eye(3)),
+        (VectorSpace.CAMERA, axes_of(CAMERA, -1.0)),
+        (VectorSpace.CAMERA_AHEAD, axes_of(CAMERA, 1.0)),
+    ],
 )
 @pytest.mark.parametrize("coded", [False, True])
-def test_positions_tell_the_axes_of_normals(space: Space, turned: np.ndarray, coded: bool) -> None:
+def test_positions_tell_the_axes_of_normals(space: VectorSpace, turned: np.ndarray, coded: bool) -> None:
     normal = SEEN.normal @ turned.T
     normal = np.where(SEEN.hit[..., None], 0.5 * normal + 0.5, 0.0) if coded else normal
-    found = evidence.normal_by_position(normal.astype(np.float32), SEEN.position, CAMERA)
-    assert found is not None and found.kind == space and found.measured
+    found = evidence.match_normals_with_positions(normal.astype(np.float32), SEEN.position, CAMERA)
+    assert found is not None and found.kind == space and found.is_measured
     assert (found.scale[0], found.offset[0]) == ((2.0, -1.0) if coded else (1.0, 0.0))
 
 
 def test_a_camera_along_the_axes_leaves_normals_to_the_world() -> None:
     level = look_at((0.5, -7.0, 2.0), (0.5, 2.0, 2.0), FOCAL)
     view = cast_rays(level, WIDTH, HEIGHT)
-    assert evidence.normal_by_position(view.normal, view.position, level).kind == Space.WORLD
+    assert evidence.normal_by_position(view.normal, view.position, level).kind == VectorSpace.WORLD
 
 
 def test_other_vectors_are_no_normals() -> None:
     random = np.random.default_rng(7)
     noise = random.normal(size=(HEIGHT, WIDTH, 3))
     noise /= np.linalg.norm(noise, axis=2, keepdims=True)
-    assert evidence.normal_by_position(noise, SEEN.position, CAMERA) is None
-    assert evidence.normal_by_position(np.zeros_like(noise), SEEN.position, CAMERA) is None
-    assert evidence.normal_by_position(noise[:2], SEEN.position[:2], CAMERA) is None
-    assert evidence.normal_by_position(np.full_like(noise, np.nan), SEEN.position, CAMERA) is None
+    assert evidence.match_normals_with_positions(noise, SEEN.position, CAMERA) is None
+    assert evidence.match_normals_with_positions(np.zeros_like(noise), SEEN.position, CAMERA) is None
+    assert evidence.match_normals_with_positions(noise[:2], SEEN.position[:2], CAMERA) is None
+    assert evidence.match_normals_with_positions(np.full_like(noise, np.nan), SEEN.position, CAMERA) is None
 
 
 # --- motion -------------------------------------------------------------------------------------------------------
@@ -165,8 +169,8 @@ def motion() -> np.ndarray:
 )
 def test_two_cameras_tell_motion(sign: tuple[float, float], unit: tuple[float, float], words: str) -> None:
     stored = (motion() * sign / unit).astype(np.float32)
-    found = evidence.velocity_by_cameras(stored, SEEN.position, CAMERA, BEFORE)
-    assert found is not None and found.kind == Motion.FROM_PREVIOUS and words in found.reason
+    found = evidence.match_velocity_with_cameras(stored, SEEN.position, CAMERA, BEFORE)
+    assert found is not None and found.kind == MotionDirection.FROM_PREVIOUS and words in found.reason
     assert found.scale == pytest.approx(np.multiply(sign, unit), rel=1e-4)
     assert ("current minus previous" in found.reason) == (sign[0] > 0.0)
     assert ("y down" in found.reason) == (sign[0] == sign[1])
@@ -175,16 +179,16 @@ def test_two_cameras_tell_motion(sign: tuple[float, float], unit: tuple[float, f
 def test_what_moves_by_itself_does_not_mislead() -> None:
     stored = motion() * (-1.0, 1.0)
     stored[:, : WIDTH // 4] += 9.0
-    found = evidence.velocity_by_cameras(stored, SEEN.position, CAMERA, BEFORE)
+    found = evidence.match_velocity_with_cameras(stored, SEEN.position, CAMERA, BEFORE)
     assert found is not None and found.scale == (-1.0, 1.0)
 
 
 def test_without_motion_nothing_is_claimed() -> None:
     still = np.zeros((HEIGHT, WIDTH, 2))
-    assert evidence.velocity_by_cameras(still, SEEN.position, CAMERA, BEFORE) is None
-    assert evidence.velocity_by_cameras(motion(), SEEN.position, CAMERA, CAMERA) is None
-    assert evidence.velocity_by_cameras(motion()[::-1], SEEN.position, CAMERA, BEFORE) is None
-    assert evidence.velocity_by_pictures(still, SEEN.normal, SEEN.normal) is None
+    assert evidence.match_velocity_with_cameras(still, SEEN.position, CAMERA, BEFORE) is None
+    assert evidence.match_velocity_with_cameras(motion(), SEEN.position, CAMERA, CAMERA) is None
+    assert evidence.match_velocity_with_cameras(motion()[::-1], SEEN.position, CAMERA, BEFORE) is None
+    assert evidence.match_velocity_with_pictures(still, SEEN.normal, SEEN.normal) is None
 
 
 @pytest.mark.parametrize("sign", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
@@ -196,9 +200,11 @@ def test_two_pictures_tell_motion(sign: tuple[float, float]) -> None:
         return np.stack([1.0 + np.sin(x / 3.0), 1.0 + np.cos(y / 4.0), 1.0 + np.sin((x + y) / 5.0)], axis=-1)
 
     stored = np.zeros((HEIGHT, WIDTH, 2)) + np.multiply((3.0, 2.0), sign)
-    found = evidence.velocity_by_pictures(stored, picture(x - 3.0, y - 2.0), picture(x, y))
-    assert found is not None and found.scale == sign and found.measured
-    assert evidence.velocity_by_pictures(stored, np.ones((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH, 3))) is None
+    found = evidence.match_velocity_with_pictures(stored, picture(x - 3.0, y - 2.0), picture(x, y))
+    assert found is not None and found.scale == sign and found.is_measured
+    assert (
+        evidence.match_velocity_with_pictures(stored, np.ones((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH, 3))) is None
+    )
 
 
 # --- anything ----------------------------------------------------------------------------------------------------
@@ -221,12 +227,12 @@ def test_whatever_numbers_there_are_nothing_breaks(seed: int) -> None:
 
     depth, position, velocity = numbers(1)[..., 0], numbers(3), numbers(4)
     found = [
-        evidence.depth_by_position(depth, position, CAMERA),
-        evidence.depth_alone(depth),
-        evidence.normal_by_position(numbers(3), position, CAMERA),
-        evidence.position_space(CAMERA, position),
-        evidence.velocity_by_cameras(velocity, position, CAMERA, BEFORE),
-        evidence.velocity_by_pictures(velocity, numbers(3), numbers(3)),
+        evidence.match_depth_with_positions(depth, position, CAMERA),
+        evidence.judge_depth_by_planes(depth),
+        evidence.match_normals_with_positions(numbers(3), position, CAMERA),
+        evidence.find_position_space(CAMERA, position),
+        evidence.match_velocity_with_cameras(velocity, position, CAMERA, BEFORE),
+        evidence.match_velocity_with_pictures(velocity, numbers(3), numbers(3)),
     ]
     assert all(rule is None or np.isfinite([*rule.scale, *rule.offset]).all() for rule in found)
     for known in (None, depth):
@@ -240,32 +246,32 @@ def test_whatever_numbers_there_are_nothing_breaks(seed: int) -> None:
 @pytest.mark.parametrize(
     ("role", "name", "renderer", "kind"),
     [
-        (Role.DEPTH, "ViewLayer.Depth", Renderer.BLENDER, "planar"),
-        (Role.DEPTH, "hitdist", Renderer.KARMA, "radial"),
-        (Role.DEPTH, "Pz", Renderer.KARMA, "negative"),
-        (Role.DEPTH, "depth", Renderer.NUKE, "inverse"),
-        (Role.DEPTH, "VRayZDepth", Renderer.VRAY, ""),
-        (Role.DEPTH, "dd", Renderer.MITSUBA, "radial"),
+        (Role.DEPTH, "ViewLayer.Depth", RenderProgram.BLENDER, "planar"),
+        (Role.DEPTH, "hitdist", RenderProgram.KARMA, "radial"),
+        (Role.DEPTH, "Pz", RenderProgram.KARMA, "negative"),
+        (Role.DEPTH, "depth", RenderProgram.NUKE, "inverse"),
+        (Role.DEPTH, "VRayZDepth", RenderProgram.VRAY, ""),
+        (Role.DEPTH, "dd", RenderProgram.MITSUBA, "radial"),
         (Role.DEPTH, "Z", None, "planar"),
         (Role.DEPTH, "hitdist", None, "radial"),
         (Role.VELOCITY, "forward", None, "to_next"),
         (Role.POSITION, "P", None, "world"),
-        (Role.NORMAL, "N", Renderer.ARNOLD, "world"),
-        (Role.NORMAL, "Ng_camera", Renderer.KARMA, "camera"),
-        (Role.NORMAL, "Nn", Renderer.RENDERMAN, "camera_ahead"),
-        (Role.POSITION, "__Pworld", Renderer.RENDERMAN, "world"),
-        (Role.VELOCITY, "Vector", Renderer.BLENDER, "from_previous"),
-        (Role.VELOCITY, "forward", Renderer.NUKE, "to_next"),
-        (Role.VELOCITY, "motionvector", Renderer.ARNOLD, ""),
+        (Role.NORMAL, "N", RenderProgram.ARNOLD, "world"),
+        (Role.NORMAL, "Ng_camera", RenderProgram.KARMA, "camera"),
+        (Role.NORMAL, "Nn", RenderProgram.RENDERMAN, "camera_ahead"),
+        (Role.POSITION, "__Pworld", RenderProgram.RENDERMAN, "world"),
+        (Role.VELOCITY, "Vector", RenderProgram.BLENDER, "from_previous"),
+        (Role.VELOCITY, "forward", RenderProgram.NUKE, "to_next"),
+        (Role.VELOCITY, "motionvector", RenderProgram.ARNOLD, ""),
     ],
 )
-def test_habits_of_renderers(role: Role, name: str, renderer: Renderer | None, kind: str) -> None:
-    found = habit(role, name, renderer)
-    assert found is not None and found.kind == kind and not found.measured and len(found.reason) > 10
+def test_habits_of_renderers(role: Role, name: str, renderer: RenderProgram | None, kind: str) -> None:
+    found = find_habit(role, name, renderer)
+    assert found is not None and found.kind == kind and not found.is_measured and len(found.reason) > 10
 
 
 def test_roles_without_conventions_have_none() -> None:
-    assert habit(Role.BEAUTY, "Combined", Renderer.BLENDER) is None
+    assert find_habit(Role.BEAUTY, "Combined", RenderProgram.BLENDER) is None
     assert Convention("", "nobody knows").words == "not known"
 
 
@@ -273,4 +279,4 @@ def test_blender_velocity_becomes_current_minus_previous_with_y_down() -> None:
     """Vector is (previous - current, current - next) with y up; what it is scaled to is (v, v of the next frame)."""
     moved, moves = np.array([3.0, 2.0]), np.array([4.0, -1.0])  # current - previous, next - current, y down
     stored = np.array([-moved[0], moved[1], -moves[0], moves[1]])
-    assert (stored * habit(Role.VELOCITY, "Vector", Renderer.BLENDER).scale == [*moved, *moves]).all()
+    assert (stored * find_habit(Role.VELOCITY, "Vector", RenderProgram.BLENDER).scale == [*moved, *moves]).all()

@@ -9,12 +9,12 @@ import pytest
 from exr_files import write_exr
 from halation.errors import InputError
 from halation.presets import sample
-from halation.render_layers.analysis import survey
+from halation.render_layers.analysis import analyze_render
 from halation.render_layers.conventions import DepthKind
-from halation.render_layers.mattes import id_map
+from halation.render_layers.mattes import read_id_map
 from halation.render_layers.naming import Role
-from halation.render_layers.overview import overview
-from halation.render_layers.render import find_render, is_render
+from halation.render_layers.overview import summarize_render
+from halation.render_layers.render import is_render, read_render
 
 NEON = str(sample())
 ROLES = (Role.BEAUTY, Role.DEPTH, Role.NORMAL, Role.POSITION, Role.UV)
@@ -28,44 +28,44 @@ def unclear(tmp_path: Path) -> str:
 
 
 def test_what_is_found():
-    seen = overview(NEON, ROLES)
+    seen = summarize_render(NEON, ROLES)
     assert seen.size == "480 x 270, openexr, 12 parts, 12 layers" and "Blender 5.0.1" in seen.maker
     depth = seen.uses[Role.DEPTH]
-    assert (depth.layer, depth.found, depth.reason) == ("Depth", "Depth", "Blender's name for depth")
-    assert depth.rule and depth.rule.kind is DepthKind.PLANAR and depth.rule.measured
-    assert seen.uses[Role.UV].layer == "" and not seen.uses[Role.UV].open
-    assert {item.layer.name for item in seen.others} >= {"Noisy Image", "Vector"}
-    assert not any("Crypto" in item.layer.name for item in seen.others) and len(seen.mattes) == 1
-    assert seen.camera.solved and len(seen.parts) == 12 and ("Frame", "012") in seen.metadata
+    assert (depth.layer, depth.found_layer, depth.reason) == ("Depth", "Depth", "Blender's name for depth")
+    assert depth.rule and depth.rule.kind is DepthKind.PLANAR and depth.rule.is_measured
+    assert seen.uses[Role.UV].layer == "" and not seen.uses[Role.UV].is_open
+    assert {item.layer.name for item in seen.other_passes} >= {"Noisy Image", "Vector"}
+    assert not any("Crypto" in item.layer.name for item in seen.other_passes) and len(seen.mattes) == 1
+    assert seen.camera.solution and len(seen.parts) == 12 and ("Frame", "012") in seen.metadata
     assert seen.report.splitlines()[1].strip() == seen.size and not seen.fault
 
 
 def test_what_is_open_says_so(unclear):
-    uses = overview(unclear, ROLES).uses
-    assert uses[Role.NORMAL].open and uses[Role.NORMAL].reason == "may be worldNormals or normalsCS: choose one"
-    assert uses[Role.POSITION].open and uses[Role.POSITION].reason == "may be foo"
-    chosen = overview(unclear, ROLES, {Role.NORMAL: "normalsCS"})
-    assert chosen.uses[Role.NORMAL].layer == "normalsCS" and not chosen.uses[Role.NORMAL].open
-    assert {item.layer.name for item in chosen.others} == {"foo", "worldNormals"}
+    uses = summarize_render(unclear, ROLES).uses
+    assert uses[Role.NORMAL].is_open and uses[Role.NORMAL].reason == "may be worldNormals or normalsCS: choose one"
+    assert uses[Role.POSITION].is_open and uses[Role.POSITION].reason == "may be foo"
+    chosen = summarize_render(unclear, ROLES, {Role.NORMAL: "normalsCS"})
+    assert chosen.uses[Role.NORMAL].layer == "normalsCS" and not chosen.uses[Role.NORMAL].is_open
+    assert {item.layer.name for item in chosen.other_passes} == {"foo", "worldNormals"}
 
 
 def test_a_layer_that_is_not_there_leaves_the_rest(unclear):
-    seen = overview(NEON, ROLES, {Role.DEPTH: "Depht", Role.UV: "nothing like it"})
+    seen = summarize_render(NEON, ROLES, {Role.DEPTH: "Depht", Role.UV: "nothing like it"})
     assert seen.uses[Role.DEPTH].fault == "no layer 'Depht' in this file: did you mean Depth?"
     assert seen.uses[Role.UV].fault == "no layer 'nothing like it' in this file"
-    assert seen.uses[Role.NORMAL].layer == "Normal" and seen.camera.solved
+    assert seen.uses[Role.NORMAL].layer == "Normal" and seen.camera.solution
     with pytest.raises(InputError, match="has no layer 'Depht': did you mean 'Depth'"):
-        find_render(NEON, {"depth": "Depht"})
+        read_render(NEON, {"depth": "Depht"})
 
 
 def test_conventions_are_those_of_the_chosen_layer(tmp_path):
     """And the camera is solved from the chosen positions."""
-    usual = find_render(NEON)
-    named = find_render(NEON, {"depth": "Position.Z"})
+    usual = read_render(NEON)
+    named = read_render(NEON, {"depth": "Position.Z"})
     assert usual.meanings["depth"].kind == "planar" and named.layers["depth"].endswith("Position.Z")
-    assert not survey(NEON, named={Role.DEPTH: "Position.Z"}).conventions[Role.DEPTH].measured
-    assert find_render(NEON, {"position": "Normal"}).camera != usual.camera
-    assert survey(NEON) is survey(NEON, named={})
+    assert not analyze_render(NEON, named={Role.DEPTH: "Position.Z"}).conventions[Role.DEPTH].is_measured
+    assert read_render(NEON, {"position": "Normal"}).camera != usual.camera
+    assert analyze_render(NEON) is analyze_render(NEON, named={})
 
 
 def test_what_is_a_render(tmp_path, unclear):
@@ -76,10 +76,10 @@ def test_what_is_a_render(tmp_path, unclear):
 
 
 def test_what_is_where():
-    matte = find_render(NEON).mattes[0]
-    found = id_map(NEON, matte.layers[0])
+    matte = read_render(NEON).mattes[0]
+    found = read_id_map(NEON, matte.layers[0])
     assert found.ids.shape == (270, 480) and found.ids.dtype == np.uint32
     assert set(found.names.values()) == set(matte.ids)
-    assert found.names[found.at(0.5, 0.5)] in matte.ids and found.at(1.5, 0.5) == found.at(-0.1, 0.5) == 0
+    assert found.names[found.id_at(0.5, 0.5)] in matte.ids and found.id_at(1.5, 0.5) == found.id_at(-0.1, 0.5) == 0
     with pytest.raises(InputError, match="is no cryptomatte"):
-        id_map(NEON, "Depth")
+        read_id_map(NEON, "Depth")

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.render_layers.analysis import Survey, survey
-from halation.render_layers.naming import SCHEMES, Renderer, Role
-from halation.render_layers.recognition import Grounds
+from halation.render_layers.analysis import RenderAnalysis, analyze_render
+from halation.render_layers.naming import SCHEMES, RenderProgram, Role
+from halation.render_layers.recognition import RoleGrounds
 
 ROOT = Path(__file__).parents[2]
 LETTERS = {"rgb": "RGB", "rgba": "RGBA", "xyz": "XYZ", "z": "Z", "x": "X", "uv": "UV", "xyzw": "XYZW", "y": "Y"}
@@ -24,7 +24,7 @@ def written(
     attributes: Mapping[str, Any],
     type: str = "float",
     views: Sequence[str | None] = (),
-) -> Survey:
+) -> RenderAnalysis:
     """A file of black parts with these channels, straight from OpenImageIO."""
     specs = []
     for name, channels, view in zip_longest(parts, parts.values(), views):
@@ -43,10 +43,10 @@ def written(
         assert index == 0 or file.open(str(path), spec, "AppendSubimage")
         assert file.write_image(np.zeros((3, 4, spec.nchannels), np.float32))
     assert file.close()
-    return survey(path)
+    return analyze_render(path)
 
 
-def single(path: Path, layers: str, attributes: Mapping[str, Any] | None = None, type: str = "float") -> Survey:
+def single(path: Path, layers: str, attributes: Mapping[str, Any] | None = None, type: str = "float") -> RenderAnalysis:
     """One part with `name:rgb` layers; a name of `-` stands for channels without one."""
     channels: list[str] = []
     for item in layers.split():
@@ -55,7 +55,7 @@ def single(path: Path, layers: str, attributes: Mapping[str, Any] | None = None,
     return written(path, {"": tuple(channels)}, attributes or {}, type)
 
 
-def roles(found: Survey) -> dict[str, str]:
+def roles(found: RenderAnalysis) -> dict[str, str]:
     return {item.layer.name: item.role.value if item.role else "" for item in found.passes}
 
 
@@ -99,24 +99,24 @@ MITSUBA = """img:rgba beauty, dd:y depth, pp:xyz position, nn:xyz normal, uv:uv 
 @pytest.mark.parametrize(
     ("renderer", "marks", "table"),
     [
-        (Renderer.BLENDER, {"Software": "Blender 4.5.1"}, BLENDER_4),
-        (Renderer.BLENDER, {"BlenderMultiChannel": "Blender V2.55.1 and newer"}, BLENDER_4),
-        (Renderer.ARNOLD, {"arnold/version": "7.3.2.1"}, ARNOLD),
-        (Renderer.VRAY, {"vrayInfo/vrayversion": "6.20.00"}, VRAY),
-        (Renderer.KARMA, {"husk:command_line": "husk -R Karma"}, KARMA),
-        (Renderer.RENDERMAN, {"PRManVersion": "26.3"}, RENDERMAN),
-        (Renderer.REDSHIFT, {"rs/camera/nearPlane": 0.1}, REDSHIFT),
-        (Renderer.NUKE, {"nuke/version": "15.1v3"}, NUKE),
-        (Renderer.MITSUBA, {"generatedBy": "Mitsuba version 3.9.1"}, MITSUBA),
+        (RenderProgram.BLENDER, {"Software": "Blender 4.5.1"}, BLENDER_4),
+        (RenderProgram.BLENDER, {"BlenderMultiChannel": "Blender V2.55.1 and newer"}, BLENDER_4),
+        (RenderProgram.ARNOLD, {"arnold/version": "7.3.2.1"}, ARNOLD),
+        (RenderProgram.VRAY, {"vrayInfo/vrayversion": "6.20.00"}, VRAY),
+        (RenderProgram.KARMA, {"husk:command_line": "husk -R Karma"}, KARMA),
+        (RenderProgram.RENDERMAN, {"PRManVersion": "26.3"}, RENDERMAN),
+        (RenderProgram.REDSHIFT, {"rs/camera/nearPlane": 0.1}, REDSHIFT),
+        (RenderProgram.NUKE, {"nuke/version": "15.1v3"}, NUKE),
+        (RenderProgram.MITSUBA, {"generatedBy": "Mitsuba version 3.9.1"}, MITSUBA),
     ],
 )
-def test_every_scheme(tmp_path: Path, renderer: Renderer, marks: dict[str, Any], table: str) -> None:
+def test_every_scheme(tmp_path: Path, renderer: RenderProgram, marks: dict[str, Any], table: str) -> None:
     rows = [row.split() for row in table.split(",")]
     found = single(tmp_path / "x.exr", " ".join(layer for layer, _ in rows), marks)
     assert found.maker.renderer is renderer and next(iter(marks)) in found.maker.reason
     wanted = {layer.partition(":")[0].replace("-", "RGBA"): role for layer, role in rows}
     assert roles(found) == wanted
-    assert all(item.reason and item.grounds < Grounds.NONE for item in found.passes)
+    assert all(item.reason and item.grounds < RoleGrounds.NONE for item in found.passes)
 
 
 LONG = {
@@ -163,20 +163,20 @@ def test_blender_5_in_parts(tmp_path: Path) -> None:
         "denoise_normal",
         "denoise_albedo",
     ]
-    assert found.layer(Role.DEPTH).part == 2 and found.rivals == {}
+    assert found.find_layer(Role.DEPTH).part == 2 and found.rivals == {}
 
 
 def test_parts_that_name_bare_channels(tmp_path: Path) -> None:
     parts = {"rgba": tuple("RGBA"), "VRayZDepth": ("Z",), "VRayNormals": tuple("XYZ")}
     found = written(tmp_path / "x.exr", parts, {})
     assert list(roles(found).values()) == ["beauty", "depth", "normal"]
-    assert found.maker.renderer is Renderer.VRAY and "VRayZDepth" in found.maker.reason
+    assert found.maker.renderer is RenderProgram.VRAY and "VRayZDepth" in found.maker.reason
 
 
 @pytest.mark.parametrize("name", ["presets/samples/neon.exr", "tests/data/blender45_multilayer.exr"])
 def test_real_renders(name: str) -> None:
-    found = survey(ROOT / name)
-    assert found.maker.renderer is Renderer.BLENDER
+    found = analyze_render(ROOT / name)
+    assert found.maker.renderer is RenderProgram.BLENDER
     assert {role.value for role in found.roles} == {
         "beauty",
         "noisy_beauty",
@@ -191,8 +191,8 @@ def test_real_renders(name: str) -> None:
     }
     assert all(item.role for item in found.passes) and found.rivals == {}
     crypto = [item for item in found.passes if item.role is Role.CRYPTOMATTE_OBJECT]
-    assert [item.grounds for item in crypto] == [Grounds.HEADER] * 3
-    assert [layer.name[-2:] for layer in found.ranks(Role.CRYPTOMATTE_OBJECT)] == ["00", "01", "02"]
+    assert [item.grounds for item in crypto] == [RoleGrounds.HEADER] * 3
+    assert [layer.name[-2:] for layer in found.layers_by_rank(Role.CRYPTOMATTE_OBJECT)] == ["00", "01", "02"]
 
 
 # --- without a known renderer -------------------------------------------------------------------------------------
@@ -206,7 +206,7 @@ def test_a_name_that_renderers_use_differently_is_left_open(tmp_path: Path) -> N
     assert set(by_name["diffuse"].candidates) == {Role.DIFFUSE, Role.ALBEDO}
     assert "albedo in V-Ray" in by_name["diffuse"].reason
     assert set(by_name["specular"].candidates) == {Role.SPECULAR, Role.SPECULAR_DIRECT}
-    assert found.layer(Role.DIFFUSE) is None and found.layer(Role.ALBEDO) is None
+    assert found.find_layer(Role.DIFFUSE) is None and found.find_layer(Role.ALBEDO) is None
 
 
 @pytest.mark.parametrize(
@@ -248,13 +248,13 @@ def test_names_are_read_like_a_person_would(tmp_path: Path, layer: str, role: st
 )
 def test_what_only_looks_like_something_is_listed(tmp_path: Path, layer: str, candidates: set[Role]) -> None:
     item = single(tmp_path / "x.exr", f"-:rgba {layer}").passes[1]
-    assert item.role is None and set(item.candidates) == candidates and item.grounds is Grounds.NONE
+    assert item.role is None and set(item.candidates) == candidates and item.grounds is RoleGrounds.NONE
 
 
 def test_a_lone_picture_is_the_beauty(tmp_path: Path) -> None:
     item = single(tmp_path / "x.exr", "N:xyz glow:rgb other:rgb").passes[1]
     assert item.role is Role.BEAUTY and item.reason == "the first layer of color that is nothing else"
-    assert single(tmp_path / "y.exr", "N:xyz foo:xyz").layer(Role.BEAUTY) is None
+    assert single(tmp_path / "y.exr", "N:xyz foo:xyz").find_layer(Role.BEAUTY) is None
 
 
 # --- several with one claim ---------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ def test_a_lone_picture_is_the_beauty(tmp_path: Path) -> None:
 
 def test_the_better_name_wins(tmp_path: Path) -> None:
     found = single(tmp_path / "x.exr", "Ci:rgb zfiltered:z z:z zDepth:z", {"PRManVersion": "26"})
-    assert found.layer(Role.DEPTH).name == "z" and found.rivals == {}
+    assert found.find_layer(Role.DEPTH).name == "z" and found.rivals == {}
 
 
 def test_of_view_layers_that_of_the_picture_counts(tmp_path: Path) -> None:
@@ -271,12 +271,15 @@ def test_of_view_layers_that_of_the_picture_counts(tmp_path: Path) -> None:
         "Main.Combined:rgba Main.Depth:z Other.Combined:rgba Other.Depth:z",
         {"Software": "Blender 4.2"},
     )
-    assert found.layer(Role.BEAUTY).full_name == "Main.Combined" and found.layer(Role.DEPTH).full_name == "Main.Depth"
+    assert (
+        found.find_layer(Role.BEAUTY).full_name == "Main.Combined"
+        and found.find_layer(Role.DEPTH).full_name == "Main.Depth"
+    )
 
 
 def test_equal_claims_are_left_to_the_user(tmp_path: Path) -> None:
     found = single(tmp_path / "x.exr", "-:rgba mask1:r mask2:r normalsCS:xyz worldNormals:xyz")
-    assert found.layer(Role.NORMAL) is None and found.layer(Role.MATTE) is None
+    assert found.find_layer(Role.NORMAL) is None and found.find_layer(Role.MATTE) is None
     assert {role: [layer.name for layer in layers] for role, layers in found.rivals.items()} == {
         Role.NORMAL: ["normalsCS", "worldNormals"]  # of mattes there may be many
     }
@@ -301,8 +304,8 @@ def test_views_of_one_part(tmp_path: Path, named: bool) -> None:
         "bars.left": "",
         "bars.right": "",
     }
-    assert found.layer(Role.BEAUTY).name == "RGBA" and found.layer(Role.DEPTH).name == "Z"
-    motion = found.layer(Role.VELOCITY)
+    assert found.find_layer(Role.BEAUTY).name == "RGBA" and found.find_layer(Role.DEPTH).name == "Z"
+    motion = found.find_layer(Role.VELOCITY)
     assert motion.name == "forward.right" if named else motion is None
 
 
@@ -320,8 +323,8 @@ def test_views_of_parts(tmp_path: Path) -> None:
     views = ["right", "left", "left", "left", "right", "right", None]
     found = written(tmp_path / "x.exr", parts, {}, views=views)
     assert list(roles(found).values()) == ["beauty", "depth", "velocity", "beauty", "depth", "velocity", ""]
-    assert found.layer(Role.BEAUTY).part == 0 and found.layer(Role.DEPTH).part == 4
-    assert found.layer(Role.VELOCITY).part == 5 and found.rivals == {}
+    assert found.find_layer(Role.BEAUTY).part == 0 and found.find_layer(Role.DEPTH).part == 4
+    assert found.find_layer(Role.VELOCITY).part == 5 and found.rivals == {}
 
 
 # --- cryptomatte --------------------------------------------------------------------------------------------------
@@ -344,8 +347,8 @@ def test_a_preview_and_half_floats_are_no_cryptomatte(tmp_path: Path) -> None:
 # --- the tables ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("renderer", Renderer)
-def test_a_name_has_one_role_in_a_table(renderer: Renderer) -> None:
+@pytest.mark.parametrize("renderer", RenderProgram)
+def test_a_name_has_one_role_in_a_table(renderer: RenderProgram) -> None:
     names = [name for words in SCHEMES[renderer].names.values() for name in words]
     assert len(names) == len(set(names)) and Role.BEAUTY in SCHEMES[renderer].names
 
@@ -367,13 +370,13 @@ def test_marks_do_not_fit_other_headers() -> None:
     assert fits == [
         [renderer]
         for renderer in (
-            Renderer.BLENDER,
-            Renderer.ARNOLD,
-            Renderer.VRAY,
-            Renderer.KARMA,
-            Renderer.RENDERMAN,
-            Renderer.REDSHIFT,
-            Renderer.MITSUBA,
-            Renderer.NUKE,
+            RenderProgram.BLENDER,
+            RenderProgram.ARNOLD,
+            RenderProgram.VRAY,
+            RenderProgram.KARMA,
+            RenderProgram.RENDERMAN,
+            RenderProgram.REDSHIFT,
+            RenderProgram.MITSUBA,
+            RenderProgram.NUKE,
         )
     ] + [[], []]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from device_textures import read_texture, upload_texture
-from halation.color.transforms import displays, to_display, views
+from halation.color.transforms import list_displays, list_views, to_display
 from halation.errors import UsageError
 from halation.renderer import DeviceTexture, Display, Look, Renderer, fit_zoom, to_panel, to_picture
 from halation.renderer.opengl.device import OpenGLDevice
@@ -84,12 +84,12 @@ def test_views_are_those_of_written_files(result, shown, view):
     assert np.abs(shown(result(pixels), view=view).clip(0.0, 1.0) - expected).max() <= 1e-4
 
 
-@pytest.mark.parametrize("screen", [name for name in displays() if "HDR" not in name][1:])
+@pytest.mark.parametrize("screen", [name for name in list_displays() if "HDR" not in name][1:])
 def test_every_display_has_its_views(result, shown, screen):
     pixels = stops(np.random.default_rng(2))
     expected = to_display(pixels, "", bits=32, display=screen)[..., :3].clip(0.0, 1.0)
     assert np.abs(shown(result(pixels), display=screen).clip(0.0, 1.0) - expected).max() <= 1.0 / 255.0
-    assert views(screen)[-1] == "none"
+    assert list_views(screen)[-1] == "none"
 
 
 def test_a_screen_gets_eight_bits(renderer, result):

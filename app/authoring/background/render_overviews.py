@@ -9,10 +9,10 @@ from types import MappingProxyType
 from halation.nodes import Matte, Render
 
 from ...errors import HalationError, InputError
-from ...render_layers.mattes import IdMap, id_map
+from ...render_layers.mattes import IdMap, read_id_map
 from ...render_layers.naming import Role
-from ...render_layers.overview import Overview, overview
-from ...render_layers.render import find_render
+from ...render_layers.overview import RenderOverview, summarize_render
+from ...render_layers.render import read_render
 from ...resources.input_files import fingerprint
 from ...watch.sequence_files import representative_file
 from ...watch.versions import FileVersions
@@ -54,13 +54,13 @@ class RenderOverviews:
     """What renders hold: never waits for a file."""
 
     def __init__(self) -> None:
-        self._overviews: BackgroundCache[_Key, tuple[Overview | str, Render | str]] = BackgroundCache(
+        self._overviews: BackgroundCache[_Key, tuple[RenderOverview | str, Render | str]] = BackgroundCache(
             "renders", _read_overview, _KEPT
         )
         self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache("mattes", _ids, _KEPT_IDS, 1)
         self._versions = FileVersions()
 
-    def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> Overview | str | None:
+    def summarize_render(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> RenderOverview | str | None:
         """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
         path = representative_file(path)
         version, fault = self._versions.of(path)
@@ -100,17 +100,17 @@ def _key(path: str, version: str, named: ChosenLayers) -> _Key:
     return path, version, tuple(sorted((role, layer) for role, layer in named.items() if layer))
 
 
-def _read_overview(key: _Key) -> tuple[Overview | str, Render | str]:
+def _read_overview(key: _Key) -> tuple[RenderOverview | str, Render | str]:
     path, _, named = key
     try:
-        contents = overview(path, ROLES, {Role(role): layer for role, layer in named})
+        contents = summarize_render(path, ROLES, {Role(role): layer for role, layer in named})
     except HalationError as fault:
         return str(fault), str(fault)
     except Exception as fault:
         message = f"{path}: cannot be looked at ({fault})"
         return message, message
     try:
-        return contents, find_render(path, dict(named))
+        return contents, read_render(path, dict(named))
     except HalationError as fault:
         return contents, str(fault)
 
@@ -118,6 +118,6 @@ def _read_overview(key: _Key) -> tuple[Overview | str, Render | str]:
 def _ids(key: tuple[str, str, str]) -> IdMap | str:
     path, _, layer = key
     try:
-        return id_map(path, layer)
+        return read_id_map(path, layer)
     except HalationError as fault:
         return str(fault)

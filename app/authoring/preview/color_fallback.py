@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from halation.nodes import ColorSettings
 
-from ...color.management import BUILT_IN, color_mark, managed
+from ...color.management import BUILT_IN, get_color_manager, mark_color_settings
 from ...errors import HalationError
 
 _BUILT_IN = ColorSettings(BUILT_IN)
@@ -23,12 +23,12 @@ class ColorFallback:
 
     def resolve(self, color: ColorSettings) -> ColorSettings:
         """These settings, or those that stand in for them."""
-        key = color, color_mark(color)
+        key = color, mark_color_settings(color)
         if key != self.asked:
             self.asked, self.settings, self.fault = key, color, ""
-            manager = managed(color)
+            manager = get_color_manager(color)
             try:
-                if not manager.plain:
+                if not manager.is_plain:
                     _ = manager.config, manager.working
             except HalationError as fault:
                 self.settings, self.fault = _BUILT_IN, str(fault)

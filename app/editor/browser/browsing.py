@@ -7,7 +7,7 @@ from pathlib import Path
 from time import localtime, strftime
 from typing import TYPE_CHECKING
 
-from ...color.gpu_programs import table_endings
+from ...color.gpu_programs import list_table_endings
 from ...graph.frames import VIDEO_ENDINGS
 from ...media.meshes.load import MESH_ENDINGS
 from ...media.pictures.thumbnail import list_readable_endings
@@ -112,7 +112,7 @@ def endings(browse: Browse) -> frozenset[str]:
     if browse.purpose == "image":
         return list_readable_endings() | VIDEO_ENDINGS
     if browse.purpose == "table":
-        return table_endings()
+        return list_table_endings()
     if browse.purpose == "scene":
         return MESH_ENDINGS
     if browse.purpose == "config":

@@ -9,7 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetColorSettings
-from ...color.management import builtin_configs, color_mark, managed, ocio
+from ...color.management import list_builtin_configs, mark_color_settings, get_color_manager, load_ocio
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
@@ -29,18 +29,18 @@ _REC709 = "linear Rec.709"
 @lru_cache(maxsize=8)
 def space_names(color: ColorSettings, mark: str) -> tuple[str, ...]:
     """The roles and color spaces of a config. `mark` changes when it does."""
-    manager = managed(color)
-    return (*manager.spaces.getRoleNames(), *manager.names())
+    manager = get_color_manager(color)
+    return (*manager.spaces.getRoleNames(), *manager.list_spaces())
 
 
 @lru_cache(maxsize=8)
 def _linear(color: ColorSettings, mark: str) -> tuple[str, ...]:
     """The spaces that can be worked in."""
-    manager = managed(color)
-    kind = ocio().REFERENCE_SPACE_SCENE
+    manager = get_color_manager(color)
+    kind = load_ocio().REFERENCE_SPACE_SCENE
     return tuple(
         name
-        for name in ("scene_linear", *manager.names())
+        for name in ("scene_linear", *manager.list_spaces())
         if (found := manager.find(name)) and not found.data and manager.spaces.isColorSpaceLinear(found.name, kind)
     )
 
@@ -57,7 +57,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         "(OpenColorIO): a file, or a config that comes with it",
         changed=bool(color.config),
     )
-    choices = (_ENVIRONMENT, _FROM_FILE, *builtin_configs())
+    choices = (_ENVIRONMENT, _FROM_FILE, *list_builtin_configs())
     if color.config and color.config not in choices:
         edit = text_field(fields, "color config", color.config, _PATH, rows.field() - imgui.get_frame_height())
         rows.record("color config")
@@ -89,7 +89,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         doc="The linear color space that pictures are in between nodes",
         changed=bool(color.working),
     )
-    known = (_REC709, *_linear(ColorSettings(usable.config), color_mark(usable)))
+    known = (_REC709, *_linear(ColorSettings(usable.config), mark_color_settings(usable)))
     index = choose(fields, "working space", color.working or _REC709, known, rows.field())
     rows.record("working space")
     if index is not None:
@@ -100,7 +100,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
 def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:
     """Which color space something is in, from those of the config; empty stands for finding out."""
     color = settings_in_use(rows.context)
-    known = (FOUND, *space_names(color, color_mark(color)))
+    known = (FOUND, *space_names(color, mark_color_settings(color)))
     shown = FOUND if now in ("", "auto") else now
     choices = known if shown in known else (shown, *known)
     index = choose(fields, key, shown, choices, width)

@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import RenameEnd, SetInput, SetOutput
-from ...color.transforms import views
+from ...color.transforms import list_views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
 from ..fields.choice_field import choose
@@ -164,7 +164,7 @@ class EndView:
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
-            known = ("", *views(color=settings_in_use(context)))
+            known = ("", *list_views(color=settings_in_use(context)))
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
             )

@@ -10,7 +10,7 @@ from halation.nodes import ColorSettings, Kind
 
 from ...authoring.background.cache import BackgroundCache
 from ...color.file_space import FileSpace
-from ...color.management import color_mark
+from ...color.management import mark_color_settings
 from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, read_info, read_layer
@@ -57,7 +57,7 @@ class Layers:
     def space(self, path: Path, layer: str, color: ColorSettings, wanted: str) -> tuple[str, bool]:
         """What the color of a layer is in and how that is known, and whether that is a fault; "" while it is read."""
         version, fault = self._versions.of(path)
-        found = None if fault else self._spaces.get((str(path), version, color, color_mark(color), wanted))
+        found = None if fault else self._spaces.get((str(path), version, color, mark_color_settings(color), wanted))
         header = self.header(path)
         if found is None or isinstance(found, str) or not isinstance(header, ImageInfo):
             return (found, True) if isinstance(found, str) else ("", False)

@@ -12,9 +12,9 @@ from imgui_bundle import imgui
 from ...authoring.commands import AddMatte, SetValue
 from ...graph import Port
 from ...render_layers.naming import Role
-from ...render_layers.overview import Overview, Use
-from ...render_layers.recognition import Pass
-from ...render_layers.report import camera_rows, either
+from ...render_layers.overview import RenderOverview, RoleUse
+from ...render_layers.recognition import RenderPass
+from ...render_layers.report import join_choices, list_camera
 from ..shared.render_facts import FOUND, overview_of, render_path, rule_words
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
@@ -53,7 +53,7 @@ class RenderRows:
         roles = [value for value in item.values.values() if value.role]
         if roles:
             self._layers(rows, id, item, roles, seen)
-        if not isinstance(seen, Overview):
+        if not isinstance(seen, RenderOverview):
             return
         if roles:
             self._others(rows, id, roles, seen)
@@ -63,10 +63,12 @@ class RenderRows:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _layers(self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: Overview | str | None) -> None:
+    def _layers(
+        self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: RenderOverview | str | None
+    ) -> None:
         """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
-        uses = seen.uses if isinstance(seen, Overview) else {}
-        there = {role for role, use in uses.items() if use.layer or use.open or use.fault}
+        uses = seen.uses if isinstance(seen, RenderOverview) else {}
+        there = {role for role, use in uses.items() if use.layer or use.is_open or use.fault}
         there |= {Role(value.role) for value in roles if getattr(item, value.name) != value.default}
         shown = [value for value in roles if Role(value.role) in there]
         rest = [value for value in roles if Role(value.role) not in there]
@@ -82,7 +84,7 @@ class RenderRows:
             for value in rest:
                 self._role(rows, id, item, value, None)
 
-    def _role(self, rows: Rows, id: str, item: Node, value: Value, use: Use | None) -> None:
+    def _role(self, rows: Rows, id: str, item: Node, value: Value, use: RoleUse | None) -> None:
         """One value, and what there is to say of it."""
         socket = _socket(item, value)
         color = rows.palette.kinds[socket.kind] if socket and value.type == "text" else None
@@ -92,7 +94,7 @@ class RenderRows:
         has_choice = f"{_output(value)}_is" in item.values
         if value.type == "text":
             said = use.fault or use.reason
-            rows.field_note(said, rows.palette.error if use.fault else rows.palette.warning if use.open else None)
+            rows.field_note(said, rows.palette.error if use.fault else rows.palette.warning if use.is_open else None)
             if use.rule and not has_choice:
                 rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
@@ -101,17 +103,17 @@ class RenderRows:
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)
 
-    def _others(self, rows: Rows, id: str, roles: Sequence[Value], seen: Overview) -> None:
+    def _others(self, rows: Rows, id: str, roles: Sequence[Value], seen: RenderOverview) -> None:
         """Layers that no output shows, each with a list of what to use it for."""
         if seen.mattes:
             self._offer_mattes(rows, id, seen)
-        if not seen.others:
+        if not seen.other_passes:
             return
         rows.heading("Not Used")
-        for item in seen.others:
+        for item in seen.other_passes:
             self._other(rows, id, [value for value in roles if value.type == "text"], item)
 
-    def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: Pass) -> None:
+    def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: RenderPass) -> None:
         key, session = f"{id} {item.layer.name}", rows.context.session
         button = f"{_USE_AS}  {icons.ICON_FA_CHEVRON_DOWN}"
         room = imgui.calc_text_size(button).x + 2 * imgui.get_style().frame_padding.x
@@ -131,14 +133,14 @@ class RenderRows:
         dropdown(rows.context, button, f"button use {key}", "Choose what this layer is used for", offer)
         maybe = item.role is None and bool(item.candidates)
         words = (
-            f"may be {either([role.words for role in item.candidates])}"
+            f"may be {join_choices([role.words for role in item.candidates])}"
             if maybe
             else (item.role.words if item.role else item.reason)
         )
         with font(rows.context, "text", SMALL):
             draw_wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
 
-    def _offer_mattes(self, rows: Rows, id: str, seen: Overview) -> None:
+    def _offer_mattes(self, rows: Rows, id: str, seen: RenderOverview) -> None:
         """What cryptomattes there are, and a button for a node that cuts out."""
         rows.heading("Cryptomatte")
         words = [
@@ -151,27 +153,27 @@ class RenderRows:
             rows.act(lambda: session.apply(AddMatte(id, seen.mattes[0].kind)))
 
 
-def _about(rows: Rows, seen: Overview | str | None) -> None:
+def _about(rows: Rows, seen: RenderOverview | str | None) -> None:
     """What the file is, below its path."""
     if seen is None:
         rows.field_note("looking at it…")
-    elif isinstance(seen, Overview):
+    elif isinstance(seen, RenderOverview):
         rows.field_note(f"{seen.size}\n{seen.maker}")
         if seen.fault:
             rows.field_note(seen.fault, rows.palette.error)
 
 
-def _camera(rows: Rows, id: str, seen: Overview) -> None:
+def _camera(rows: Rows, id: str, seen: RenderOverview) -> None:
     """Whether there is one, and how exactly it was found."""
     rows.heading("Camera")
-    facts = dict(camera_rows(seen.camera))
+    facts = dict(list_camera(seen.camera))
     for name in ("found", "none", "residual", "field of view"):
         if name in facts:
             _fact(rows, name, facts[name], rows.palette.warning if name == "none" else None)
     rows.context.places[f"camera {id}"] = item_rect()
 
 
-def _file(rows: Rows, id: str, seen: Overview) -> None:
+def _file(rows: Rows, id: str, seen: RenderOverview) -> None:
     """What `halation info` shows besides: parts, the whole camera, metadata."""
     rows.heading("File")
     if _opened(rows, f"Parts ({len(seen.parts)})###parts {id}", f"more {id} parts"):
@@ -186,7 +188,7 @@ def _file(rows: Rows, id: str, seen: Overview) -> None:
             ],
         )
     if seen.camera.camera and _opened(rows, f"Camera###camera {id}", f"more {id} camera"):
-        _facts(rows, camera_rows(seen.camera))
+        _facts(rows, list_camera(seen.camera))
     if seen.metadata and _opened(rows, f"Metadata ({len(seen.metadata)})###metadata {id}", f"more {id} metadata"):
         _facts(
             rows, [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata]

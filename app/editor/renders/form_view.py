@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.transforms import views
+from ...color.transforms import list_views
 from ...graph.frames import format_frames
 from ..shared.coloring import settings_in_use
 from ..shared.dialogs import Browse
@@ -153,7 +153,7 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
         form.precision = next(name for name, text in DEPTHS if text == chosen)
     if format in VIEWED or format == "mixed":
         own = "as the output says"
-        if chosen := choose(context, "View", form.view or own, (own, *views(color=settings_in_use(context)))):
+        if chosen := choose(context, "View", form.view or own, (own, *list_views(color=settings_in_use(context)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]

@@ -11,8 +11,8 @@ from halation.nodes import Matte, Node, Value, matte_of
 from ...graph import Graph, Port
 from ...render_layers.conventions import Convention
 from ...render_layers.naming import Role
-from ...render_layers.overview import Overview, Use
-from ...render_layers.report import certainty
+from ...render_layers.overview import RenderOverview, RoleUse
+from ...render_layers.report import describe_certainty
 
 if TYPE_CHECKING:
     from ...authoring.background.render_overviews import RenderOverviews
@@ -47,7 +47,7 @@ def render_file(graph: Graph, id: str) -> Path | None:
     return Path(graph.folder, path) if path else None
 
 
-def overview_of(context: RenderContext, id: str) -> Overview | str | None:
+def overview_of(context: RenderContext, id: str) -> RenderOverview | str | None:
     """What the render of a node holds, a sentence if it cannot be read or none is named, None while it is read."""
     graph = context.session.graph
     file = render_file(graph, id)
@@ -60,20 +60,20 @@ def named_layers(item: object) -> Mapping[str, str]:
     return {value.role: str(getattr(item, value.name)) for value in values if value.role and value.type == "text"}
 
 
-def use_of(context: RenderContext, port: Port, declaration: Value) -> Use | None:
+def use_of(context: RenderContext, port: Port, declaration: Value) -> RoleUse | None:
     """What is known of the layer that a value is about."""
     overview = overview_of(context, port.node) if declaration.role else None
-    return overview.uses.get(Role(declaration.role)) if isinstance(overview, Overview) else None
+    return overview.uses.get(Role(declaration.role)) if isinstance(overview, RenderOverview) else None
 
 
-def first_words(use: Use | None) -> str:
+def first_words(use: RoleUse | None) -> str:
     """What a field says that leaves the layer to what the file shows."""
     if use is None:
         return FOUND
-    return f"{FOUND}: {use.found}" if use.found else "choose a layer" if use.open else "none found"
+    return f"{FOUND}: {use.found_layer}" if use.found_layer else "choose a layer" if use.is_open else "none found"
 
 
-def convention_words(declaration: Value, use: Use | None) -> tuple[str, ...]:
+def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]:
     """The choices of a convention; the first says what was found."""
     rule = use.rule if use else None
     return (f"{FOUND}: {rule.words}" if rule else FOUND, *declaration.choices[1:])
@@ -81,14 +81,14 @@ def convention_words(declaration: Value, use: Use | None) -> tuple[str, ...]:
 
 def rule_words(rule: Convention, *, kind_shown: bool) -> str:
     """How a convention is known; `told` that the kind is shown elsewhere."""
-    return f"{certainty(rule)}: {rule.reason}" if kind_shown else f"{rule.words}, {certainty(rule)}: {rule.reason}"
+    return f"{describe_certainty(rule)}: {rule.reason}" if kind_shown else f"{rule.words}, {describe_certainty(rule)}: {rule.reason}"
 
 
 def matte_at(context: RenderContext, id: str) -> Matte | str | None:
     """The cryptomatte that a node picks from, a sentence if there is none, None while the file is being read."""
     item, overview = context.session.graph.nodes.get(id), overview_of(context, id)
     pick = pick_value(item)
-    if not isinstance(overview, Overview) or pick is None:
+    if not isinstance(overview, RenderOverview) or pick is None:
         return overview if isinstance(overview, str) else None
     kind = str(getattr(item, pick.matte))
     matte = matte_of(overview.mattes, kind)

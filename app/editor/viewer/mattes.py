@@ -55,7 +55,7 @@ def under(context: ViewerContext, sight: Sight, at: Point) -> Under | None:
     if port is None or file is None or not isinstance(matte, Matte) or sight.under(at) is None:
         return None
     known = context.renders.ids(file, matte)
-    id = known.at(*sight.fraction(at)) if isinstance(known, IdMap) else 0
+    id = known.id_at(*sight.fraction(at)) if isinstance(known, IdMap) else 0
     if not id or not isinstance(known, IdMap):
         return None
     name = known.names.get(id, "")

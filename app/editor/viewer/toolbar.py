@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.transforms import NO_LOOK, displays, looks, views
+from ...color.transforms import NO_LOOK, list_displays, list_looks, list_views
 from ..shared.coloring import settings_in_use
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
@@ -277,14 +277,14 @@ def _view(context: ViewerContext, asked: str) -> _ViewerTool:
         if imgui.menu_item(f"As the output asks ({asked or 'default'})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
-        for display in displays(color):
+        for display in list_displays(color):
             if imgui.begin_menu(display):
-                for view in views(display, color):
+                for view in list_views(display, color):
                     chosen = viewer.view == view and viewer.display in (display, "")
                     if imgui.menu_item(view, "", chosen)[0]:
                         viewer.view, viewer.display = view, display
                 imgui.end_menu()
-        if known := looks(color):
+        if known := list_looks(color):
             imgui.separator()
             if imgui.begin_menu("Look"):
                 for look, title in (("", "As the view says"), (NO_LOOK, "None"), *((name, name) for name in known)):

@@ -8,7 +8,7 @@ from math import inf, log10, nan
 import numpy as np
 import OpenImageIO as oiio
 
-from ...color.transforms import Array, as_float, decode_srgb
+from ...color.transforms import Array, decode_srgb, to_float
 from ...errors import UsageError
 
 EIGHT_BIT_STEP = 1.0 / 255.0
@@ -198,7 +198,7 @@ def to_three_channels(array: Array) -> Array:
 
 
 def _check_picture(array: Array, name: str) -> Array:
-    picture = as_float(np.asarray(array))
+    picture = to_float(np.asarray(array))
     if picture.ndim not in (2, 3) or not picture.size or picture.dtype.kind != "f":
         raise UsageError(
             f"the {name} picture is {picture.dtype} {list(picture.shape)}; give numbers as [height, width, channels]"

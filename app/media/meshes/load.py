@@ -121,14 +121,14 @@ def _read_part(scene: Any, node: str) -> MeshPart | None:
 
 def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:
     """The base color: scene-linear in glTF; the other formats mean sRGB."""
-    from ...color.transforms import as_float, decode_srgb
+    from ...color.transforms import decode_srgb, to_float
 
     base = getattr(material, "baseColorFactor", None)
     if base is not None:
-        linear = as_float(np.asarray(base)[:3])
+        linear = to_float(np.asarray(base)[:3])
     else:
         base = getattr(material or visual, "main_color", None)
-        linear = decode_srgb(as_float(np.asarray((204, 204, 204) if base is None else base, np.uint8)[:3]))
+        linear = decode_srgb(to_float(np.asarray((204, 204, 204) if base is None else base, np.uint8)[:3]))
     red, green, blue = (float(part) for part in linear)
     return red, green, blue
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import OpenImageIO as oiio
 
-from ...color.file_space import SRGB, Hints
+from ...color.file_space import SRGB, ColorHints
 from ...color.management import LINEAR_REC709
 from .open import make_printable, read_color_tag
 
 
-def read_color_hints(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
+def read_color_hints(spec: oiio.ImageSpec, format: str, integer: bool) -> ColorHints:
     """What a header says about color: a tag, what its format means without one, an ICC profile, chromaticities.
 
     OpenImageIO tags every picture of some formats by itself. Such a tag says no more than the format does.
@@ -18,7 +18,7 @@ def read_color_hints(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
     if (format != "openexr" and tag in (SRGB, "sRGB")) or (format == "hdr" and tag == LINEAR_REC709):
         tag, usual = "", SRGB if tag == "sRGB" else tag
     primaries = spec.getattribute("chromaticities")
-    return Hints(
+    return ColorHints(
         tag,
         usual,
         make_printable(spec.get_string_attribute("ICCProfile:profile_description")),

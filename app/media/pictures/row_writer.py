@@ -52,17 +52,17 @@ class ScanlineWriter:
         if not self._row:
             part.spec.height = part.spec.full_height = self._size[1]
             add_metadata(part.spec, self._metadata, "openexr")
-            self._check(self._output.open(str(self._replacement.temporary), part.spec))
+            self._check_encoded(self._output.open(str(self._replacement.temporary), part.spec))
             self._open.callback(self._output.close)
         end = self._row + len(rows)
-        self._check(self._output.write_scanlines(self._row, end, 0, part.array))
+        self._check_encoded(self._output.write_scanlines(self._row, end, 0, part.array))
         self._row = end
 
     def close(self) -> None:
         """Finish it and give it its name."""
         try:
             assert self._row == self._size[1], f"{self._size[1] - self._row} rows are missing"
-            self._check(self._output.close())
+            self._check_encoded(self._output.close())
             self._replacement.commit()
         except OSError as error:
             raise self._replacement.explain(error) from error
@@ -73,13 +73,13 @@ class ScanlineWriter:
         """Leave nothing behind, unless it was closed."""
         self._open.close()
 
-    def _check(self, done: bool) -> None:
-        if done:
+    def _check_encoded(self, succeeded: bool) -> None:
+        if succeeded:
             return
-        said = self._output.geterror()
+        message = self._output.geterror()
         try:
             with self._replacement.temporary.open("ab") as file:  # the encoder does not know why, but the system does
                 file.write(bytes(_BLOCK))
         except OSError as error:
             raise self._replacement.explain(error) from error
-        raise encoder_error(self._path, said)
+        raise encoder_error(self._path, message)

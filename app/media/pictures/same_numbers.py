@@ -12,20 +12,20 @@ from ...errors import InputError
 from .open import describe_fault, describe_picture, open_picture
 
 
-def stored(path: str | Path) -> Mapping[str, Array]:
+def read_numbers(path: str | Path) -> Mapping[str, Array]:
     """Every part by its name, [h, w, c] in the type of the file; integers are codes. Channels are in their order.
 
     Raises:
         InputError: the file cannot be read.
     """
-    found: dict[str, Array] = {}
+    parts: dict[str, Array] = {}
     with open_picture(path) as handle:
         describe_picture(handle, str(path))
-        while handle.seek_subimage(len(found), 0):
+        while handle.seek_subimage(len(parts), 0):
             spec = handle.spec()
-            block = handle.read_image(len(found), 0, 0, spec.nchannels, str(spec.format))
+            block = handle.read_image(len(parts), 0, 0, spec.nchannels, str(spec.format))
             if block is None:
                 raise InputError(f"{path}: {describe_fault(handle.geterror() or 'corrupt')}")
             name = spec.get_string_attribute("oiio:subimagename") or spec.get_string_attribute("name")
-            found[name if name and name not in found else f"part {len(found) + 1}" if found else ""] = np.asarray(block)
-    return found
+            parts[name if name and name not in parts else f"part {len(parts) + 1}" if parts else ""] = np.asarray(block)
+    return parts

@@ -33,51 +33,51 @@ class StoredPart:
 
     array: Array
     channels: tuple[str, ...]
-    encoded: bool
+    is_encoded: bool
 
     @property
-    def data(self) -> bool:
+    def is_data(self) -> bool:
         """True for depth, normals and the like."""
-        return not self.encoded and not any(name.rpartition(".")[2] in ("R", "G", "B") for name in self.channels)
+        return not self.is_encoded and not any(name.rpartition(".")[2] in ("R", "G", "B") for name in self.channels)
 
     @property
-    def linear(self) -> bool:
+    def is_linear(self) -> bool:
         """True for scene-linear light."""
-        return not self.encoded and not self.data
+        return not self.is_encoded and not self.is_data
 
     @property
-    def unusable(self) -> int:
+    def count_unusable(self) -> int:
         """Pixels with a NaN, or an infinite color; data may be infinite, as depth is where nothing is."""
-        wrong = np.isnan(self.array) if self.data else ~np.isfinite(self.array)
+        wrong = np.isnan(self.array) if self.is_data else ~np.isfinite(self.array)
         return int(np.count_nonzero(np.any(wrong, axis=2)))
 
 
-def read_stored(path: str | Path) -> dict[str, StoredPart]:
+def read_stored_parts(path: str | Path) -> dict[str, StoredPart]:
     """The parts of a file by name. Nothing is repaired or converted. Raises InputError."""
     count = 0
     with open_picture(path) as handle:
         while handle.seek_subimage(count, 0):
             count += 1
-    wish = oiio.ImageSpec()
-    wish.attribute("oiio:UnassociatedAlpha", 1)
-    found: dict[str, StoredPart] = {}
+    settings = oiio.ImageSpec()
+    settings.attribute("oiio:UnassociatedAlpha", 1)
+    parts: dict[str, StoredPart] = {}
     for index in range(count):
-        buffer = oiio.ImageBuf(str(path), index, 0, wish)
+        buffer = oiio.ImageBuf(str(path), index, 0, settings)
         pixels = buffer.get_pixels(oiio.FLOAT, roi=buffer.roi_full) if buffer.read(index, 0, True, oiio.FLOAT) else None
         if pixels is None:
             raise InputError(f"{path}: {describe_fault(buffer.geterror() or 'corrupt')}")
         spec = buffer.spec()
         name = str(spec.get_string_attribute("oiio:subimagename")) or str(index or "")
         integers = str(buffer.nativespec().format) not in _FLOATS
-        found[name] = StoredPart(np.asarray(pixels), tuple(spec.channelnames), integers)
-    return found
+        parts[name] = StoredPart(np.asarray(pixels), tuple(spec.channelnames), integers)
+    return parts
 
 
 def describe_maker(path: str | Path) -> str:
     """What rendered a picture: renderer, driver and version as its header has them, "" where it does not say."""
-    said = read_metadata(path)
-    parts = [str(said[key]) for key in _MAKER if said.get(key)]
-    if len(parts) > 1 and _MAKER[2] in said:
+    attributes = read_metadata(path)
+    parts = [str(attributes[key]) for key in _MAKER if attributes.get(key)]
+    if len(parts) > 1 and _MAKER[2] in attributes:
         parts[-1] = f"Halation {parts[-1]}"
     return ", ".join(parts)
 
@@ -97,18 +97,18 @@ def copy_picture(path: Path, source: Path) -> None:
 
 def encode_for_viewing(part: StoredPart, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
     """[h, w, 3] of uint8 for people: light through a view over black, data with the ends of `span` black and white."""
-    if part.encoded:
-        return _codes(to_three_channels(part.array))
-    if part.data:
+    if part.is_encoded:
+        return _to_codes(to_three_channels(part.array))
+    if part.is_data:
         low, high = span
         finite = np.nan_to_num(part.array, nan=low, posinf=high, neginf=low)
-        return _codes(to_three_channels((finite - low) / ((high - low) or 1.0)))
+        return _to_codes(to_three_channels((finite - low) / ((high - low) or 1.0)))
     return to_display(np.ascontiguousarray(part.array[..., :3]), view)
 
 
 def encode_png(codes: Array) -> bytes:
     """[h, w, 3] of uint8, or of numbers within 0..1, as the bytes of a PNG file."""
-    buffer = oiio.ImageBuf(np.ascontiguousarray(codes if codes.dtype == np.uint8 else _codes(codes)))
+    buffer = oiio.ImageBuf(np.ascontiguousarray(codes if codes.dtype == np.uint8 else _to_codes(codes)))
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         path = Path(folder) / "picture.png"
         if not buffer.write(str(path), oiio.UINT8):
@@ -121,5 +121,5 @@ def write_difference(path: Path, differences: Mapping[str, Array]) -> None:
     write_picture(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float")
 
 
-def _codes(numbers: Array) -> Array:
+def _to_codes(numbers: Array) -> Array:
     return (np.clip(np.nan_to_num(numbers, nan=0.0), 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)

@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from halation.nodes import Kind, Size
 from msgspec import Struct
 
-from ...color.encoding import Encoding, png_space
+from ...color.encoding import Encoding, choose_png_space
 from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
@@ -115,7 +115,7 @@ def _check_layers(
     format = _choose_format(Path(path))
     if not kinds:
         raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
-    encoding.check()
+    encoding.check_names()
     choices = _COMPRESSIONS.get(format, (compression,))
     if compression not in choices:
         close_names = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
@@ -157,7 +157,7 @@ def encode_exr_parts(
         if len(layers) > 1:
             spec.attribute("oiio:subimagename", name or "rgba")
         if color:
-            array = encoding.numbers(array)
+            array = encoding.to_numbers(array)
         if half:
             array = to_half(array)
         parts.append(EncodedPart(spec, np.ascontiguousarray(array)))
@@ -170,12 +170,12 @@ def _is_stored_as_half(kind: Kind, precision: Precision) -> bool:
 
 def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
     """Say in an EXR header what the numbers are."""
-    spec.attribute("oiio:ColorSpace", encoding.header if color else "data")
-    if not color or encoding.plain:
+    spec.attribute("oiio:ColorSpace", encoding.header_space if color else "data")
+    if not color or encoding.is_plain:
         return
-    spec.attribute("colorInteropID", encoding.header)
-    if encoding.gamut:
-        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), encoding.gamut)
+    spec.attribute("colorInteropID", encoding.header_space)
+    if encoding.header_chromaticities:
+        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), encoding.header_chromaticities)
 
 
 def _channel_names(name: str, kind: Kind, count: int) -> str:
@@ -205,9 +205,9 @@ def _encode_picture(
         array = array[..., :3]
     deep = precision == "float" and format in ("png", "tiff", "dpx")
     if format == "hdr":
-        array = np.nan_to_num(np.maximum(encoding.radiance(array), 0.0), nan=0.0).astype(np.float32)
+        array = np.nan_to_num(np.maximum(encoding.to_radiance(array), 0.0), nan=0.0).astype(np.float32)
     else:
-        array = encoding.codes(array, 16 if deep else 10 if format == "dpx" else 8)
+        array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8)
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)
@@ -217,10 +217,10 @@ def _encode_picture(
     if format == "dpx":
         spec.attribute("oiio:BitsPerSample", 16 if deep else 10)
     elif format != "hdr":
-        spec.attribute("oiio:ColorSpace", png_space(encoding.shown_as))
+        spec.attribute("oiio:ColorSpace", choose_png_space(encoding.display_space))
         spec.attribute("oiio:UnassociatedAlpha", 1)
-    if format == "png" and encoding.shown_as != "srgb_rec709_scene":
-        spec.attribute(COLOR_TAG, encoding.shown_as)
+    if format == "png" and encoding.display_space != "srgb_rec709_scene":
+        spec.attribute(COLOR_TAG, encoding.display_space)
     return EncodedPart(spec, np.ascontiguousarray(array))
 
 

@@ -43,7 +43,7 @@ def check_video(
     path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, codec: str, encoding: Encoding
 ) -> None:
     """Refuse, before there are pixels, what a `VideoWriter` would refuse. Raises UsageError, OutputError."""
-    encoding.check()
+    encoding.check_names()
     find_codec(path, codec, sizes[choose_shown_layer(path, kinds)])
     check_writable(path)
 
@@ -122,7 +122,7 @@ class VideoWriter:
         context.thread_count = 1
         context.flags |= self._av.codec.context.Flags.bitexact
         context.time_base = 1 / self._rate
-        primaries, transfer = _TAGS.get(self._encoding.shown_as, (_UNKNOWN, _UNKNOWN))
+        primaries, transfer = _TAGS.get(self._encoding.display_space, (_UNKNOWN, _UNKNOWN))
         chroma = self._format.startswith("yuv")
         context.colorspace, context.color_range = (self._matrix, _LIMITED) if chroma else (_RGB, _FULL)
         context.color_primaries, context.color_trc = primaries, transfer
@@ -134,7 +134,7 @@ class VideoWriter:
 
     @property
     def _matrix(self) -> int:
-        return 9 if _TAGS.get(self._encoding.shown_as, (1, 0))[0] == 9 else 1
+        return 9 if _TAGS.get(self._encoding.display_space, (1, 0))[0] == 9 else 1
 
     def _encode_frame(self, frame: Any) -> None:
         for packet in self._try(lambda: self._stream.encode(frame)):
@@ -161,10 +161,10 @@ class VideoWriter:
         format = self._av.VideoFormat(self._format)
         bits = max(part.bits for part in format.components)
         if self._format.startswith("yuv"):
-            codes = self._encoding.codes(picture, 16) / np.float32(65535.0)
+            codes = self._encoding.to_codes(picture, 16) / np.float32(65535.0)
             planes = _chroma_planes(codes, self._matrix, self._format, bits)
         else:
-            planes = _rgb_planes(self._encoding.codes(picture, 16 if bits == 16 else 8), self._format)
+            planes = _rgb_planes(self._encoding.to_codes(picture, 16 if bits == 16 else 8), self._format)
         frame = self._av.VideoFrame(*self.size, self._format)
         frame.colorspace, frame.color_range, frame.color_primaries, frame.color_trc = self._color
         for plane, numbers in zip(frame.planes, planes, strict=True):

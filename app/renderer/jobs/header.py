@@ -11,7 +11,7 @@ from hashlib import blake2b
 from typing import Any
 
 from ... import document, media
-from ...color.management import color_digest
+from ...color.management import digest_color_settings
 from ...compiler import Pass, Plan, Target
 from ...errors import HalationError
 from ...graph import Graph
@@ -53,7 +53,7 @@ def make_header(
     found["halation:version"] = VERSION
     found["halation:renderer"] = target.renderer
     found["halation:settings"] = format_settings(wanted, target, writing, file, frames if plan.memories else None)
-    if color := color_digest(file.encoding.color):
+    if color := digest_color_settings(file.encoding.color):
         found["halation:color"] = color
     for source in sources:
         found |= describe_source(source, hashes)
@@ -104,7 +104,7 @@ def compute_frame_key(
         before = _hash_parts(graph, led, wanted.scale, wanted.size, plan.target.form)
     keys = _compute_content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
-    seen = (file.view, writing.display, writing.look, writing.space, color_digest(file.encoding.color))
+    seen = (file.view, writing.display, writing.look, writing.space, digest_color_settings(file.encoding.color))
     how = (file.path.suffix, *seen, writing.compression, writing.precision)
     return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
 

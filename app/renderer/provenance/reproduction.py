@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ...color.management import color_digest
+from ...color.management import digest_color_settings
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, node_output
 from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
-from ...media.pictures.same_numbers import stored
+from ...media.pictures.same_numbers import read_numbers
 from ...resources.sandbox import ROOT
 from ...version import VERSION
 from ..device import Device
@@ -105,8 +105,8 @@ def reproduce(
             pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
         )
         run_job(renderer, graph, wanted, writing, (recipe.frame,))
-        layers = compare_layers(stored(again), stored(recipe.path))
-    differences = tuple(_find_differences(recipe, renderer.device, color_digest(color_settings(graph))))
+        layers = compare_layers(read_numbers(again), read_numbers(recipe.path))
+    differences = tuple(_find_differences(recipe, renderer.device, digest_color_settings(color_settings(graph))))
     elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
     allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
     return Reproduction(differences, layers, allowed, tuple(files))

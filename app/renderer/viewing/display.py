@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol, get_args
 
-from ...color.management import color_mark
+from ...color.management import mark_color_settings
 from ..device import Device, DeviceTexture, PixelRect, TextureDepth
 from .look import Channels, Look, Meaning, Size, find_origin, to_panel
 from .view_programs import ColorView, ViewProgram, ViewPrograms
@@ -73,7 +73,7 @@ class Display:
         if look.compare not in ("wipe", "difference"):
             b = None
         size = (max(1, size[0]), max(1, size[1]))
-        contents = (size, _identify(a), _identify(b), look, color_mark(look.color))
+        contents = (size, _identify(a), _identify(b), look, mark_color_settings(look.color))
         panel = self._slots.get(slot)
         if panel is None or panel.contents != contents:
             with self._device.save_draw_target():

@@ -8,9 +8,9 @@ from typing import cast, get_args
 
 from halation.nodes import ColorSettings
 
-from ...color.gpu_programs import gpu_view
-from ...color.management import color_mark
-from ...color.primaries import working_of
+from ...color.gpu_programs import write_view_program
+from ...color.management import mark_color_settings
+from ...color.primaries import find_working_space
 from ...compiler import Library, installed_library, library_for
 from ...errors import DeviceError
 from ...resources.color_program import ColorProgram
@@ -73,10 +73,10 @@ class ViewPrograms:
         With `texels` it brings the texels of a picture through the view; with `viewed` it draws what that one made.
         Raises UsageError for an unknown view; GraphError, UsageError without a config.
         """
-        key = (view, color, color_mark(color), compare, texels, viewed)
+        key = (view, color, mark_color_settings(color), compare, texels, viewed)
         if key not in self._programs:
-            text = gpu_view(view.view, view.display, view.look, color) if view else None
-            library = library_for(installed_library(), working_of(color))
+            text = write_view_program(view.view, view.display, view.look, color) if view else None
+            library = library_for(installed_library(), find_working_space(color))
             self._programs[key] = self._compile(text, _source(text, library, compare, texels, viewed))
         return self._programs[key]
 

@@ -11,7 +11,7 @@ from halation.authoring.background.render_overviews import OverviewPending
 from halation.graph import Graph, Port
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.read_render import ReadRender
-from halation.render_layers.render import find_render
+from halation.render_layers.render import read_render
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_nothing_is_compiled_until_it_is_known(engine, preview, graph):
         asked.append(path)
         if not ready:
             raise OverviewPending(path, lambda: bool(ready))
-        return find_render(path, named)
+        return read_render(path, named)
 
     engine.pictures.look = look
     preview.want(graph, {"A": Port("render", "depth")})
