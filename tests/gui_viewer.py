@@ -28,6 +28,6 @@ def seen(ui, x: float, y: float) -> np.ndarray:
 
 
 def shown_plainly(picture: np.ndarray) -> np.ndarray:
-    from halation.color.transforms import to_display
+    from halation.color.display import to_display
 
     return to_display(picture, "none")[..., :3].astype(int)

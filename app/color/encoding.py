@@ -7,9 +7,10 @@ from halation.nodes import ColorSettings
 from msgspec import Struct, field
 
 from ..errors import UsageError
+from .display import check_view, find_display, find_view, to_display
 from .management import LINEAR_REC709, ColorManager, ColorSpace, get_color_manager, load_ocio
 from .primaries import find_chromaticities
-from .transforms import Array, check_view, find_display, find_view, from_working, quantize, to_display, unpremultiply
+from .transforms import Array, from_working, quantize, unpremultiply
 
 SRGB = "srgb_rec709_scene"
 _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")

@@ -14,8 +14,8 @@ from ..errors import InputError, UsageError
 from ..glsl import parse
 from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
+from .display import make_display_processor
 from .management import DEFAULT_COLOR, ColorSpace, get_color_manager, load_ocio, mark_color_settings, ocio_errors
-from .transforms import make_display_processor
 
 
 def write_color_change(change: ColorChange) -> ColorProgram:

@@ -9,9 +9,9 @@ from halation.nodes import Kind
 
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
+from .display import NO_VIEW, find_view
 from .file_space import find_requested_space
 from .management import get_color_manager
-from .transforms import NO_VIEW, find_view
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,15 @@
-"""How colors are managed: a config of OpenColorIO, and the space that pictures are in between nodes.
+"""How colors are managed: a config of OpenColorIO, and the working space that pictures are in between nodes.
 
-The config that a graph names comes first, then the one that the environment variable OCIO names, then the built-in one.
-What a config does not know is looked up in OpenColorIO's own studio config and brought over through ACES2065-1.
+Which config: the one that the graph names, then the one that the environment variable OCIO names, then OpenColorIO's
+built-in one. Which working space: the one that the graph names, else linear Rec.709.
+
+- Nearly every graph says nothing about color. Then sRGB files are decoded by a table and OpenColorIO is not even loaded
+  (`is_plain`): it takes longer to import than a small graph takes to render.
+- A name is looked up in the config first, as name, alias or role. What it does not know is looked up in OpenColorIO's
+  studio config, which knows cameras, and brought over through ACES2065-1, for which configs have a role
+  (aces_interchange). So a space of the studio config works with every config that has that role (`ColorSpace.own`).
+- Color is linear between nodes: a working space that is not is an error, since light is added and blurred there.
+- Errors name whoever is at fault: the graph (GraphError) for its own config, the environment (UsageError) for $OCIO.
 """
 
 from __future__ import annotations
@@ -140,8 +148,8 @@ class ColorManager:
 
     def find_header_name(self, space: ColorSpace) -> str:
         """What a header calls a space: its interchange name if there is one."""
-        space = (self.spaces if space.own else load_studio_config()).getColorSpace(space.name)
-        interop_name = str(getattr(space, "getInteropID", str)() or "") if space else ""
+        config_space = (self.spaces if space.own else load_studio_config()).getColorSpace(space.name)
+        interop_name = str(getattr(config_space, "getInteropID", str)() or "") if config_space else ""
         return interop_name or space.name
 
     def bridge_to_views(self) -> tuple[Any, str]:

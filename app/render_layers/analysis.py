@@ -31,6 +31,7 @@ from .recognition import FileMaker, RenderPass, best_claims, find_maker, recogni
 
 _ROLES_WITH_CONVENTIONS = (Role.DEPTH, Role.NORMAL, Role.POSITION, Role.VELOCITY)
 _AGREEMENT_PIXELS = 0.5
+"""A camera in the header that sees the positions within half a pixel is the camera of the picture."""
 
 
 @dataclass(frozen=True)

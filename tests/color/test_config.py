@@ -8,9 +8,9 @@ import halation as hal
 import numpy as np
 import pytest
 from halation import document
+from halation.color.display import list_displays, list_looks, list_views
 from halation.color.management import digest_color_settings, get_color_manager
 from halation.color.primaries import find_working_space, primaries_to_xyz
-from halation.color.transforms import list_displays, list_looks, list_views
 from halation.errors import GraphError, UsageError
 from halation.graph import color_settings
 from halation.graph.paths import rebased

@@ -11,8 +11,8 @@ import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
+from halation.color.display import find_view, list_displays, list_views, to_display
 from halation.color.gpu_programs import write_view_program
-from halation.color.transforms import find_view, list_displays, list_views, to_display
 from halation.errors import InputError, UsageError
 from halation.media import read_layer
 from halation.nodes import Kind

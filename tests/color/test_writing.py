@@ -7,9 +7,9 @@ import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
 from device_textures import read_texture, upload_texture
+from halation.color.display import to_display
 from halation.color.encoding import Encoding
 from halation.color.gpu_programs import write_view_program
-from halation.color.transforms import to_display
 from halation.errors import GraphError, UsageError
 from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind

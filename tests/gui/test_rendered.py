@@ -9,7 +9,7 @@ import numpy as np
 from exr_files import read
 from halation import document
 from halation.authoring.commands import SetValue
-from halation.color.transforms import to_display
+from halation.color.display import to_display
 from halation.editor.window.dropped_files import take_files
 from halation.graph import Port
 from halation.presets import paths, sample

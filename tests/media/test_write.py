@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.color.transforms import to_display
+from halation.color.display import to_display
 from halation.errors import UsageError
 from halation.media import TypedAttribute, read_info, read_layer, read_metadata, write_picture
 from halation.nodes import Kind

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from device_textures import read_texture, upload_texture
-from halation.color.transforms import list_displays, list_views, to_display
+from halation.color.display import list_displays, list_views, to_display
 from halation.errors import UsageError
 from halation.renderer import DeviceTexture, Display, Look, Renderer, fit_zoom, to_panel, to_picture
 from halation.renderer.opengl.device import OpenGLDevice

@@ -60,7 +60,7 @@ class RenderOverviews:
         self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache("mattes", _ids, _KEPT_IDS, 1)
         self._versions = FileVersions()
 
-    def summarize_render(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> RenderOverview | str | None:
+    def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> RenderOverview | str | None:
         """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
         path = representative_file(path)
         version, fault = self._versions.of(path)

@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import RenameEnd, SetInput, SetOutput
-from ...color.transforms import list_views
+from ...color.display import list_views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
 from ..fields.choice_field import choose

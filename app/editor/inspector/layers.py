@@ -9,9 +9,10 @@ import numpy as np
 from halation.nodes import ColorSettings, Kind
 
 from ...authoring.background.cache import BackgroundCache
+from ...color.display import NO_VIEW, to_display
 from ...color.file_space import FileSpace
 from ...color.management import mark_color_settings
-from ...color.transforms import NO_VIEW, Array, to_display
+from ...color.transforms import Array
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, read_info, read_layer
 from ...media.color_spaces import find_layer_spaces

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.transforms import list_views
+from ...color.display import list_views
 from ...graph.frames import format_frames
 from ..shared.coloring import settings_in_use
 from ..shared.dialogs import Browse

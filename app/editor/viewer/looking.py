@@ -11,7 +11,6 @@ import numpy as np
 from halation.nodes import ColorSettings, Kind
 
 from ...color.management import DEFAULT_COLOR
-from ...color.transforms import to_display
 from ...graph import OUTPUTS, Graph, Port
 from ...media.comparison.data_range import Array, are_normals, balance_range, find_data_range
 from ...renderer.viewing.look import Look

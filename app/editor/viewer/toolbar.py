@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.transforms import NO_LOOK, list_displays, list_looks, list_views
+from ...color.display import NO_LOOK, list_displays, list_looks, list_views
 from ..shared.coloring import settings_in_use
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons

@@ -8,7 +8,8 @@ import numpy as np
 from halation.nodes import Kind
 
 from ... import media
-from ...color.transforms import NO_VIEW, decode_srgb
+from ...color.display import NO_VIEW
+from ...color.transforms import decode_srgb
 
 
 def save_screenshot(path: Path, pixels: np.ndarray) -> None:

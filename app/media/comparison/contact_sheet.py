@@ -10,7 +10,8 @@ from types import MappingProxyType
 import numpy as np
 import OpenImageIO as oiio
 
-from ...color.transforms import Array, decode_srgb, to_display
+from ...color.display import to_display
+from ...color.transforms import Array, decode_srgb
 from ...errors import OutputError
 from ...resources.atomic_write import write_atomically
 

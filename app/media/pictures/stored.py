@@ -12,7 +12,8 @@ import numpy as np
 import OpenImageIO as oiio
 from halation.nodes import Kind
 
-from ...color.transforms import Array, to_display
+from ...color.display import to_display
+from ...color.transforms import Array
 from ...errors import InputError, OutputError
 from ...resources.atomic_write import write_atomically
 from ..comparison.metrics import to_three_channels

@@ -8,7 +8,8 @@ import numpy as np
 import OpenImageIO as oiio
 from halation.nodes import Kind
 
-from ...color.transforms import NO_VIEW, Array, to_display
+from ...color.display import NO_VIEW, to_display
+from ...color.transforms import Array
 from ...errors import InputError
 from ...resources.atomic_write import write_atomically
 from ..info import read_info

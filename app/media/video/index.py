@@ -1,9 +1,13 @@
-"""Which frames a video has, and what they are.
+"""Which frames a video has: the index that makes frame numbers exact.
 
-Frame 1 is the first that a player shows. What a file says of its length and rate is often wrong, so frames are counted:
-every packet has a time of presentation, and the frames are these times in order, without what an edit list cuts off.
-Where packets cannot be trusted (no times, equal or guessed ones, pictures before the first key frame, VP8's hidden
-frames, or first frames that come out otherwise), the whole video is decoded once and its frames are counted.
+Frame 1 is the first that a player shows. What a file says of its length and rate is often wrong, so frames are counted.
+Every packet has a time of presentation, and the frames are these times in order, without what an edit list cuts off.
+Reading the packets of a file decodes nothing, which is fast enough to be done for every video once.
+
+Packets cannot always be trusted: some have no times, equal or guessed ones, some videos have pictures before the first
+key frame, VP8 has hidden frames. So the first eight frames are decoded and compared with the index. Where they differ,
+or the packets show one of these signs, the whole video is decoded once, its frames are counted, and a frame is then
+reached by counting from the first one. `reader` uses the index to decode from the last key frame before a frame.
 """
 
 from __future__ import annotations
@@ -24,7 +28,8 @@ from ...errors import InputError
 from .library import HOW_TO_INSTALL, load_pyav
 
 _CHECKED_FRAMES = 8
-"""Frames that are decoded to see whether packets tell the truth."""
+"""Frames that are decoded to compare them with the packets: more than the frames that codecs reorder (H.264 and H.265
+keep up to 16, encoders use 2 to 4), and few enough to decode for every video."""
 
 _CONTAINERS = (
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,matroska,webm,avi,mxf,mpeg,mpegvideo,mpegts,asf,flv,ogg,yuv4mpegpipe,dv"

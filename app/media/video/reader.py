@@ -20,8 +20,10 @@ from .index import FrameIndex, KeyFrame, decode_frames, demux_packets, describe_
 from .library import load_pyav
 
 _CACHE_BYTES = 128 << 20
+"""Decoded frames that are kept: 40 of 1920x1080 in 4:2:0, about a second and a half."""
 _NEAR = 12
-"""So many frames ahead it is not worth to look for a key frame."""
+"""Frames ahead that are decoded without looking for a key frame: the usual distance of key frames in codecs for editing
+and broadcast is 12 to 15 frames."""
 
 
 def read_frame(path: str, mark: str, number: int) -> Any:

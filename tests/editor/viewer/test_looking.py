@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from halation.authoring.commands import AddInput, AddNode
 from halation.authoring.session import Session
-from halation.color.transforms import to_display
+from halation.color.display import to_display
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.looking import displayed, look_of, meaning_of, picture_only, range_of, requested_view
 from halation.editor.viewer.measuring import picked_color
