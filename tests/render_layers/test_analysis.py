@@ -197,7 +197,7 @@ def test_blender_motion_keeps_its_other_half(tmp_path: Path) -> None:
     now = written(tmp_path / "2.exr", {"Position.XYZ": SEEN.position, "Vector.XYZW": four}, {"Software": "Blender 4.5"})
     then = written(tmp_path / "1.exr", {"Position.XYZ": cast_rays(BEFORE, WIDTH, HEIGHT).position})
     found = analyze_render(now, then).conventions[Role.VELOCITY]
-    assert found.measured and found.scale == (-1.0, 1.0, -1.0, 1.0)
+    assert found.is_measured and found.scale == (-1.0, 1.0, -1.0, 1.0)
 
 
 def test_pictures_tell_motion_where_positions_are_missing(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from halation.errors import InputError
 from halation.media import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
-from halation.render_layers.camera import read_header_camera, measure_camera, solve_camera
+from halation.render_layers.camera import measure_camera, read_header_camera, solve_camera
 from raycast import cast_rays
 
 ROOT = Path(__file__).parents[2]

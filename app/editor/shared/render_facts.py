@@ -81,7 +81,8 @@ def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]
 
 def rule_words(rule: Convention, *, kind_shown: bool) -> str:
     """How a convention is known; `told` that the kind is shown elsewhere."""
-    return f"{describe_certainty(rule)}: {rule.reason}" if kind_shown else f"{rule.words}, {describe_certainty(rule)}: {rule.reason}"
+    known = f"{describe_certainty(rule)}: {rule.reason}"
+    return known if kind_shown else f"{rule.words}, {known}"
 
 
 def matte_at(context: RenderContext, id: str) -> Matte | str | None:

@@ -303,7 +303,7 @@ VIEWER: tuple[Action, ...] = (
         "Viewer",
         "",
         "viewer",
-        lambda context: bool(context.viewer.markers or context.viewer.measured),
+        lambda context: bool(context.viewer.markers or context.viewer.is_measured),
         contexts=_SHOWN,
     ),
     Action(
