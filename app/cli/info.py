@@ -116,7 +116,7 @@ def _facts(survey: RenderAnalysis) -> dict[str, Any]:
             for item in survey.passes
         ],
         "color_spaces": [list(row) for row in describe_color_spaces(header.info.path)],
-        "roles": {role: layer.name if (layer := survey.layer(role)) else None for role in survey.roles},
+        "roles": {role: layer.name if (layer := survey.find_layer(role)) else None for role in survey.roles},
         "undecided": {role: [layer.name for layer in layers] for role, layers in survey.rivals.items()},
         "conventions": {
             role: {
@@ -128,7 +128,7 @@ def _facts(survey: RenderAnalysis) -> dict[str, Any]:
             }
             for role, rule in survey.conventions.items()
         },
-        "camera": _camera_facts(survey.camera.camera, survey.camera.reason, survey.camera.solved),
+        "camera": _camera_facts(survey.camera.camera, survey.camera.reason, survey.camera.solution),
         "metadata": {name: _plain(value) for name, value in header.attributes.items()},
     }
 

@@ -81,8 +81,11 @@ def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]
 
 def rule_words(rule: Convention, *, kind_shown: bool) -> str:
     """How a convention is known; `told` that the kind is shown elsewhere."""
-    known = f"{describe_certainty(rule)}: {rule.reason}"
-    return known if kind_shown else f"{rule.words}, {known}"
+    return (
+        f"{describe_certainty(rule)}: {rule.reason}"
+        if kind_shown
+        else f"{rule.words}, {describe_certainty(rule)}: {rule.reason}"
+    )
 
 
 def matte_at(context: RenderContext, id: str) -> Matte | str | None:

@@ -303,7 +303,7 @@ VIEWER: tuple[Action, ...] = (
         "Viewer",
         "",
         "viewer",
-        lambda context: bool(context.viewer.markers or context.viewer.is_measured),
+        lambda context: bool(context.viewer.markers or context.viewer.measured),
         contexts=_SHOWN,
     ),
     Action(

@@ -183,7 +183,7 @@ class MouseHold:
             case "new region" if self.moved:
                 viewer.region = ordered((*begun, x, y))
             case "measure" if self.moved:
-                viewer.is_measured = ordered((*begun, x, y))
+                viewer.measured = ordered((*begun, x, y))
             case _:
                 pass
 

@@ -31,8 +31,8 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
     viewer = context.viewer
     if viewer.region is not None:
         _region(context, lines, sight.rectangle(viewer.region))
-    if viewer.is_measured is not None:
-        frame(lines, sight.rectangle(viewer.is_measured), context.palette.accent)
+    if viewer.measured is not None:
+        frame(lines, sight.rectangle(viewer.measured), context.palette.accent)
     for number, marker in enumerate(viewer.markers, 1):
         _marker(lines, sight.place(marker), str(number))
     if viewer.compare == "wipe" and context.session.viewed("B") is not None:

@@ -48,12 +48,12 @@ def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str,
             values = reader.pixel(context.probe, f"table {mark} {name}", newer, at)
             values = values or reader.pixel(context.probe, f"table {mark} {name}", one, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
-    box = viewer.is_measured or viewer.region
+    box = viewer.measured or viewer.region
     if box is not None:
         for name, one in shown:
             if name not in ("A", "B"):
                 continue
-            found = reader.is_measured(context.probe, name, one, box)
+            found = reader.measured(context.probe, name, one, box)
             rows += [
                 (f"{name} least", "", found.low),
                 (f"{name} mean", f"{found.count} px", found.mean),
