@@ -132,7 +132,7 @@ def test_positions_tell_the_axes_of_normals(space: VectorSpace, turned: np.ndarr
 def test_a_camera_along_the_axes_leaves_normals_to_the_world() -> None:
     level = look_at((0.5, -7.0, 2.0), (0.5, 2.0, 2.0), FOCAL)
     view = cast_rays(level, WIDTH, HEIGHT)
-    assert evidence.normal_by_position(view.normal, view.position, level).kind == VectorSpace.WORLD
+    assert evidence.match_normals_with_positions(view.normal, view.position, level).kind == VectorSpace.WORLD
 
 
 def test_other_vectors_are_no_normals() -> None:
