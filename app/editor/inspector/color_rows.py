@@ -9,7 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetColorSettings
-from ...color.management import list_builtin_configs, mark_color_settings, get_color_manager, load_ocio
+from ...color.management import get_color_manager, list_builtin_configs, load_ocio, mark_color_settings
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
