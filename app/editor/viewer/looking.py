@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from halation.nodes import ColorSettings, Kind
 
+from ...color.display import to_display
 from ...color.management import DEFAULT_COLOR
 from ...graph import OUTPUTS, Graph, Port
 from ...media.comparison.data_range import Array, are_normals, balance_range, find_data_range
