@@ -1,4 +1,4 @@
-"""What can be written: names that are there, notes beside parameters, files to include."""
+"""Help for writing code: built-in names, notes beside parameters, files to include."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ NOTES = (
 )
 
 
-class Help:
-    """The question mark, and the list that it opens."""
+class CodeHelp:
+    """The help button and its popup."""
 
     def __init__(self, context: CodeContext) -> None:
         self._context = context
 
     def draw(self, page: Page, code: Code) -> None:
-        """Draw the button, and the list if it is open."""
-        if quiet_button(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
+        """Draw the button, and the popup if it is open."""
+        if quiet_button(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "Help for writing code"):
             imgui.open_popup(_POPUP)
         scale = ui_scale()
         imgui.set_next_window_size_constraints((420 * scale, 60 * scale), (620 * scale, 560 * scale))
@@ -66,27 +66,27 @@ class Help:
             if code.language == "isf":
                 draw_dim(self._context, "Shaders in the Interactive Shader Format: isf.video describes it.")
             else:
-                _table(self._context, "Names", NAMES)
-                _table(self._context, "// after a parameter", NOTES)
-                _includes(self._context, page)
+                _draw_table(self._context, "Names", NAMES)
+                _draw_table(self._context, "// after a parameter", NOTES)
+                _draw_includes(self._context, page)
             imgui.end_popup()
 
 
-def includes() -> Iterator[tuple[str, str]]:
+def list_includes() -> Iterator[tuple[str, str]]:
     """The files that code can include, and the signatures of their functions."""
     for name, text in sorted(installed_library().texts.items()):
         if name.startswith("lib/"):
             yield (
                 name,
                 "\n".join(
-                    f"{one.result} {one.name}({', '.join(f'{glsl} {called}' for glsl, called in one.parameters)})"
-                    for one in text.all_functions
+                    f"{function.result} {function.name}({', '.join(' '.join(parameter) for parameter in function.parameters)})"
+                    for function in text.all_functions
                 ),
             )
 
 
-def _table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
-    _title(context, title)
+def _draw_table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+    _draw_title(context, title)
     if imgui.begin_table(title, 2, int(imgui.TableFlags_.sizing_fixed_fit)):
         for name, does in lines:
             imgui.table_next_row()
@@ -98,10 +98,10 @@ def _table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...])
         imgui.end_table()
 
 
-def _includes(context: CodeContext, page: Page) -> None:
+def _draw_includes(context: CodeContext, page: Page) -> None:
     """Files to include; a click writes the line."""
-    _title(context, "#include")
-    for name, functions in includes():
+    _draw_title(context, "#include")
+    for name, functions in list_includes():
         with font(context, "mono", 14.0):
             chosen = imgui.selectable(f"{name}.glsl", False)[0]
         record(context, f"include {name}")
@@ -111,6 +111,6 @@ def _includes(context: CodeContext, page: Page) -> None:
             page.widget.replace_section_text(start, start, f'#include "{name}.glsl"\n')
 
 
-def _title(context: CodeContext, title: str) -> None:
+def _draw_title(context: CodeContext, title: str) -> None:
     with font(context, "bold"):
         imgui.text_colored(vec4(context.palette.accent), title)

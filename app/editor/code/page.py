@@ -1,4 +1,4 @@
-"""The text of one node, as it is being written."""
+"""The text editor of one code node."""
 
 from __future__ import annotations
 
@@ -19,29 +19,29 @@ if TYPE_CHECKING:
     from .context import CodeContext
 
 PAUSE = 0.25
-"""Seconds without a key after which what was typed is taken over."""
+"""Seconds without typing after which the text becomes the code of the node."""
 
 BURST = 2.0
-"""Seconds without a key after which typing is another step of undo."""
+"""Seconds without typing after which a new undo step begins."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with a text; `line` is 0 if it is in none of its lines."""
+    """An error in a text; `line` is 0 if it belongs to no line."""
 
     line: int
     sentence: str
 
     @property
-    def words(self) -> str:
-        """The sentence with its line."""
-        said = self.sentence[:1].upper() + self.sentence[1:]
-        return f"Line {self.line}: {self.sentence}" if self.line else said
+    def text(self) -> str:
+        """The sentence with its line number."""
+        sentence = self.sentence[:1].upper() + self.sentence[1:]
+        return f"Line {self.line}: {self.sentence}" if self.line else sentence
 
 
 @dataclass(eq=False)
 class Page:
-    """A widget, the text that was in it last, and the text that the document has."""
+    """The editor widget of a node, its last text, and the text in the document."""
 
     context: CodeContext
     id: str
@@ -49,13 +49,13 @@ class Page:
     widget: TextEditor = field(default_factory=TextEditor)
     fault: Fault | None = None
     _text: str = ""
-    _taken: str | None = None
-    _typed: float = 0.0
-    _waits: bool = False
+    _committed: str | None = None
+    _typed_at: float = 0.0
+    _pending: bool = False
     _bursts: int = 0
-    _marked: tuple[object, ...] = ()
+    _marker_inputs: tuple[object, ...] = ()
     _theme: str = ""
-    _checked: tuple[Code | None, Fault | None] = (None, None)
+    _checked_code: tuple[Code | None, Fault | None] = (None, None)
 
     def __post_init__(self) -> None:
         widget = self.widget
@@ -74,38 +74,38 @@ class Page:
         return "/".join((*self.place, self.id))
 
     def draw(self, size: tuple[float, float]) -> None:
-        """Draw the text, and take over what is typed once there is a pause."""
+        """Draw the text; after a pause in typing it becomes the code of the node."""
         widget, theme = self.widget, self.context.palette.name
         if theme != self._theme:
-            self._theme, self._marked = theme, ()
+            self._theme, self._marker_inputs = theme, ()
             dark = theme == "dark"
             widget.set_palette(TextEditor.get_dark_palette() if dark else TextEditor.get_light_palette())
         self._follow()
-        self._mark()
+        self._update_markers()
         widget.set_read_only_enabled(bool(self.context.session.borrowed))
         widget.render(f"##code {self.path}", ImVec2(*size))
         text = widget.get_text()
         now = time.monotonic()
         if text != self._text:
-            if now - self._typed > BURST:
+            if now - self._typed_at > BURST:
                 self._bursts += 1
-            self._text, self._typed, self._waits = text, now, True
-        if self._waits and now - self._typed >= PAUSE:
-            self.take()
+            self._text, self._typed_at, self._pending = text, now, True
+        if self._pending and now - self._typed_at >= PAUSE:
+            self.commit()
 
-    def take(self) -> None:
-        """Make what was typed the code of the node."""
-        if not self._waits:
+    def commit(self) -> None:
+        """Set the typed text as the code of the node."""
+        if not self._pending:
             return
-        self._waits = False
+        self._pending = False
         if self.place != self.context.session.place or self.context.session.code(self.id) is None:
             return
-        self._taken = self._text
+        self._committed = self._text
         merge = f"code {self.path} {id(self)} {self._bursts}"
         self.context.log.attempt(lambda: self.context.session.apply(SetCode(self.id, self._text, merge)))
 
     def end_burst(self) -> None:
-        """What is typed from now on is another step."""
+        """Begin a new undo step with the next text."""
         self._bursts += 1
 
     def go_to(self, line: int) -> None:
@@ -114,25 +114,25 @@ class Page:
         self.widget.set_focus()
 
     def _follow(self) -> None:
-        """Show what the document has, if that was changed elsewhere."""
+        """Show the text of the document if something else has changed it."""
         code = self.context.session.code(self.id)
-        if code is None or code.text == self._taken or self._waits:
+        if code is None or code.text == self._committed or self._pending:
             return
         at = self.widget.get_main_cursor_position()
-        first = self._taken is None
-        self._taken = code.text
+        first = self._committed is None
+        self._committed = code.text
         self.widget.set_text(code.text)
         self._text = self.widget.get_text()
         if not first:
             self.widget.set_cursor(TextEditor.DocPos(min(at.line, self.widget.get_line_count() - 1), at.index))
 
-    def _mark(self) -> None:
-        """Show what is wrong at its line."""
-        self.fault = self._found()
-        wanted = (self.fault, self._theme, self._taken)
-        if wanted == self._marked:
+    def _update_markers(self) -> None:
+        """Mark the line with the error."""
+        self.fault = self._find_fault()
+        inputs = (self.fault, self._theme, self._committed)
+        if inputs == self._marker_inputs:
             return
-        self._marked = wanted
+        self._marker_inputs = inputs
         self.widget.clear_markers()
         if self.fault and self.fault.line:
             palette = self.context.palette
@@ -140,14 +140,14 @@ class Page:
             back = u32(mix(palette.field, palette.error, 0.35), 0.8)
             self.widget.add_marker(line, u32(palette.error, 0.45), back, self.fault.sentence, self.fault.sentence)
 
-    def _found(self) -> Fault | None:
-        """What the text says no node for, else what the driver said when it was drawn last."""
+    def _find_fault(self) -> Fault | None:
+        """The error in the text, or else the shader error of the last render."""
         item = self.context.session.graph.nodes.get(self.id)
         if isinstance(item, Unknown):
             code = self.context.session.code(self.id)
-            if code is not None and self._checked[0] != code:
-                self._checked = code, _fault_of(code)
-            return self._checked[1] or Fault(0, item.fault)
+            if code is not None and self._checked_code[0] != code:
+                self._checked_code = code, _find_code_fault(code)
+            return self._checked_code[1] or Fault(0, item.fault)
         error = self.context.preview.errors.get(self.path)
         if isinstance(item, CustomNode) and isinstance(error, ShaderError):
             if item.text is None or error.file == item.text.file:
@@ -156,7 +156,7 @@ class Page:
         return None
 
 
-def _fault_of(code: Code) -> Fault | None:
+def _find_code_fault(code: Code) -> Fault | None:
     try:
         node_type(code)
     except CodeFault as fault:

@@ -1,4 +1,4 @@
-"""The panel of code: the text of the node that is selected, what is wrong with it, and where it is kept."""
+"""The Code panel: the text of the active node, its errors, and where it is saved."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from ..toolkit.buttons import align_right, quiet_button
 from ..toolkit.keys import chord
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_empty_panel, draw_wrapped, font, tip
-from .help import Help
+from .help import CodeHelp
 from .page import Page
 
 if TYPE_CHECKING:
     from .context import CodeContext
 
-MOST = 16
-"""Texts whose cursor and own history of undo are kept."""
+MAX_PAGES = 16
+"""Pages that keep their cursor and undo history: the least recently used one goes first."""
 
 _SIZE = EM * 0.94
 
 
 class CodePanel:
-    """Shows the code of the active node; while that has none, of the node that was shown last."""
+    """Shows the code of the active node, or else of the last node with code."""
 
     title = "Code"
 
@@ -38,20 +38,20 @@ class CodePanel:
         self._context = context
         self._pages: OrderedDict[tuple[str, ...], Page] = OrderedDict()
         self._page: Page | None = None
-        self._help = Help(context)
+        self._help = CodeHelp(context)
         self._focused = False
 
     def draw(self) -> None:
         """Draw into the current window."""
         self._context.code.flush = self._flush
-        page = self._choose()
+        page = self._choose_page()
         code = self._context.session.code(page.id) if page else None
         if page is None or code is None:
             draw_empty_panel(
                 self._context,
                 icons.ICON_FA_CODE,
                 "No code",
-                "Add a Code node to the graph, or select one: what you write here is what it does.",
+                "Add a Code node to the graph, or select one: the code that you write here becomes the node.",
             )
             return
         focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
@@ -59,34 +59,34 @@ class CodePanel:
             self._context.code.focus = False
             page.widget.set_focus()
         if focused:
-            self._keys(page, code)
-        self._head(page, code)
+            self._handle_keys(page, code)
+        self._draw_header(page, code)
         fault = page.fault
         room = imgui.get_content_region_avail()
         foot = 0.0
         if fault:
             text_width = max(room.x - 26 * ui_scale(), 1.0)
-            foot = imgui.calc_text_size(fault.words, wrap_width=text_width).y + 2 * imgui.get_style().item_spacing.y
+            foot = imgui.calc_text_size(fault.text, wrap_width=text_width).y + 2 * imgui.get_style().item_spacing.y
         with font(self._context, "mono", _SIZE):
             page.draw((room.x, max(room.y - foot, 40 * ui_scale())))
         record(self._context, "code text")
         if fault:
-            self._fault(page)
+            self._draw_fault(page)
         if self._focused and not focused:
-            page.take()
+            page.commit()
             page.end_burst()
         self._focused = focused
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _choose(self) -> Page | None:
-        """The page of the active node, else the one before."""
+    def _choose_page(self) -> Page | None:
+        """The page of the active node, or else the last page."""
         session = self._context.session
         if session.code(session.active) is not None:
             key = (*session.place, session.active)
             if key not in self._pages:
                 self._pages[key] = Page(self._context, session.active, session.place)
-                if len(self._pages) > MOST:
+                if len(self._pages) > MAX_PAGES:
                     self._pages.popitem(last=False)
             self._pages.move_to_end(key)
             if self._page is not self._pages[key]:
@@ -98,15 +98,15 @@ class CodePanel:
 
     def _flush(self) -> None:
         if self._page:
-            self._page.take()
+            self._page.commit()
 
-    def _keys(self, page: Page, code: Code) -> None:
-        """Keys that mean the text while it has the keyboard; the widget takes those for undo and the clipboard."""
+    def _handle_keys(self, page: Page, code: Code) -> None:
+        """Handle shortcuts while the text has the keyboard focus; the widget handles undo and the clipboard."""
         if imgui.is_key_chord_pressed(chord("Ctrl+Enter")):
-            page.take()
+            page.commit()
             page.end_burst()
         if imgui.is_key_chord_pressed(chord("Ctrl+S")):
-            page.take()
+            page.commit()
             page.end_burst()
             self._save(page, code)
 
@@ -116,8 +116,8 @@ class CodePanel:
         else:
             self._context.actions.run("file.save")
 
-    def _head(self, page: Page, code: Code) -> None:
-        """Which node it is, where the code is kept, and what can be done with that."""
+    def _draw_header(self, page: Page, code: Code) -> None:
+        """The name of the node, where its code is saved, and buttons to save or move it."""
         session, style = self._context.session, imgui.get_style()
         imgui.align_text_to_frame_padding()
         with font(self._context, "bold"):
@@ -132,37 +132,37 @@ class CodePanel:
         draw_dim(self._context, cut_middle(where, max(room, 1.0)))
         record(self._context, "code where")
         tip((f"{code.file}: not saved yet" if draft else code.file) if code.file else "Saved with the graph")
-        ours = not session.borrowed
+        editable = not session.borrowed
         align_right(*glyphs)
         if code.file:
             if quiet_button(
-                self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and ours
+                self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and editable
             ):
-                page.take()
+                page.commit()
                 self._save(page, code)
             imgui.same_line()
             if quiet_button(
-                self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=ours
+                self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=editable
             ):
-                page.take()
+                page.commit()
                 self._context.log.attempt(lambda: session.apply(EmbedCode(page.id)))
         elif quiet_button(
-            self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours
+            self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=editable
         ):
-            page.take()
+            page.commit()
             self._context.actions.run("code.export")
         imgui.same_line()
         self._help.draw(page, code)
 
-    def _fault(self, page: Page) -> None:
-        """What is wrong, below the text; a click goes there."""
+    def _draw_fault(self, page: Page) -> None:
+        """The error below the text; a click goes to its line."""
         fault = page.fault
         if fault is None:
             return
-        self._context.code.telling = page.path
+        self._context.code.next_fault_path = page.path
         imgui.text_colored(vec4(self._context.palette.error), icons.ICON_FA_TRIANGLE_EXCLAMATION)
         imgui.same_line()
-        draw_wrapped(self._context.palette.error, fault.words)
+        draw_wrapped(self._context.palette.error, fault.text)
         record(self._context, "code fault")
         if fault.line and imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)

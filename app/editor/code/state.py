@@ -1,4 +1,4 @@
-"""What the panel of code is asked to do."""
+"""The state of the Code panel that other rooms read and set."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 
-def _nothing() -> None:
-    """There is no panel yet."""
+def _do_nothing() -> None:
+    """Do nothing: there is no panel yet."""
 
 
 @dataclass
 class CodeState:
-    """What others know of the panel of code."""
+    """Requests to the Code panel, and what it shows."""
 
     focus: bool = False
-    """True asks it to take the keyboard."""
-    flush: Callable[[], object] = _nothing
-    """Takes over what was typed last: it waits for a pause otherwise."""
-    told: str = ""
-    """The path of the node whose fault stood below its text in the last frame: other panels need not repeat it."""
-    telling: str = ""
-    """The same for this frame, as far as it is drawn."""
+    """True asks the panel to take the keyboard focus."""
+    flush: Callable[[], object] = _do_nothing
+    """Sets the typed text as code at once, instead of after a pause."""
+    fault_path: str = ""
+    """The path of the node whose error the panel showed in the last frame; other panels need not repeat it."""
+    next_fault_path: str = ""
+    """The same for the current frame, while it is drawn."""
 
-    def turn(self) -> None:
+    def begin_frame(self) -> None:
         """Call once a frame, before anything is drawn."""
-        self.told, self.telling = self.telling, ""
+        self.fault_path, self.next_fault_path = self.next_fault_path, ""

@@ -7,47 +7,47 @@ from typing import TYPE_CHECKING
 from ...graph import Interpolation, Outside
 from ..shared.action import Action
 from . import commands
-from .commands import some
+from .commands import has_chosen_keys
 
 if TYPE_CHECKING:
     from .context import CurvesContext
 
 _KEYS = frozenset({"keys"})
-_HOW: tuple[tuple[Interpolation, str], ...] = (
+_INTERPOLATIONS: tuple[tuple[Interpolation, str], ...] = (
     ("constant", "Hold the value up to the next key."),
     ("linear", "Go straight to the next key."),
     ("smooth", "Go smoothly through the keys, never beyond them."),
-    ("bezier", "Go as the handles say."),
+    ("bezier", "Follow the handles."),
 )
-_OUTSIDE: tuple[tuple[Outside, str, str], ...] = (
+_EXTRAPOLATIONS: tuple[tuple[Outside, str, str], ...] = (
     ("hold", "Hold", "Before the first and after the last key the value stays."),
-    ("linear", "Go On Straight", "Before the first and after the last key the value goes on as it came."),
-    ("loop", "Repeat", "What lies between the first and the last key comes over and over."),
-    ("mirror", "To and Fro", "What lies between the first and the last key comes backwards, forwards, and so on."),
+    ("linear", "Go On Straight", "Before the first and after the last key the value continues along its slope."),
+    ("loop", "Repeat", "The part between the first and the last key repeats."),
+    ("mirror", "To and Fro", "The part between the first and the last key repeats, every second time backwards."),
 )
 
 
-def _interpolation(how: Interpolation, doc: str) -> Action:
+def _make_interpolation_action(how: Interpolation, doc: str) -> Action:
     return Action(
         f"keys.{how}",
         how.title(),
         commands.interpolate(how),
         shortcut=how[0].upper(),
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys interpolation"}),
         doc=doc,
     )
 
 
-def _outside(how: Outside, label: str, doc: str) -> Action:
+def _make_outside_action(how: Outside, label: str, doc: str) -> Action:
     return Action(
         f"keys.outside_{how}",
         f"Outside: {label}",
-        commands.go_on(how),
+        commands.extrapolate(how),
         scope="animation",
         enabled=lambda context: bool(context.curves.spots or context.curves.shown),
-        checked=lambda context: commands.goes_on(context, how),
+        checked=lambda context: commands.extrapolates(context, how),
         contexts=frozenset({"keys outside"}),
         doc=doc,
     )
@@ -68,8 +68,24 @@ ANIMATION: tuple[Action, ...] = (
         enabled=lambda context: bool(context.session.graph.animation),
         doc="A key on the curve of every selected row, or of all rows.",
     ),
-    Action("keys.cut", "Cut Keys", commands.cut, shortcut="Ctrl+X", scope="animation", enabled=some, contexts=_KEYS),
-    Action("keys.copy", "Copy Keys", commands.copy, shortcut="Ctrl+C", scope="animation", enabled=some, contexts=_KEYS),
+    Action(
+        "keys.cut",
+        "Cut Keys",
+        commands.cut,
+        shortcut="Ctrl+X",
+        scope="animation",
+        enabled=has_chosen_keys,
+        contexts=_KEYS,
+    ),
+    Action(
+        "keys.copy",
+        "Copy Keys",
+        commands.copy,
+        shortcut="Ctrl+C",
+        scope="animation",
+        enabled=has_chosen_keys,
+        contexts=_KEYS,
+    ),
     Action(
         "keys.paste",
         "Paste Keys",
@@ -85,9 +101,9 @@ ANIMATION: tuple[Action, ...] = (
         commands.duplicate,
         shortcut="Ctrl+D",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=_KEYS,
-        doc="The copies come behind.",
+        doc="The copies follow the selected keys.",
     ),
     Action(
         "keys.delete",
@@ -95,7 +111,7 @@ ANIMATION: tuple[Action, ...] = (
         commands.delete,
         shortcut="Delete",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=_KEYS,
         doc="A value without keys stays as it is now.",
     ),
@@ -107,7 +123,7 @@ ANIMATION: tuple[Action, ...] = (
         commands.nudge(-1.0),
         shortcut="Alt+LeftArrow",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         repeats=True,
     ),
     Action(
@@ -116,17 +132,17 @@ ANIMATION: tuple[Action, ...] = (
         commands.nudge(1.0),
         shortcut="Alt+RightArrow",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         repeats=True,
     ),
-    *(_interpolation(*one) for one in _HOW),
+    *(_make_interpolation_action(*entry) for entry in _INTERPOLATIONS),
     Action(
         "keys.ease_in",
         "Ease In",
         commands.ease("in"),
         shortcut="Shift+I",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
         doc="Arrive gently: the handle before the key lies flat.",
     ),
@@ -136,7 +152,7 @@ ANIMATION: tuple[Action, ...] = (
         commands.ease("out"),
         shortcut="Shift+O",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
         doc="Leave gently: the handle after the key lies flat.",
     ),
@@ -146,7 +162,7 @@ ANIMATION: tuple[Action, ...] = (
         commands.ease("both"),
         shortcut="E",
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
         doc="Arrive and leave gently.",
     ),
@@ -155,16 +171,16 @@ ANIMATION: tuple[Action, ...] = (
         "Automatic Handles",
         commands.make_automatic,
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
-        doc="Handles go along the smooth curve, whatever the keys do.",
+        doc="Handles follow the smooth curve, also when keys move.",
     ),
     Action(
         "keys.aligned",
         "Aligned Handles",
         commands.make_aligned,
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
         doc="Both handles of a key lie on one line, and turn together.",
     ),
@@ -173,11 +189,11 @@ ANIMATION: tuple[Action, ...] = (
         "Free Handles",
         commands.make_free,
         scope="animation",
-        enabled=some,
+        enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
         doc="Each handle turns alone, as with Alt while it is dragged.",
     ),
-    *(_outside(*one) for one in _OUTSIDE),
+    *(_make_outside_action(*entry) for entry in _EXTRAPOLATIONS),
     Action(
         "keys.snap",
         "Whole Frames",

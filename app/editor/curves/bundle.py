@@ -1,4 +1,4 @@
-"""All curves that are shown, in a few arrays: what of it depends on the view is made in one go. Nothing here draws."""
+"""All visible curves in a few arrays, so that one numpy call projects all of them. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -10,9 +10,17 @@ from numpy.typing import NDArray
 
 from ...graph import Interpolation, Keys, Port
 from ..toolkit.plane import Plane
-from .hits import Mark, line_at
+from .hits import Mark, find_line
 from .rows import CurveRow, Lane, Spot
-from .shapes import Pieces, all_pieces, is_straight, level, on_screen, outside, points
+from .shapes import (
+    Pieces,
+    flatten_curves,
+    is_straight,
+    make_all_pieces,
+    make_outside_pieces,
+    project_pieces,
+    read_key_channel,
+)
 
 Floats = NDArray[np.float64]
 _BEYOND = 12.0
@@ -31,14 +39,14 @@ class Shape:
     looks: tuple[Interpolation, ...]
 
 
-def shape(lane: Lane, keys: Keys, inner: Pieces) -> Shape:
-    """What a channel looks like, its pieces given."""
+def make_shape(lane: Lane, keys: Keys, inner: Pieces) -> Shape:
+    """The shape of a channel, from its pieces."""
     port, channel = lane
     return Shape(
         keys,
         inner,
         np.array(keys.frames),
-        np.array([level(key, channel) for key in keys.keys]),
+        np.array([read_key_channel(key, channel) for key in keys.keys]),
         tuple(frozenset(((port, frame, channel),)) for frame in keys.frames),
         tuple(key.interpolation for key in keys.keys),
     )
@@ -61,42 +69,42 @@ class Bundle:
     edges: Floats = field(default_factory=lambda: np.empty((0, 5)))
     """Frame and value of the first and the last key of every channel, and 1 where they hold beyond."""
 
-    def seen(self, plane: Plane) -> Seen:
-        """What of it is on the screen."""
+    def project(self, plane: Plane) -> VisibleCurves:
+        """The visible pieces and keys, in pixels."""
         view = plane.view
         inside = (self.pieces[:, 3, 0] >= view.first) & (self.pieces[:, 0, 0] <= view.last)
-        screen, bent = on_screen(self.pieces[inside], plane, self.straight[inside])
+        screen, bent = project_pieces(self.pieces[inside], plane, self.straight[inside])
         cuts = np.searchsorted(self.piece_of[inside], np.arange(len(self.lanes) + 1))
         room = _BEYOND / plane.across
-        shown = np.nonzero((self.frames >= view.first - room) & (self.frames <= view.last + room))[0]
-        xs = plane.rect[0] + (self.frames[shown] - view.first) * plane.across
-        ys = plane.rect[3] - (self.values[shown] - view.low) * plane.up
-        return Seen(self, plane, screen, bent, cuts.tolist(), shown, xs, ys)
+        visible_keys = np.nonzero((self.frames >= view.first - room) & (self.frames <= view.last + room))[0]
+        xs = plane.rect[0] + (self.frames[visible_keys] - view.first) * plane.across
+        ys = plane.rect[3] - (self.values[visible_keys] - view.low) * plane.up
+        return VisibleCurves(self, plane, screen, bent, cuts.tolist(), visible_keys, xs, ys)
 
-    def ends(self, plane: Plane) -> tuple[list[int], Pieces, NDArray[np.bool_], list[int]]:
-        """What lies beyond the keys, on the screen: channels of ways, their pieces, which are bent, where ways end."""
+    def project_outside(self, plane: Plane) -> tuple[list[int], Pieces, NDArray[np.bool_], list[int]]:
+        """The curves before the first and after the last keys, in pixels: channels, pieces, which are bent, ends."""
         view = plane.view
         first, low, last, high, holds = self.edges.T
         before = np.nonzero((holds > 0.0) & (first > view.first))[0]
         after = np.nonzero((holds > 0.0) & (last < view.last))[0]
-        level = np.empty((len(before) + len(after), 4, 2))
-        level[:, :2, 0] = np.concatenate([np.full(len(before), view.first), last[after]])[:, None]
-        level[:, 2:, 0] = np.concatenate([first[before], np.full(len(after), view.last)])[:, None]
-        level[..., 1] = np.concatenate([low[before], high[after]])[:, None]
-        of: list[int] = [*before.tolist(), *after.tolist()]
-        found: list[Pieces] = [level[place : place + 1] for place in range(len(level))]
+        level_pieces = np.empty((len(before) + len(after), 4, 2))
+        level_pieces[:, :2, 0] = np.concatenate([np.full(len(before), view.first), last[after]])[:, None]
+        level_pieces[:, 2:, 0] = np.concatenate([first[before], np.full(len(after), view.last)])[:, None]
+        level_pieces[..., 1] = np.concatenate([low[before], high[after]])[:, None]
+        lane_indices: list[int] = [*before.tolist(), *after.tolist()]
+        outside_pieces: list[Pieces] = [level_pieces[place : place + 1] for place in range(len(level_pieces))]
         for place in np.nonzero(holds == 0.0)[0].tolist():
-            one = self.shapes[place]
-            both = outside(one.keys, self.lanes[place][1], one.pieces, view.first, view.last)
+            shape = self.shapes[place]
+            both = make_outside_pieces(shape.keys, self.lanes[place][1], shape.pieces, view.first, view.last)
             ways = [way for way in both if len(way)]
-            found += ways
-            of += [place] * len(ways)
-        screen, bent = on_screen(np.concatenate([np.empty((0, 4, 2)), *found]), plane)
-        return of, screen, bent, np.cumsum([0, *map(len, found)]).tolist()
+            outside_pieces += ways
+            lane_indices += [place] * len(ways)
+        screen, bent = project_pieces(np.concatenate([np.empty((0, 4, 2)), *outside_pieces]), plane)
+        return lane_indices, screen, bent, np.cumsum([0, *map(len, outside_pieces)]).tolist()
 
 
 @dataclass(frozen=True)
-class Seen:
+class VisibleCurves:
     """The pieces on the screen, `cuts` where those of every channel begin, and the keys: which, and where."""
 
     bundle: Bundle
@@ -104,48 +112,54 @@ class Seen:
     screen: Pieces
     bent: NDArray[np.bool_]
     cuts: list[int]
-    shown: NDArray[np.int64]
+    key_indices: NDArray[np.int64]
     xs: Floats
     ys: Floats
 
-    def mark(self, place: int) -> Mark:
-        """A key that is seen."""
-        key, bundle = int(self.shown[place]), self.bundle
+    def make_mark(self, place: int) -> Mark:
+        """The mark of a visible key."""
+        key, bundle = int(self.key_indices[place]), self.bundle
         channel = bundle.lanes[bundle.key_of[key]][1]
         return Mark(float(self.xs[place]), float(self.ys[place]), bundle.spots[key], bundle.looks[key], channel)
 
-    def marks(self) -> list[Mark]:
-        """All keys that are seen."""
-        return [self.mark(place) for place in range(len(self.shown))]
+    def list_marks(self) -> list[Mark]:
+        """The marks of all visible keys."""
+        return [self.make_mark(place) for place in range(len(self.key_indices))]
 
-    def near(self, x: float, y: float, reach: float, spots: Collection[Spot]) -> Mark | None:
-        """The key that is closest to a point and within reach; of several at one place one that is chosen."""
+    def find_mark(self, x: float, y: float, reach: float, spots: Collection[Spot]) -> Mark | None:
+        """The key that is closest to a point and within reach; where several lie at one place, a selected one."""
         away = (self.xs - x) ** 2 + (self.ys - y) ** 2
         close = np.nonzero(away <= reach * reach)[0]
         if not len(close):
             return None
-        marks = [(float(away[place]), self.mark(int(place))) for place in close]
-        return min(marks, key=lambda one: (round(one[0]), not any(spot in spots for spot in one[1].spots)))[1]
+        marks = [(float(away[place]), self.make_mark(int(place))) for place in close]
+        return min(
+            marks, key=lambda candidate: (round(candidate[0]), not any(spot in spots for spot in candidate[1].spots))
+        )[1]
 
-    def lane_at(self, x: float, y: float, reach: float) -> Lane | None:
+    def find_lane(self, x: float, y: float, reach: float) -> Lane | None:
         """The curve that passes closest to a point, within reach."""
         bundle, plane = self.bundle, self.plane
         first, last = plane.frame(x - reach), plane.frame(x + reach)
-        near = np.nonzero((bundle.pieces[:, 3, 0] >= first) & (bundle.pieces[:, 0, 0] <= last))[0]
-        of = np.unique(bundle.piece_of[near])
-        lines = points([bundle.pieces[near[bundle.piece_of[near] == one]] for one in of], plane)
-        return line_at(((bundle.lanes[one], line) for one, line in zip(of, lines, strict=True)), x, y, reach)
+        near_pieces = np.nonzero((bundle.pieces[:, 3, 0] >= first) & (bundle.pieces[:, 0, 0] <= last))[0]
+        lane_indices = np.unique(bundle.piece_of[near_pieces])
+        lines = flatten_curves(
+            [bundle.pieces[near_pieces[bundle.piece_of[near_pieces] == index]] for index in lane_indices], plane
+        )
+        return find_line(
+            ((bundle.lanes[index], line) for index, line in zip(lane_indices, lines, strict=True)), x, y, reach
+        )
 
 
-class Bundles:
-    """Makes bundles; what belongs to a channel is made once for its keys."""
+class BundleBuilder:
+    """Builds bundles. The shape of a channel is cached until its keys change."""
 
     def __init__(self) -> None:
-        self._known: dict[Lane, Shape] = {}
-        self._made: dict[Port, tuple[Keys, list[Pieces]]] = {}
+        self._shapes: dict[Lane, Shape] = {}
+        self._pieces: dict[Port, tuple[Keys, list[Pieces]]] = {}
 
     def make(self, rows: Iterable[CurveRow], hidden: Collection[Lane]) -> Bundle:
-        """All channels of rows with keys but hidden ones."""
+        """All channels of rows with keys, without the hidden ones."""
         lanes: list[Lane] = []
         shapes: list[Shape] = []
         for row in rows:
@@ -154,36 +168,36 @@ class Bundles:
                 lane = row.port, channel
                 if lane not in hidden:
                     lanes.append(lane)
-                    shapes.append(self._shape(lane, row.keys))
+                    shapes.append(self._find_shape(lane, row.keys))
         if not lanes:
             return Bundle()
-        whole = np.concatenate([one.pieces for one in shapes])
+        whole = np.concatenate([shape.pieces for shape in shapes])
         order = np.arange(len(lanes))
-        piece_of = np.repeat(order, [len(one.pieces) for one in shapes])
+        piece_of = np.repeat(order, [len(shape.pieces) for shape in shapes])
         return Bundle(
             tuple(lanes),
             tuple(shapes),
             whole,
             is_straight(whole),
             piece_of,
-            np.concatenate([one.frames for one in shapes]),
-            np.concatenate([one.values for one in shapes]),
-            np.repeat(order, [len(one.frames) for one in shapes]),
-            tuple(spot for one in shapes for spot in one.spots),
-            tuple(look for one in shapes for look in one.looks),
-            np.array([_edges(one) for one in shapes]),
+            np.concatenate([shape.frames for shape in shapes]),
+            np.concatenate([shape.values for shape in shapes]),
+            np.repeat(order, [len(shape.frames) for shape in shapes]),
+            tuple(spot for shape in shapes for spot in shape.spots),
+            tuple(look for shape in shapes for look in shape.looks),
+            np.array([_find_edges(shape) for shape in shapes]),
         )
 
-    def _shape(self, lane: Lane, keys: Keys) -> Shape:
-        known = self._known.get(lane)
-        if known is None or known.keys is not keys:
-            before = self._made.get(lane[0])
-            if before is None or before[0] is not keys:
-                before = self._made[lane[0]] = keys, all_pieces(keys)
-            known = self._known[lane] = shape(lane, keys, before[1][lane[1]])
-        return known
+    def _find_shape(self, lane: Lane, keys: Keys) -> Shape:
+        shape = self._shapes.get(lane)
+        if shape is None or shape.keys is not keys:
+            channel_pieces = self._pieces.get(lane[0])
+            if channel_pieces is None or channel_pieces[0] is not keys:
+                channel_pieces = self._pieces[lane[0]] = keys, make_all_pieces(keys)
+            shape = self._shapes[lane] = make_shape(lane, keys, channel_pieces[1][lane[1]])
+        return shape
 
 
-def _edges(one: Shape) -> tuple[float, ...]:
-    holds = one.keys.outside == "hold" or len(one.frames) == 1
-    return one.frames[0], one.values[0], one.frames[-1], one.values[-1], float(holds)
+def _find_edges(shape: Shape) -> tuple[float, ...]:
+    holds = shape.keys.outside == "hold" or len(shape.frames) == 1
+    return shape.frames[0], shape.values[0], shape.frames[-1], shape.values[-1], float(holds)

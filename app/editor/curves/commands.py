@@ -1,4 +1,4 @@
-"""What can be done in the Animation panel, whichever mode it is in. Nothing here draws."""
+"""Commands of the Animation panel, in both modes. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -10,203 +10,223 @@ from ...authoring.edits.values import animatable_values
 from ...errors import UsageError
 from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
 from ..toolkit.plane import View
-from .copying import copied, pasted, read
-from .editing import Ease, automatic, chosen, eased, extent, fixed, going_on, interpolated, moved, removed, straightened
-from .rows import CurveRow, Spot, limits, spots_of, width
-from .shapes import Samples, heights
+from .copying import decode_keys, encode_keys, paste_keys
+from .editing import (
+    Ease,
+    align_handles,
+    ease_keys,
+    extrapolate_keys,
+    find_frame_range,
+    fix_handles,
+    group_spots,
+    interpolate_keys,
+    move_keys,
+    remove_keys,
+    reset_handles,
+)
+from .rows import CurveRow, Spot, count_channels, find_limits, list_spots
+from .shapes import ExpressionSamples, find_value_range
 
 if TYPE_CHECKING:
     from .context import CurvesContext
 
 
-def put(context: CurvesContext, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
-    """Give values other keys, as one step; a value without any stays as it is at this frame."""
+def set_keys(context: CurvesContext, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
+    """Set the keys of values as one undo step; a value whose last key goes keeps its value at this frame."""
     before = context.session.graph.animation
     context.session.apply(
         AnimateValues({port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge)
     )
 
 
-def spoken(spots: frozenset[Spot]) -> str:
-    """How many keys these are, in words."""
+def describe_keys(spots: frozenset[Spot]) -> str:
+    """The number of keys, in words."""
     count = len({(port, frame) for port, frame, _ in spots})
     return "a key" if count == 1 else f"{count} keys"
 
 
-def some(context: CurvesContext) -> bool:
-    """True if keys are chosen."""
+def has_chosen_keys(context: CurvesContext) -> bool:
+    """True if keys are selected."""
     return bool(context.curves.spots)
 
 
 def choose_all(context: CurvesContext) -> None:
-    """Choose every key that has a row."""
+    """Select every key that has a row."""
     state, session = context.curves, context.session
-    found = state.rows(session.graph, session.selection)
-    rows = found if state.mode == "sheet" else state.curves(found)
-    state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _seen(context, row)))
+    all_rows = state.list_rows(session.graph, session.selection)
+    rows = all_rows if state.mode == "sheet" else state.list_curve_rows(all_rows)
+    state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _list_visible_spots(context, row)))
 
 
 def choose_none(context: CurvesContext) -> None:
-    """Choose nothing."""
+    """Deselect all keys."""
     context.curves.spots = frozenset()
 
 
 def delete(context: CurvesContext) -> None:
-    """Remove chosen keys."""
-    _change(context, lambda graph, spots: removed(graph.animation, spots), "Delete")
+    """Delete the selected keys."""
+    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), "Delete")
 
 
 def interpolate(how: Interpolation) -> Callable[[CurvesContext], None]:
-    """Chosen keys go to the next in that way."""
+    """A command that sets the interpolation of the selected keys."""
     return lambda context: _change(
-        context, lambda graph, spots: interpolated(graph.animation, spots, how), f"Make {how}:"
+        context, lambda graph, spots: interpolate_keys(graph.animation, spots, how), f"Make {how}:"
     )
 
 
 def ease(how: Ease) -> Callable[[CurvesContext], None]:
-    """Chosen keys are come to, or left, gently."""
+    """A command that eases the selected keys in, out or both."""
     words = {"in": "Ease into", "out": "Ease out of", "both": "Ease"}[how]
-    return lambda context: _change(context, lambda graph, spots: eased(graph.animation, spots, how), words)
+    return lambda context: _change(context, lambda graph, spots: ease_keys(graph.animation, spots, how), words)
 
 
 def make_automatic(context: CurvesContext) -> None:
-    """Handles go along the smooth curve."""
-    context.curves.free -= _keys_of(context)
-    _change(context, lambda graph, spots: automatic(graph.animation, spots), "Automatic handles of")
+    """Reset the handles of the selected keys to the smooth curve."""
+    context.curves.free -= _list_chosen_keys(context)
+    _change(context, lambda graph, spots: reset_handles(graph.animation, spots), "Automatic handles of")
 
 
 def make_aligned(context: CurvesContext) -> None:
-    """Both handles lie on one line, and turn together."""
-    context.curves.free -= _keys_of(context)
-    _change(context, lambda graph, spots: straightened(graph.animation, spots), "Align handles of")
+    """Align both handles of the selected keys, so that they turn together."""
+    context.curves.free -= _list_chosen_keys(context)
+    _change(context, lambda graph, spots: align_handles(graph.animation, spots), "Align handles of")
 
 
 def make_free(context: CurvesContext) -> None:
-    """Each handle turns alone."""
-    _change(context, lambda graph, spots: fixed(graph.animation, spots), "Free handles of")
-    context.curves.free |= _keys_of(context)
+    """Let each handle of the selected keys turn alone."""
+    _change(context, lambda graph, spots: fix_handles(graph.animation, spots), "Free handles of")
+    context.curves.free |= _list_chosen_keys(context)
 
 
-def go_on(how: Outside) -> Callable[[CurvesContext], None]:
-    """What the values of the chosen keys, or else of the chosen rows, do outside of their keys."""
+def extrapolate(how: Outside) -> Callable[[CurvesContext], None]:
+    """A command that sets the extrapolation of the selected keys' values, or else of the selected rows."""
 
     def act(context: CurvesContext) -> None:
         state, graph = context.curves, context.session.graph
-        ports = {port for port, _, _ in state.spots} or state.shown
+        ports = {port for port, _, _ in state.spots} or state.chosen_rows
         if not ports:
-            raise UsageError("no keys are selected: select some of the values that this is about")
-        put(context, going_on(graph.animation, ports, how), f"Outside of keys: {how}")
+            raise UsageError("no keys are selected: select a key or a row first")
+        set_keys(context, extrapolate_keys(graph.animation, ports, how), f"Outside of keys: {how}")
 
     return act
 
 
-def goes_on(context: CurvesContext, how: Outside) -> bool:
-    """True if all values of the chosen keys do that outside of their keys."""
+def extrapolates(context: CurvesContext, how: Outside) -> bool:
+    """True if all values of the selected keys have this extrapolation."""
     state, animation = context.curves, context.session.graph.animation
-    found = [animation.get(port) for port in ({port for port, _, _ in state.spots} or state.shown)]
-    return bool(found) and all(isinstance(keys, Keys) and keys.outside == how for keys in found)
+    animations = [animation.get(port) for port in ({port for port, _, _ in state.spots} or state.chosen_rows)]
+    return bool(animations) and all(isinstance(keys, Keys) and keys.outside == how for keys in animations)
 
 
 def copy(context: CurvesContext) -> None:
-    """Chosen keys go to the clipboard."""
-    context.clipboard.put(copied(context.session.graph.animation, context.curves.spots))
+    """Copy the selected keys to the clipboard."""
+    context.clipboard.put(encode_keys(context.session.graph.animation, context.curves.spots))
 
 
 def cut(context: CurvesContext) -> None:
-    """Chosen keys go to the clipboard, and away."""
+    """Copy the selected keys to the clipboard and delete them."""
     copy(context)
-    _change(context, lambda graph, spots: removed(graph.animation, spots), "Cut")
+    _change(context, lambda graph, spots: remove_keys(graph.animation, spots), "Cut")
 
 
 def paste(context: CurvesContext) -> None:
-    """Keys of the clipboard come in from the current frame on, and are chosen."""
+    """Paste keys from the clipboard at the current frame, and select them."""
     session, state = context.session, context.curves
-    change = pasted(session.graph, read(context.clipboard.get()), session.frame, state.shown)
-    put(context, change.made, f"Paste {spoken(change.spots)}")
+    change = paste_keys(session.graph, decode_keys(context.clipboard.get()), session.frame, state.chosen_rows)
+    set_keys(context, change.new_keys, f"Paste {describe_keys(change.spots)}")
     state.spots = change.spots
 
 
 def duplicate(context: CurvesContext) -> None:
-    """Chosen keys once more, behind themselves; the copies are chosen."""
+    """Copy the selected keys to the frames after them, and select the copies."""
     state, graph = context.curves, context.session.graph
-    span = extent(state.spots)
+    span = find_frame_range(state.spots)
     if span is None:
         raise UsageError("no keys are selected: select what to duplicate")
-    change = moved(graph.animation, state.spots, float(int(span[1] - span[0]) + 1))
-    made = {
-        port: Keys((*before.keys, *(key for key in keys.keys if _holds(change.spots, port, key.frame))), before.outside)
-        for port, keys in change.made.items()
+    change = move_keys(graph.animation, state.spots, float(int(span[1] - span[0]) + 1))
+    new_keys = {
+        port: Keys(
+            (*before.keys, *(key for key in keys.keys if _contains_key(change.spots, port, key.frame))), before.outside
+        )
+        for port, keys in change.new_keys.items()
         if isinstance(before := graph.animation[port], Keys)
     }
-    put(context, made, f"Duplicate {spoken(state.spots)}")
+    set_keys(context, new_keys, f"Duplicate {describe_keys(state.spots)}")
     state.spots = change.spots
 
 
 def nudge(by: float) -> Callable[[CurvesContext], None]:
-    """Chosen keys so many frames later."""
+    """A command that moves the selected keys by some frames."""
 
     def act(context: CurvesContext) -> None:
         state = context.curves
-        change = moved(context.session.graph.animation, state.spots, by)
-        put(context, change.made, f"Move {spoken(state.spots)}", "nudge keys")
+        change = move_keys(context.session.graph.animation, state.spots, by)
+        set_keys(context, change.new_keys, f"Move {describe_keys(state.spots)}", "nudge keys")
         state.spots = change.spots
 
     return act
 
 
 def insert(context: CurvesContext, port: Port, frame: float) -> None:
-    """A key on the curve, which is chosen."""
+    """Insert a key on the curve, and select it."""
     keys = context.session.graph.animation.get(port)
     if isinstance(keys, Keys):
         frame = round(frame, 6)
-        made = keys.insert(frame)
-        put(context, {port: made}, f"Key {port}")
-        context.curves.choose(spots_of(port, made, (frame,)))
+        new_keys = keys.insert(frame)
+        set_keys(context, {port: new_keys}, f"Key {port}")
+        context.curves.choose(list_spots(port, new_keys, (frame,)))
 
 
 def key_here(context: CurvesContext) -> None:
-    """A key at the current frame for every chosen row, or for all."""
+    """Insert a key at the current frame in every selected row, or in all rows."""
     state, session = context.curves, context.session
-    found = state.curves(state.rows(session.graph, session.selection))
-    made = {row.port: row.keys.insert(float(session.frame)) for row in found if row.port and row.keys}
-    put(context, made, f"Key at frame {session.frame}")
-    state.choose(frozenset().union(*(spots_of(port, keys, (float(session.frame),)) for port, keys in made.items())))
+    rows = state.list_curve_rows(state.list_rows(session.graph, session.selection))
+    new_keys = {row.port: row.keys.insert(float(session.frame)) for row in rows if row.port and row.keys}
+    set_keys(context, new_keys, f"Key at frame {session.frame}")
+    state.choose(
+        frozenset().union(*(list_spots(port, keys, (float(session.frame),)) for port, keys in new_keys.items()))
+    )
 
 
 def swap_mode(context: CurvesContext) -> None:
-    """From the dope sheet to curves, and back."""
+    """Switch between the dope sheet and the curves."""
     context.curves.mode = "curves" if context.curves.mode == "sheet" else "sheet"
 
 
-def fitted(context: CurvesContext, samples: Samples) -> View:
-    """The view that shows what is wanted: all rows and the range, or the chosen keys."""
+def fit_view(context: CurvesContext, samples: ExpressionSamples) -> View:
+    """The view that shows all rows and the frame range, or the selected keys."""
     state, session = context.curves, context.session
     graph = session.graph
-    spots = state.spots if state.wanted == "chosen" else frozenset[Spot]()
-    rows = [row for row in state.curves(state.rows(graph, session.selection)) if row.port]
+    spots = state.spots if state.pending_fit == "chosen" else frozenset[Spot]()
+    rows = [row for row in state.list_curve_rows(state.list_rows(graph, session.selection)) if row.port]
     if spots:
-        tops = [
-            found
-            for port, frames in chosen(graph.animation, spots).items()
+        value_ranges = [
+            value_range
+            for port, frames in group_spots(graph.animation, spots).items()
             for channel in {part for parts in frames.values() for part in parts}
             if isinstance(keys := graph.animation[port], Keys)
-            and (found := heights(keys, channel, lambda key, frames=frames: key.frame in frames))
+            and (value_range := find_value_range(keys, channel, lambda key, frames=frames: key.frame in frames))
         ]
-        return state.view.fit(extent(spots), _around(tops))
+        return state.view.fit(find_frame_range(spots), _join_ranges(value_ranges))
     first, last = session.frames
-    every = [frame for row in rows if row.keys for frame in row.keys.frames]
-    ends = min([first, *every]), max([last, *every])
-    tops = [found for row in rows for found in _heights(graph, session.settings, row, state.hidden, samples, ends)]
-    return state.view.fit(ends, _around(tops) or (0.0, 1.0))
+    key_frames = [frame for row in rows if row.keys for frame in row.keys.frames]
+    frame_range = min([first, *key_frames]), max([last, *key_frames])
+    value_ranges = [
+        value_range
+        for row in rows
+        for value_range in _find_value_ranges(graph, session.settings, row, state.hidden, samples, frame_range)
+    ]
+    return state.view.fit(frame_range, _join_ranges(value_ranges) or (0.0, 1.0))
 
 
 def bounds(context: CurvesContext) -> Callable[[Port], tuple[float, float]]:
-    """What the values of the graph cannot leave."""
-    return lambda port: limits(context.session.graph, port)
+    """A function that gives the smallest and the largest number that a value may have."""
+    return lambda port: find_limits(context.session.graph, port)
 
 
-def animatable(context: CurvesContext) -> tuple[Port, ...]:
-    """Values of the selected nodes that could be keyed and are not yet."""
+def list_animatable(context: CurvesContext) -> tuple[Port, ...]:
+    """Values of the selected nodes that can be animated and are not yet."""
     session = context.session
     return tuple(
         port
@@ -221,48 +241,48 @@ def _change(context: CurvesContext, make: Callable[[Graph, frozenset[Spot]], Map
     state, graph = context.curves, context.session.graph
     if not state.spots:
         raise UsageError("no keys are selected: click some, or drag a box around them")
-    put(context, make(graph, state.spots), f"{words} {spoken(state.spots)}")
+    set_keys(context, make(graph, state.spots), f"{words} {describe_keys(state.spots)}")
 
 
-def _keys_of(context: CurvesContext) -> set[tuple[Port, float]]:
+def _list_chosen_keys(context: CurvesContext) -> set[tuple[Port, float]]:
     return {(port, frame) for port, frame, _ in context.curves.spots}
 
 
-def _seen(context: CurvesContext, row: CurveRow) -> frozenset[Spot]:
+def _list_visible_spots(context: CurvesContext, row: CurveRow) -> frozenset[Spot]:
     assert row.port and row.keys
-    spots, state = spots_of(row.port, row.keys), context.curves
+    spots, state = list_spots(row.port, row.keys), context.curves
     return (
         spots if state.mode == "sheet" else frozenset(spot for spot in spots if (spot[0], spot[2]) not in state.hidden)
     )
 
 
-def _holds(spots: frozenset[Spot], port: Port, frame: float) -> bool:
+def _contains_key(spots: frozenset[Spot], port: Port, frame: float) -> bool:
     return (port, frame, 0) in spots or any(spot[:2] == (port, frame) for spot in spots)
 
 
-def _around(found: list[tuple[float, float]]) -> tuple[float, float] | None:
-    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
+def _join_ranges(ranges: list[tuple[float, float]]) -> tuple[float, float] | None:
+    return (min(low for low, _ in ranges), max(high for _, high in ranges)) if ranges else None
 
 
-def _heights(
+def _find_value_ranges(
     graph: Graph,
     settings: Settings,
     row: CurveRow,
     hidden: set[tuple[Port, int]],
-    samples: Samples,
+    samples: ExpressionSamples,
     ends: tuple[float, float],
 ) -> list[tuple[float, float]]:
     port = row.port
     if port is None:
         return []
-    found: list[tuple[float, float]] = []
-    for channel in range(width(graph, port)):
+    ranges: list[tuple[float, float]] = []
+    for channel in range(count_channels(graph, port)):
         if (port, channel) in hidden:
             continue
         if row.keys:
-            inside = heights(row.keys, channel)
-            found += [inside] if inside else []
+            value_range = find_value_range(row.keys, channel)
+            ranges += [value_range] if value_range else []
         else:
-            lines = samples.line(graph, settings, port, channel, *ends)
-            found += [(float(line[:, 1].min()), float(line[:, 1].max())) for line in lines]
-    return found
+            lines = samples.sample_lines(graph, settings, port, channel, *ends)
+            ranges += [(float(line[:, 1].min()), float(line[:, 1].max())) for line in lines]
+    return ranges

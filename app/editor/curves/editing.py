@@ -1,6 +1,7 @@
-"""What is done to chosen keys: which animation every value has afterwards, and which keys are chosen then.
+"""Edits of selected keys: each gives the new animation of every value, and which keys are selected then.
 
-All of it is made from the keys as they were when a gesture began, so that keys pushed over others come back from them.
+A gesture always edits the keys as they were when it began. So a key that is dragged over another one and back again
+does not delete it.
 Nothing here draws.
 """
 
@@ -15,125 +16,127 @@ from halation.nodes import Plain
 from ...graph import Animation, Interpolation, Key, Keys, Outside, Port
 from ...graph.keys import round_keys
 from .rows import Spot
-from .shapes import level, runs
+from .shapes import is_interpolated, read_key_channel
 
 Animations = Mapping[Port, Animation]
 Limits = Callable[[Port], tuple[float, float]]
 Side = Literal["left", "right"]
 Ease = Literal["in", "out", "both"]
 
-LEAST = 0.01
-"""Keys are never drawn together more than that."""
+MIN_SCALE = 0.01
+"""The smallest factor for scaling keys, so that they never all fall on one frame."""
 
 
 @dataclass(frozen=True)
 class KeyEdit:
-    """New animations by value, and the chosen keys."""
+    """New keys by value, and the selected keys."""
 
-    made: Mapping[Port, Keys] = field(default_factory=dict[Port, Keys])
+    new_keys: Mapping[Port, Keys] = field(default_factory=dict[Port, Keys])
     spots: frozenset[Spot] = frozenset()
 
 
-def unlimited(port: Port) -> tuple[float, float]:
-    """For values that may be anything."""
+def allow_any_number(port: Port) -> tuple[float, float]:
+    """The limits of a value without limits."""
     return float("-inf"), float("inf")
 
 
-def chosen(animation: Animations, spots: Collection[Spot]) -> dict[Port, dict[float, set[int]]]:
-    """The channels of every chosen key that there is, by value and frame."""
-    found: dict[Port, dict[float, set[int]]] = {}
+def group_spots(animation: Animations, spots: Collection[Spot]) -> dict[Port, dict[float, set[int]]]:
+    """The channels of every selected key that exists, by value and frame."""
+    groups: dict[Port, dict[float, set[int]]] = {}
     for port, frame, channel in spots:
         keys = animation.get(port)
         if isinstance(keys, Keys) and keys.key(frame):
-            found.setdefault(port, {}).setdefault(frame, set()).add(channel)
-    return found
+            groups.setdefault(port, {}).setdefault(frame, set()).add(channel)
+    return groups
 
 
-def extent(spots: Collection[Spot]) -> tuple[float, float] | None:
-    """The first and the last frame of chosen keys."""
+def find_frame_range(spots: Collection[Spot]) -> tuple[float, float] | None:
+    """The first and the last frame of the selected keys."""
     frames = [frame for _, frame, _ in spots]
     return (min(frames), max(frames)) if frames else None
 
 
-def moved(
-    animation: Animations, spots: Collection[Spot], by: float, lift: float = 0.0, limits: Limits = unlimited
+def move_keys(
+    animation: Animations, spots: Collection[Spot], by: float, lift: float = 0.0, limits: Limits = allow_any_number
 ) -> KeyEdit:
-    """Chosen keys so many frames later, chosen channels so much higher."""
-    made: dict[Port, Keys] = {}
-    for port, frames in chosen(animation, spots).items():
-        keys = _keys(animation, port)
+    """Move the selected keys by some frames, and raise the selected channels by `lift`."""
+    new_keys: dict[Port, Keys] = {}
+    for port, frames in group_spots(animation, spots).items():
+        keys = _get_keys(animation, port)
         if lift:
             low, high = limits(port)
             keys = replace(
                 keys,
                 keys=tuple(
-                    _lifted(key, frames[key.frame], lift, low, high) if key.frame in frames else key
+                    _lift_key(key, frames[key.frame], lift, low, high) if key.frame in frames else key
                     for key in keys.keys
                 ),
             )
-        made[port] = keys.move(frames, by)
-    return KeyEdit(made, frozenset((port, round(frame + by, 6), channel) for port, frame, channel in spots))
+        new_keys[port] = keys.move(frames, by)
+    return KeyEdit(new_keys, frozenset((port, round(frame + by, 6), channel) for port, frame, channel in spots))
 
 
-def scaled(animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True) -> KeyEdit:
-    """Chosen keys `factor` times as far from the frame `about`."""
-    factor = max(factor, LEAST)
+def scale_keys(
+    animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True
+) -> KeyEdit:
+    """Scale the distance of the selected keys from the frame `about` by `factor`."""
+    factor = max(factor, MIN_SCALE)
 
-    def there(frame: float) -> float:
+    def scale_frame(frame: float) -> float:
         at = about + (frame - about) * factor
         return float(round_keys(at)) if whole else round(at, 6)
 
-    made = {
-        port: _keys(animation, port).scale(frames, factor, about, whole)
-        for port, frames in chosen(animation, spots).items()
+    new_keys = {
+        port: _get_keys(animation, port).scale(frames, factor, about, whole)
+        for port, frames in group_spots(animation, spots).items()
     }
-    return KeyEdit(made, frozenset((port, there(frame), channel) for port, frame, channel in spots))
+    return KeyEdit(new_keys, frozenset((port, scale_frame(frame), channel) for port, frame, channel in spots))
 
 
-def removed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
-    """Without the chosen keys; where none is left, the animation has no keys."""
-    return {port: _keys(animation, port).remove(*frames) for port, frames in chosen(animation, spots).items()}
+def remove_keys(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
+    """Remove the selected keys; an animation may end up without keys."""
+    return {port: _get_keys(animation, port).remove(*frames) for port, frames in group_spots(animation, spots).items()}
 
 
-def interpolated(animation: Animations, spots: Collection[Spot], how: Interpolation) -> dict[Port, Keys]:
-    """Chosen keys going to the next in that way; switches stay held."""
+def interpolate_keys(animation: Animations, spots: Collection[Spot], how: Interpolation) -> dict[Port, Keys]:
+    """Set the interpolation of the selected keys; switches always hold."""
     return {
         port: keys.with_interpolation(frames, how)
-        for port, frames in chosen(animation, spots).items()
-        if (keys := _keys(animation, port)).keys[0].parts
+        for port, frames in group_spots(animation, spots).items()
+        if (keys := _get_keys(animation, port)).keys[0].parts
     }
 
 
-def going_on(animation: Animations, ports: Collection[Port], how: Outside) -> dict[Port, Keys]:
-    """Values that are held, go on or repeat before the first and after the last key."""
+def extrapolate_keys(animation: Animations, ports: Collection[Port], how: Outside) -> dict[Port, Keys]:
+    """Set what values do before the first and after the last key."""
     return {port: replace(keys, outside=how) for port in ports if isinstance(keys := animation.get(port), Keys)}
 
 
-def eased(animation: Animations, spots: Collection[Spot], how: Ease) -> dict[Port, Keys]:
-    """Chosen keys that are come to gently ("in"), left gently ("out"), or both: handles that lie flat."""
-    made: dict[Port, Keys] = {}
-    for port, frames in chosen(animation, spots).items():
-        keys = _keys(animation, port)
+def ease_keys(animation: Animations, spots: Collection[Spot], how: Ease) -> dict[Port, Keys]:
+    """Ease the selected keys: flat handles before ("in"), after ("out") or on both sides."""
+    new_keys: dict[Port, Keys] = {}
+    for port, frames in group_spots(animation, spots).items():
+        keys = _get_keys(animation, port)
         for frame in frames:
             place = keys.frames.index(frame)
             if how != "out" and place > 0:
-                keys = as_bezier(keys, place - 1)
-                keys = keys.with_handles(frame, left=_flat(keys, place, -1))
+                keys = convert_to_bezier(keys, place - 1)
+                keys = keys.with_handles(frame, left=_make_flat_handle(keys, place, -1))
             if how != "in" and place + 1 < len(keys.keys):
-                keys = as_bezier(keys, place)
-                keys = keys.with_handles(frame, right=_flat(keys, place, 1))
-        made[port] = keys
-    return made
+                keys = convert_to_bezier(keys, place)
+                keys = keys.with_handles(frame, right=_make_flat_handle(keys, place, 1))
+        new_keys[port] = keys
+    return new_keys
 
 
-def as_bezier(keys: Keys, place: int) -> Keys:
-    """The same curve from the key of that place to the next, with handles; what is held goes smoothly."""
+def convert_to_bezier(keys: Keys, place: int) -> Keys:
+    """Give one segment handles without changing its curve; a segment that holds becomes smooth."""
     if place + 1 >= len(keys.keys) or not keys.keys[place].parts:
         return keys
     start, end = keys.keys[place : place + 2]
     if start.interpolation == "bezier":
         return keys
-    if not runs(keys, place) or start.interpolation == "linear":
+    if not is_interpolated(keys, place) or start.interpolation == "linear":
         third = (end.frame - start.frame) / 3.0
         rise = tuple((b - a) / 3.0 for a, b in zip(start.parts, end.parts, strict=False))
         if start.interpolation == "constant":
@@ -150,10 +153,10 @@ def as_bezier(keys: Keys, place: int) -> Keys:
 def has_handle(keys: Keys, place: int, side: Side) -> bool:
     """True if the curve has a handle on that side of the key of that place."""
     before = place - 1 if side == "left" else place
-    return before >= 0 and runs(keys, before) and keys.keys[before].interpolation == "bezier"
+    return before >= 0 and is_interpolated(keys, before) and keys.keys[before].interpolation == "bezier"
 
 
-def aligned(keys: Keys, frame: float) -> bool:
+def has_aligned_handles(keys: Keys, frame: float) -> bool:
     """True if both handles of a key lie on one line, in every channel."""
     left, right = keys.handles(frame)
     if not left or not right:
@@ -162,86 +165,90 @@ def aligned(keys: Keys, frame: float) -> bool:
     return all(abs(a * right[0] - b * left[0]) <= 1e-4 * size + 1e-12 for a, b in zip(left[1:], right[1:], strict=True))
 
 
-def pulled(keys: Keys, frame: float, channel: int, side: Side, to: tuple[float, float], both: bool) -> Keys:
-    """With the end of a handle at `to`, frames and value from its key.
+def pull_handle(keys: Keys, frame: float, channel: int, side: Side, to: tuple[float, float], both: bool) -> Keys:
+    """Move the end of a handle to `to`: frames and value, relative to its key.
 
     The other channels keep their slope. With `both` the other handle turns with it and stays as long in frames.
     """
-    here, there = keys.handles(frame) if side == "left" else keys.handles(frame)[::-1]
-    if not here:
+    old_handle, old_opposite = keys.handles(frame) if side == "left" else keys.handles(frame)[::-1]
+    if not old_handle:
         return keys
     across = min(to[0], 0.0) if side == "left" else max(to[0], 0.0)
-    ratio = across / here[0] if abs(here[0]) > 1e-9 else 1.0
-    handle = [across, *(part * ratio for part in here[1:])]
+    ratio = across / old_handle[0] if abs(old_handle[0]) > 1e-9 else 1.0
+    handle = [across, *(part * ratio for part in old_handle[1:])]
     handle[1 + channel] = to[1]
-    other = None
-    if both and there:
-        slope = -there[0] / across if abs(across) > 1e-6 else None
-        other = [*there]
+    opposite = None
+    if both and old_opposite:
+        slope = -old_opposite[0] / across if abs(across) > 1e-6 else None
+        opposite = [*old_opposite]
         for place in range(1, len(handle)):
-            other[place] = -handle[place] * (slope if slope is not None else 1.0)
+            opposite[place] = -handle[place] * (slope if slope is not None else 1.0)
         if slope is None:
-            other[0] = 0.0
-    mine, others = tuple(handle), tuple(other) if other else None
-    return keys.with_handles(frame, mine, others) if side == "left" else keys.with_handles(frame, others, mine)
+            opposite[0] = 0.0
+    new_handle, new_opposite = tuple(handle), tuple(opposite) if opposite else None
+    return (
+        keys.with_handles(frame, new_handle, new_opposite)
+        if side == "left"
+        else keys.with_handles(frame, new_opposite, new_handle)
+    )
 
 
-def automatic(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
-    """Chosen keys whose handles go along the smooth curve."""
-    made: dict[Port, Keys] = {}
-    for port, frames in chosen(animation, spots).items():
-        keys = _keys(animation, port)
+def reset_handles(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
+    """Reset the handles of the selected keys to the smooth curve."""
+    new_keys: dict[Port, Keys] = {}
+    for port, frames in group_spots(animation, spots).items():
+        keys = _get_keys(animation, port)
         for frame in frames:
             keys = keys.with_handles(frame, (), ())
-        made[port] = keys
-    return made
+        new_keys[port] = keys
+    return new_keys
 
 
-def straightened(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
-    """Chosen keys whose two handles lie on one line, half way between where they point now."""
-    made: dict[Port, Keys] = {}
-    for port, frames in chosen(animation, spots).items():
-        keys = _keys(animation, port)
+def align_handles(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
+    """Align both handles of the selected keys, on the mean of their slopes."""
+    new_keys: dict[Port, Keys] = {}
+    for port, frames in group_spots(animation, spots).items():
+        keys = _get_keys(animation, port)
         for frame in frames:
             left, right = keys.handles(frame)
             if not left or not right:
                 continue
-            slopes = [0.5 * (_slope(left, place) + _slope(right, place)) for place in range(1, len(left))]
+            slopes = [0.5 * (_find_slope(left, place) + _find_slope(right, place)) for place in range(1, len(left))]
             keys = keys.with_handles(
                 frame, (left[0], *(slope * left[0] for slope in slopes)), (right[0], *(s * right[0] for s in slopes))
             )
-        made[port] = keys
-    return made
+        new_keys[port] = keys
+    return new_keys
 
 
-def fixed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
-    """Chosen keys with the handles that they have now, as if the user had placed them."""
-    made: dict[Port, Keys] = {}
-    for port, frames in chosen(animation, spots).items():
-        keys = _keys(animation, port)
+def fix_handles(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
+    """Store the automatic handles of the selected keys, as if the user had placed them."""
+    new_keys: dict[Port, Keys] = {}
+    for port, frames in group_spots(animation, spots).items():
+        keys = _get_keys(animation, port)
         for frame in frames:
             left, right = keys.handles(frame)
             keys = keys.with_handles(frame, left or None, right or None)
-        made[port] = keys
-    return made
+        new_keys[port] = keys
+    return new_keys
 
 
 def with_number(keys: Keys, frame: float, channel: int, number: float) -> Keys:
-    """With another number in a channel of a key."""
+    """Set the number of one channel of a key."""
     return replace(
         keys,
         keys=tuple(
-            replace(key, value=_changed(key, {channel}, lambda _: number)) if key.frame == frame else key
+            replace(key, value=_change_value(key, {channel}, lambda _: number)) if key.frame == frame else key
             for key in keys.keys
         ),
     )
 
 
-def _lifted(key: Key, which: Collection[int], lift: float, low: float, high: float) -> Key:
-    return replace(key, value=_changed(key, which, lambda part: min(max(part + lift, low), high)))
+def _lift_key(key: Key, which: Collection[int], lift: float, low: float, high: float) -> Key:
+    return replace(key, value=_change_value(key, which, lambda part: min(max(part + lift, low), high)))
 
 
-def _changed(key: Key, which: Collection[int], change: Callable[[float], float]) -> Plain:
+def _change_value(key: Key, which: Collection[int], change: Callable[[float], float]) -> Plain:
     """The value of a key with other numbers in some channels; a switch is on from a half."""
     if isinstance(key.value, bool):
         return change(float(key.value)) >= 0.5
@@ -253,44 +260,44 @@ def _changed(key: Key, which: Collection[int], change: Callable[[float], float])
     return round_keys(parts[0]) if isinstance(key.value, int) else parts[0]
 
 
-def _flat(keys: Keys, place: int, side: int) -> tuple[float, ...]:
+def _make_flat_handle(keys: Keys, place: int, side: int) -> tuple[float, ...]:
     width = abs(keys.keys[place + side].frame - keys.keys[place].frame)
     return side * width / 3.0, *(0.0 for _ in keys.keys[place].parts)
 
 
-def _slope(handle: tuple[float, ...], place: int) -> float:
+def _find_slope(handle: tuple[float, ...], place: int) -> float:
     return handle[place] / handle[0] if abs(handle[0]) > 1e-9 else 0.0
 
 
-def _keys(animation: Animations, port: Port) -> Keys:
-    found = animation[port]
-    assert isinstance(found, Keys)
-    return found
+def _get_keys(animation: Animations, port: Port) -> Keys:
+    keys = animation[port]
+    assert isinstance(keys, Keys)
+    return keys
 
 
 __all__ = [
-    "LEAST",
+    "MIN_SCALE",
     "Animations",
     "Ease",
     "KeyEdit",
     "Limits",
     "Side",
-    "aligned",
-    "as_bezier",
-    "automatic",
-    "chosen",
-    "eased",
-    "extent",
-    "fixed",
-    "going_on",
+    "align_handles",
+    "allow_any_number",
+    "convert_to_bezier",
+    "ease_keys",
+    "extrapolate_keys",
+    "find_frame_range",
+    "fix_handles",
+    "group_spots",
+    "has_aligned_handles",
     "has_handle",
-    "interpolated",
-    "level",
-    "moved",
-    "pulled",
-    "removed",
-    "scaled",
-    "straightened",
-    "unlimited",
+    "interpolate_keys",
+    "move_keys",
+    "pull_handle",
+    "read_key_channel",
+    "remove_keys",
+    "reset_handles",
+    "scale_keys",
     "with_number",
 ]

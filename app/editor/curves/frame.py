@@ -1,4 +1,4 @@
-"""What is known of the panel in one frame of the window."""
+"""The layout of the Animation panel in one frame of the window."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from .context import CurvesContext
 
 TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
-"""Sizes at UI scale 1: the tools, the names of rows, the ruler, the bar of what is chosen, and a row."""
+"""Sizes at UI scale 1: the tools, the names of rows, the ruler, the bar of the selection, and a row."""
 
 SMALL = 12.5
-"""Letters of axes."""
+"""The font size of axes."""
 
 
 @dataclass
@@ -38,18 +38,18 @@ class CurvesFrame:
     ruler: Rect
     bar: Rect
     scale: float
-    at: tuple[float, float]
+    pointer: tuple[float, float]
     """The mouse, on the screen."""
-    over: bool = False
+    hovered: bool = False
     """True while nothing lies between the mouse and the part with keys, ruler and bar."""
-    marks: Callable[[], Sequence[Mark]] = tuple
-    """All keys that are seen."""
-    near: Callable[[float, float, float], Mark | None] = lambda x, y, reach: None
+    list_marks: Callable[[], Sequence[Mark]] = tuple
+    """All visible keys."""
+    find_mark: Callable[[float, float, float], Mark | None] = lambda x, y, reach: None
     """The key within reach of a point of the screen."""
-    lane_at: Callable[[float, float, float], Lane | None] = lambda x, y, reach: None
+    find_lane: Callable[[float, float, float], Lane | None] = lambda x, y, reach: None
     """The curve that passes within reach of a point of the screen."""
     count: int = 0
-    """How many keys are seen."""
+    """The number of visible keys."""
     tips: Sequence[Tip] = ()
 
     @property
@@ -59,11 +59,11 @@ class CurvesFrame:
 
     @property
     def graph(self) -> Graph:
-        """The graph that one is in."""
+        """The open graph."""
         return self.context.session.graph
 
     @property
-    def sheet(self) -> bool:
+    def is_sheet(self) -> bool:
         """True in the dope sheet."""
         return self.state.mode == "sheet"
 
@@ -73,32 +73,32 @@ class CurvesFrame:
         return self.plane.rect[1] - self.state.scroll
 
     @property
-    def high(self) -> float:
-        """How high a row is."""
+    def row_height(self) -> float:
+        """The height of a row in pixels."""
         return round(ROW * self.scale)
 
     def row_at(self, y: float) -> CurveRow | None:
         """The row at a height of the screen."""
-        place = int((y - self.top) // self.high)
+        place = int((y - self.top) // self.row_height)
         return self.rows[place] if y >= self.plane.rect[1] and 0 <= place < len(self.rows) else None
 
-    def where(self, at: tuple[float, float] | None = None) -> tuple[float, float]:
+    def from_screen(self, at: tuple[float, float] | None = None) -> tuple[float, float]:
         """Frame and value at a place of the screen; in the dope sheet, pixels down the rows instead of a value."""
-        x, y = at or self.at
-        return self.plane.frame(x), y - self.top if self.sheet else self.plane.value(y)
+        x, y = at or self.pointer
+        return self.plane.frame(x), y - self.top if self.is_sheet else self.plane.value(y)
 
-    def back(self, where: tuple[float, float]) -> tuple[float, float]:
-        """The place on the screen of what `where` gave."""
-        return self.plane.x(where[0]), where[1] + self.top if self.sheet else self.plane.y(where[1])
+    def to_screen(self, where: tuple[float, float]) -> tuple[float, float]:
+        """The place on the screen of a result of `from_screen`."""
+        return self.plane.x(where[0]), where[1] + self.top if self.is_sheet else self.plane.y(where[1])
 
 
-def holds(rect: Rect, at: tuple[float, float]) -> bool:
+def contains(rect: Rect, at: tuple[float, float]) -> bool:
     """True if a point is in a rectangle."""
     return rect[0] <= at[0] < rect[2] and rect[1] <= at[1] < rect[3]
 
 
 def color_of(context: CurvesContext, row: CurveRow, channel: int, place: int) -> RGB:
-    """The color of a curve: red, green and blue for channels, for numbers one of a few in turn."""
+    """The color of a curve: red, green and blue for channels, for numbers one of five in turn."""
     palette = context.palette
     if row.channels:
         dark = palette.name == "dark"
@@ -112,7 +112,7 @@ def color_of(context: CurvesContext, row: CurveRow, channel: int, place: int) ->
     return kinds[(3, 0, 2, 4, 5)[place % 5]]
 
 
-def small(
+def draw_small_text(
     frame: CurvesFrame, x: float, y: float, text: str, color: RGB, alpha: float = 1.0, align: float = 0.0
 ) -> float:
     """A line of small letters: its left end (or with `align` 1 its right one) at `x`, its middle at `y`. Its width."""
@@ -124,7 +124,7 @@ def small(
     return wide
 
 
-def keys_of(graph: Graph, port: Port | None) -> Keys | None:
-    """The keys of a value, if it has some."""
-    found = graph.animation.get(port) if port else None
-    return found if isinstance(found, Keys) else None
+def find_keys(graph: Graph, port: Port | None) -> Keys | None:
+    """The keys of a value, or None."""
+    animation = graph.animation.get(port) if port else None
+    return animation if isinstance(animation, Keys) else None

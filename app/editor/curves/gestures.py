@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...graph import Animation, Keys, Port
 from ...graph.keys import round_keys
 from ..toolkit.plane import View
-from .editing import KeyEdit, Limits, Side, moved, pulled, scaled
+from .editing import KeyEdit, Limits, Side, move_keys, pull_handle, scale_keys
 from .rows import Spot
 
 Animations = Mapping[Port, Animation]
@@ -40,28 +40,28 @@ class KeyBox:
 
 @dataclass(frozen=True)
 class KeyMove:
-    """Chosen keys follow the mouse. `grabbed` is the frame of the one that it holds."""
+    """The selected keys follow the mouse. `grabbed` is the frame of the one that it holds."""
 
     base: Animations
     spots: frozenset[Spot]
     grabbed: float
     start: At
     merge: str
-    going: bool = False
+    started: bool = False
     clicked: frozenset[Spot] | None = None
-    """What is chosen instead if the mouse was let go without moving."""
+    """The new selection if the mouse button is released without a move."""
 
     def change(self, at: At, snap: bool, limits: Limits, *, across: bool = True, up: bool = True) -> KeyEdit:
-        """What has become of the keys; on whole frames if `snap`."""
+        """The keys after the gesture; on whole frames if `snap`."""
         by = at[0] - self.start[0] if across else 0.0
         if snap and across:
             by = round_keys(self.grabbed + by) - self.grabbed
-        return moved(self.base, self.spots, by, at[1] - self.start[1] if up else 0.0, limits)
+        return move_keys(self.base, self.spots, by, at[1] - self.start[1] if up else 0.0, limits)
 
 
 @dataclass(frozen=True)
-class Scale:
-    """Chosen keys are drawn out from the frame `about`, the mouse holding what was at `grabbed`."""
+class KeyScale:
+    """The selected keys are scaled about the frame `about`; the mouse drags the frame `grabbed`."""
 
     base: Animations
     spots: frozenset[Spot]
@@ -71,18 +71,18 @@ class Scale:
     merge: str
 
     def change(self, frame: float, snap: bool) -> KeyEdit:
-        """What has become of the keys; on whole frames if `snap`."""
+        """The keys after the gesture; on whole frames if `snap`."""
         reach = self.grabbed - self.about
         to = self.grabbed + frame - self.start
         if snap:
             to = float(round_keys(to))
         factor = (to - self.about) / reach if abs(reach) > 1e-9 else 1.0
-        return scaled(self.base, self.spots, factor, self.about, snap)
+        return scale_keys(self.base, self.spots, factor, self.about, snap)
 
 
 @dataclass(frozen=True)
-class Bend:
-    """The end of a handle follows the mouse; `off` is how far from it the mouse took hold."""
+class HandleDrag:
+    """The end of a handle follows the mouse; `offset` is the distance from it to the mouse at the start."""
 
     base: Keys
     port: Port
@@ -90,14 +90,14 @@ class Bend:
     channel: int
     side: Side
     value: float
-    off: At
-    both: bool
+    offset: At
+    turns_both: bool
     merge: str
 
     def change(self, at: At, both: bool, flat: bool = False) -> Keys:
         """The keys with that handle; `flat` keeps it level."""
-        to = at[0] - self.off[0] - self.frame, at[1] - self.off[1] - self.value
-        return pulled(self.base, self.frame, self.channel, self.side, (to[0], 0.0) if flat else to, both)
+        to = at[0] - self.offset[0] - self.frame, at[1] - self.offset[1] - self.value
+        return pull_handle(self.base, self.frame, self.channel, self.side, (to[0], 0.0) if flat else to, both)
 
 
-Gesture = PlotPan | Seek | KeyBox | KeyMove | Scale | Bend
+Gesture = PlotPan | Seek | KeyBox | KeyMove | KeyScale | HandleDrag

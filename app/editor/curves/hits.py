@@ -10,8 +10,8 @@ import numpy as np
 from ...graph import Animation, Interpolation, Keys, Port
 from ..toolkit.plane import Plane, Rect
 from .editing import Side, has_handle
-from .rows import CurveRow, Lane, Spot, spots_of
-from .shapes import Line, level
+from .rows import CurveRow, Lane, Spot, list_spots
+from .shapes import Line, read_key_channel
 
 REACH = 7.0
 """Pixels (at UI scale 1) from the middle of a key at which it can be grabbed."""
@@ -49,63 +49,67 @@ Entry = tuple[float, frozenset[Spot], Interpolation | None]
 """A frame, the keys there, and their shape: none for several."""
 
 
-class Entries:
-    """The keys of rows, made once for each animation."""
+class EntryCache:
+    """The keys of rows, cached until their animation changes."""
 
     def __init__(self) -> None:
-        self._known: dict[Port | str, tuple[tuple[Animation | None, ...], tuple[Entry, ...]]] = {}
+        self._entries: dict[Port | str, tuple[tuple[Animation | None, ...], tuple[Entry, ...]]] = {}
 
-    def of(self, row: CurveRow, animation: Mapping[Port, Animation]) -> tuple[Entry, ...]:
+    def list_entries(self, row: CurveRow, animation: Mapping[Port, Animation]) -> tuple[Entry, ...]:
         """The keys of a value, or of all values of a node."""
         name = row.port or row.node
-        made_of = tuple(animation.get(port) for port in row.ports)
-        before, found = self._known.get(name, ((), ()))
-        if len(before) != len(made_of) or any(a is not b for a, b in zip(before, made_of, strict=True)):
-            found = _of_value(row.port, made_of[0]) if row.port else _of_node(row.ports, made_of)
-            self._known[name] = made_of, found
-        return found
+        animations = tuple(animation.get(port) for port in row.ports)
+        old_animations, entries = self._entries.get(name, ((), ()))
+        if len(old_animations) != len(animations) or any(
+            a is not b for a, b in zip(old_animations, animations, strict=True)
+        ):
+            entries = (
+                _list_value_entries(row.port, animations[0]) if row.port else _list_node_entries(row.ports, animations)
+            )
+            self._entries[name] = animations, entries
+        return entries
 
 
-def sheet_marks(
+def find_sheet_marks(
     rows: Sequence[CurveRow],
     animation: Mapping[Port, Animation],
-    entries: Entries,
+    entries: EntryCache,
     plane: Plane,
     top: float,
     high: float,
 ) -> list[list[Mark]]:
-    """What is seen of the keys of every row; the first row begins at `top`, each is `high` pixels high."""
-    found: list[list[Mark]] = []
+    """The visible keys of every row; the first row begins at `top`, each is `high` pixels high."""
+    marks_by_row: list[list[Mark]] = []
     first, last = plane.frame(plane.rect[0] - _BEYOND), plane.frame(plane.rect[2] + _BEYOND)
     start, across = plane.x(0.0), plane.across
     for place, row in enumerate(rows):
         y = top + (place + 0.5) * high
-        found.append(
+        marks_by_row.append(
             []
             if y < plane.rect[1] - high or y > plane.rect[3] + high
             else [
                 Mark(start + frame * across, y, spots, look)
-                for frame, spots, look in entries.of(row, animation)
+                for frame, spots, look in entries.list_entries(row, animation)
                 if first <= frame <= last
             ]
         )
-    return found
+    return marks_by_row
 
 
-def tips(
+def find_tips(
     animation: Mapping[Port, Animation], spots: Iterable[Spot], hidden: Collection[Lane], plane: Plane
 ) -> list[Tip]:
-    """The handles of chosen keys, where the curve has some."""
-    found: list[Tip] = []
+    """The handles of the selected keys, where the curve has handles."""
+    handle_tips: list[Tip] = []
     for port, frame, channel in spots:
         keys = animation.get(port)
         if not isinstance(keys, Keys) or (port, channel) in hidden or keys.key(frame) is None:
             continue
         place = keys.frames.index(frame)
-        value = level(keys.keys[place], channel)
+        value = read_key_channel(keys.keys[place], channel)
         for side, handle in zip(SIDES, keys.handles(frame), strict=True):
             if handle and has_handle(keys, place, side):
-                found.append(
+                handle_tips.append(
                     Tip(
                         plane.x(frame + handle[0]),
                         plane.y(value + handle[1 + channel]),
@@ -116,31 +120,31 @@ def tips(
                         (plane.x(frame), plane.y(value)),
                     )
                 )
-    return found
+    return handle_tips
 
 
-def nearest(found: Iterable[M], x: float, y: float, reach: float) -> M | None:
+def find_nearest(candidates: Iterable[M], x: float, y: float, reach: float) -> M | None:
     """The mark or tip that is closest to a point and within reach; of equal ones the last, which is on top."""
     best: M | None = None
-    least = reach * reach
-    for one in found:
-        away = (one.x - x) ** 2 + (one.y - y) ** 2
-        if away <= least:
-            best, least = one, away
+    min_distance = reach * reach
+    for candidate in candidates:
+        distance = (candidate.x - x) ** 2 + (candidate.y - y) ** 2
+        if distance <= min_distance:
+            best, min_distance = candidate, distance
     return best
 
 
-def boxed(found: Iterable[Mark], box: Rect) -> frozenset[Spot]:
+def find_spots_in_box(marks: Iterable[Mark], box: Rect) -> frozenset[Spot]:
     """All keys with their middle in a rectangle."""
     left, top, right, bottom = min(box[0], box[2]), min(box[1], box[3]), max(box[0], box[2]), max(box[1], box[3])
     spots: set[Spot] = set()
-    for mark in found:
+    for mark in marks:
         if left <= mark.x <= right and top <= mark.y <= bottom:
             spots |= mark.spots
     return frozenset(spots)
 
 
-def line_at(lines: Iterable[tuple[K, Line]], x: float, y: float, reach: float) -> K | None:
+def find_line(lines: Iterable[tuple[K, Line]], x: float, y: float, reach: float) -> K | None:
     """The name of the line on the screen that passes closest to a point, within reach."""
     best: K | None = None
     for name, line in lines:
@@ -151,21 +155,21 @@ def line_at(lines: Iterable[tuple[K, Line]], x: float, y: float, reach: float) -
         starts, along = line[low:high], np.diff(line[low : high + 1], axis=0)
         to = np.array((x, y)) - starts
         part = np.clip((to * along).sum(axis=1) / np.maximum((along * along).sum(axis=1), 1e-12), 0.0, 1.0)
-        away = float(np.hypot(*(to - along * part[:, None]).T).min())
-        if away <= reach:
-            best, reach = name, away
+        distance = float(np.hypot(*(to - along * part[:, None]).T).min())
+        if distance <= reach:
+            best, reach = name, distance
     return best
 
 
-def _of_value(port: Port, animation: Animation | None) -> tuple[Entry, ...]:
+def _list_value_entries(port: Port, animation: Animation | None) -> tuple[Entry, ...]:
     if not isinstance(animation, Keys):
         return ()
-    return tuple((key.frame, spots_of(port, animation, (key.frame,)), key.interpolation) for key in animation.keys)
+    return tuple((key.frame, list_spots(port, animation, (key.frame,)), key.interpolation) for key in animation.keys)
 
 
-def _of_node(ports: Sequence[Port], animations: Sequence[Animation | None]) -> tuple[Entry, ...]:
-    found: dict[float, set[Spot]] = {}
+def _list_node_entries(ports: Sequence[Port], animations: Sequence[Animation | None]) -> tuple[Entry, ...]:
+    spots_by_frame: dict[float, set[Spot]] = {}
     for port, animation in zip(ports, animations, strict=True):
-        for frame, spots, _ in _of_value(port, animation):
-            found.setdefault(frame, set()).update(spots)
-    return tuple((frame, frozenset(found[frame]), None) for frame in sorted(found))
+        for frame, spots, _ in _list_value_entries(port, animation):
+            spots_by_frame.setdefault(frame, set()).update(spots)
+    return tuple((frame, frozenset(spots_by_frame[frame]), None) for frame in sorted(spots_by_frame))

@@ -1,8 +1,6 @@
-"""Numbers of the key that is chosen alone: its frame, its value, its handles."""
+"""Fields for the frame, the value and the handles of a single selected key."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 from halation.nodes import Value
 from imgui_bundle import imgui
@@ -17,30 +15,27 @@ from ..theme.style import ui_scale
 from ..toolkit.places import place
 from ..toolkit.words import write
 from . import commands
-from .editing import KeyEdit, has_handle, moved, with_number
+from .editing import KeyEdit, has_handle, move_keys, with_number
 from .frame import CurvesFrame
 from .hits import SIDES
-from .rows import spots_of
-
-if TYPE_CHECKING:
-    pass
+from .rows import list_spots
 
 _LABEL, _SHARE, _INF = 46.0, 0.6, float("inf")
 
 
 class KeyFields:
-    """Fields below the names."""
+    """The fields below the column of names."""
 
     def __init__(self) -> None:
         self._fields = Fields(DARK)
 
-    def height(self, frame: CurvesFrame) -> float:
-        """How high they are."""
-        rows = len(self._shown(frame))
-        return rows * self._line(frame) + 10.0 * frame.scale if rows else 0.0
+    def measure_height(self, frame: CurvesFrame) -> float:
+        """The height of the fields in pixels."""
+        rows = len(self._list_fitting_rows(frame))
+        return rows * self._measure_line(frame) + 10.0 * frame.scale if rows else 0.0
 
     def draw(self, frame: CurvesFrame, top: float) -> None:
-        """Draw them; what was changed goes into the graph."""
+        """Draw the fields, and apply edits to the graph."""
         context, fields = frame.context, self._fields
         fields.palette, fields.places = context.palette, context.places
         dragged = fields.dragging
@@ -48,7 +43,7 @@ class KeyFields:
         scale = ui_scale()
         left, _, right, _ = frame.list
         y = top + 6.0 * scale
-        for name, label, numbers, declaration in self._shown(frame):
+        for name, label, numbers, declaration in self._list_fitting_rows(frame):
             imgui.set_cursor_screen_pos((left + 8.0 * scale, y))
             rect = place(_LABEL * scale)
             write(rect, label, context.palette.dim)
@@ -59,7 +54,7 @@ class KeyFields:
             edit = row_of_numbers(fields, id, numbers, declaration, width, ("",) * len(numbers), keep_type=True)
             if edit:
                 context.log.attempt(lambda name=name, edit=edit: self._apply(frame, name, edit))
-            y += self._line(frame)
+            y += self._measure_line(frame)
         if dragged and not fields.dragging:
             context.session.seal()
         left_over = fields.end()
@@ -68,20 +63,20 @@ class KeyFields:
             context.log.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
         context.interface.dragging |= fields.dragging
 
-    def _line(self, frame: CurvesFrame) -> float:
+    def _measure_line(self, frame: CurvesFrame) -> float:
         return imgui.get_frame_height() + 3.0 * frame.scale
 
-    def _shown(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
-        """As many lines as leave room for the names."""
+    def _list_fitting_rows(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+        """As many rows as leave room for the names."""
         room = (frame.list[3] - frame.list[1]) * _SHARE - 10.0 * frame.scale
-        return self._rows(frame)[: max(int(room / self._line(frame)), 0)]
+        return self._list_rows(frame)[: max(int(room / self._measure_line(frame)), 0)]
 
-    def _rows(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+    def _list_rows(self, frame: CurvesFrame) -> list[tuple[str, str, tuple[float, ...], Value]]:
         """Name, label, numbers and declaration of every line."""
-        found = _found(frame)
-        if found is None:
+        single_key = _find_single_key(frame)
+        if single_key is None:
             return []
-        port, keys, at = found
+        port, keys, at = single_key
         index = keys.frames.index(at)
         key = keys.keys[index]
         declaration = declared(frame.graph.node(port.node), port.socket, port.node)
@@ -91,7 +86,7 @@ class KeyFields:
         if key.parts and len(key.parts) <= 4:
             kind = structs.replace(declaration, type="int" if declaration.type == "int" else "float")
             rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
-            if not frame.sheet and len(key.parts) == 1:
+            if not frame.is_sheet and len(key.parts) == 1:
                 loose = structs.replace(
                     kind,
                     type="float",
@@ -109,30 +104,30 @@ class KeyFields:
         return rows
 
     def _apply(self, frame: CurvesFrame, name: str, edit: Edit) -> None:
-        found = _found(frame)
-        if found is None or not isinstance(edit.value, tuple):
+        single_key = _find_single_key(frame)
+        if single_key is None or not isinstance(edit.value, tuple):
             return
-        port, keys, at = found
+        port, keys, at = single_key
         context, state = frame.context, frame.state
         numbers = edit.value
         if name == "frame":
-            change = moved(frame.graph.animation, spots_of(port, keys, (at,)), numbers[0] - at)
+            change = move_keys(frame.graph.animation, list_spots(port, keys, (at,)), numbers[0] - at)
         elif name == "value":
-            made = keys
+            new_keys = keys
             for channel, number in enumerate(numbers):
-                made = with_number(made, at, channel, number)
-            change = KeyEdit({port: made}, state.spots)
+                new_keys = with_number(new_keys, at, channel, number)
+            change = KeyEdit({port: new_keys}, state.spots)
         else:
             across = min(numbers[0], 0.0) if name == "left" else max(numbers[0], 0.0)
             handle = (across, *numbers[1:])
-            made = keys.with_handles(at, **{name: handle})
+            new_keys = keys.with_handles(at, **{name: handle})
             state.free.add((port, at))
-            change = KeyEdit({port: made}, state.spots)
-        commands.put(context, change.made, f"Set {name} of a key", edit.merge)
+            change = KeyEdit({port: new_keys}, state.spots)
+        commands.set_keys(context, change.new_keys, f"Set {name} of a key", edit.merge)
         state.spots = change.spots
 
 
-def _found(frame: CurvesFrame) -> tuple[Port, Keys, float] | None:
+def _find_single_key(frame: CurvesFrame) -> tuple[Port, Keys, float] | None:
     single = frame.state.single
     keys = frame.graph.animation.get(single[0]) if single else None
     if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:

@@ -1,4 +1,4 @@
-"""Draws keys, the ruler, the current frame, and what is chosen."""
+"""Draws keys, the ruler, the current frame and the selection."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from ...graph import Interpolation
 from ..theme.palette import Palette
 from ..theme.style import mix, u32
 from ..toolkit.plane import Rect, ticks
-from .editing import extent
-from .frame import CurvesFrame, small
+from .editing import find_frame_range
+from .frame import CurvesFrame, draw_small_text
 
 KEY = 5.0
 """Half the width of a key, at UI scale 1."""
@@ -29,16 +29,16 @@ def paint_key(draw: imgui.ImDrawList, x: float, y: float, size: float, look: Int
         draw.add_triangle_filled((x - wide, y + high), (x, y - 0.5), (x + wide, y + high), color)
 
 
-def ground(palette: Palette) -> int:
-    """Behind keys."""
+def find_background(palette: Palette) -> int:
+    """The color behind keys."""
     return u32(palette.canvas)
 
 
-def paint_time(frame: CurvesFrame) -> None:
+def paint_background(frame: CurvesFrame) -> None:
     """Behind everything: the frames of the graph lighter than what lies outside, and lines of the ruler."""
     draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
     left, top, right, bottom = plane.rect
-    draw.add_rect_filled((left, top), (right, bottom), ground(palette))
+    draw.add_rect_filled((left, top), (right, bottom), find_background(palette))
     first, last = frame.context.session.frames
     shade = u32(palette.shadow, 0.26 if palette.name == "dark" else 0.09)
     a, b = min(max(plane.x(first), left), right), min(max(plane.x(last), left), right)
@@ -69,7 +69,7 @@ def paint_ruler(frame: CurvesFrame) -> None:
         length = (6.0 if tick.label else 3.0) * scale
         draw.add_line((x, top), (x, top + length), line)
         if tick.label:
-            small(frame, x + 4.0 * scale, top + high * 0.5 + 1.0 * scale, tick.label, palette.text)
+            draw_small_text(frame, x + 4.0 * scale, top + high * 0.5 + 1.0 * scale, tick.label, palette.text)
     rate = session.root.settings.rate
     start = first / rate
     for tick in ticks(
@@ -77,11 +77,13 @@ def paint_ruler(frame: CurvesFrame) -> None:
     ):
         if tick.label:
             x = round(plane.x((tick.at + start) * rate)) + 0.5
-            small(frame, x + 4.0 * scale, top + high + (bottom - top - high) * 0.42, f"{tick.label} s", palette.dim)
+            draw_small_text(
+                frame, x + 4.0 * scale, top + high + (bottom - top - high) * 0.42, f"{tick.label} s", palette.dim
+            )
     draw.pop_clip_rect()
 
 
-def paint_now(frame: CurvesFrame, held: bool) -> None:
+def paint_current_frame(frame: CurvesFrame, held: bool) -> None:
     """The current frame, over everything."""
     draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
     left, top, right, bottom = frame.ruler
@@ -96,13 +98,13 @@ def paint_now(frame: CurvesFrame, held: bool) -> None:
     draw.add_line((x, top), (x, plane.rect[3]), color, (2.0 if held else 1.25) * scale)
     low = top + (bottom - top) * 0.56
     draw.add_rect_filled((x - wide, top + 1.0), (x + wide, low), color, 3.0 * scale)
-    small(frame, x, (top + 1.0 + low) * 0.5, text, palette.on_accent, align=0.5)
+    draw_small_text(frame, x, (top + 1.0 + low) * 0.5, text, palette.on_accent, align=0.5)
     draw.pop_clip_rect()
 
 
-def grips(frame: CurvesFrame) -> tuple[float, float, float] | None:
-    """Where the bar of the chosen keys begins and ends, and how wide its grips are; None without two frames."""
-    span = extent(frame.state.spots)
+def find_grips(frame: CurvesFrame) -> tuple[float, float, float] | None:
+    """Where the bar of the selected keys begins and ends, and how wide its grips are; None without two frames."""
+    span = find_frame_range(frame.state.spots)
     if span is None or span[1] <= span[0]:
         return None
     pad = (8.0 + 5.0) * frame.scale
@@ -110,14 +112,14 @@ def grips(frame: CurvesFrame) -> tuple[float, float, float] | None:
 
 
 def paint_bar(frame: CurvesFrame, hot: str) -> None:
-    """The bar above the keys: it spans what is chosen, its ends draw that out."""
+    """The bar above the keys: it spans the selected keys, and its ends scale them."""
     draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
     left, top, right, bottom = frame.bar
     draw.push_clip_rect((left, top), (right, bottom), True)
     draw.add_rect_filled((left, top), (right, bottom), u32(mix(palette.canvas, palette.window, 0.55)))
-    found = grips(frame)
-    if found:
-        start, end, grip = found
+    bar_grips = find_grips(frame)
+    if bar_grips:
+        start, end, grip = bar_grips
         low, high = top + 2.0 * scale, bottom - 2.0 * scale
         body = u32(palette.accent, 0.55 if hot == "bar" else 0.32)
         draw.add_rect_filled((start, low), (end, high), body, 3.0 * scale)
@@ -129,7 +131,7 @@ def paint_bar(frame: CurvesFrame, hot: str) -> None:
 
 
 def paint_box(frame: CurvesFrame, rect: Rect) -> None:
-    """What is being drawn around keys."""
+    """The selection box."""
     draw, palette = imgui.get_window_draw_list(), frame.context.palette
     low, high = (min(rect[0], rect[2]), min(rect[1], rect[3])), (max(rect[0], rect[2]), max(rect[1], rect[3]))
     draw.add_rect_filled(low, high, u32(palette.accent, 0.12))

@@ -1,4 +1,4 @@
-"""Draws curves: keys with their handles, what lies beyond them dimmer, expressions dashed."""
+"""Draws curves: keys with their handles, extrapolation dimmer, expressions dashed."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from imgui_bundle import ImVec2, imgui
 from ...graph import Interpolation, Port
 from ..theme.style import mix, u32
 from ..toolkit.plane import Plane, View, ticks
-from .bundle import Bundle, Bundles
-from .frame import CurvesFrame, color_of, small
+from .bundle import Bundle, BundleBuilder
+from .frame import CurvesFrame, color_of, draw_small_text
 from .hits import Mark, Tip
 from .paint import KEY, paint_key
 from .rows import CurveRow, Lane
-from .shapes import Pieces, Samples, dashes
+from .shapes import ExpressionSamples, Pieces, cut_dashes
 
-Drawn = list[imgui.ImVec2Like]
-
-
-CROWD = 400
-"""So many keys in view are all drawn alike: their shapes could not be told apart."""
+ScreenPoints = list[imgui.ImVec2Like]
 
 
-class Ways:
-    """Pieces on the screen: straight ways to a point, and bent ones by two handles. Few objects, for the many."""
+MAX_DISTINCT_KEYS = 400
+"""With more visible keys than this, all are drawn alike: their shapes are then too close to recognize."""
+
+
+class CurvePaths:
+    """Curve pieces on the screen: straight lines and cubics. Few Python objects hold all of the many pieces."""
 
     def __init__(self, screen: Pieces, bent: list[bool], cuts: list[int], lanes: list[tuple[Lane, bool]]) -> None:
         flat = list(map(ImVec2, screen[..., 0].ravel().tolist(), screen[..., 1].ravel().tolist()))
@@ -36,108 +36,114 @@ class Ways:
     def draw(
         self, draw: imgui.ImDrawList, inks: Mapping[Lane, tuple[int, int]], lit: Lane | None, scale: float
     ) -> None:
-        """Draw them, in the color of their lane inside or outside of its keys."""
+        """Draw the pieces in the colors of their lanes, dimmer outside of the keys."""
         to, bend, stroke = draw.path_line_to, draw.path_bezier_cubic_curve_to, draw.path_stroke
-        starts, ones, twos, ends = self._points
+        starts, first_handles, second_handles, ends = self._points
         for (lane, beyond), begin, stop in zip(self._lanes, self._cuts, self._cuts[1:], strict=False):
             if begin == stop:
                 continue
             to(starts[begin])
-            pieces = zip(ones[begin:stop], twos[begin:stop], ends[begin:stop], self._bent[begin:stop], strict=True)
-            for one, two, end, bends in pieces:
+            pieces = zip(
+                first_handles[begin:stop],
+                second_handles[begin:stop],
+                ends[begin:stop],
+                self._bent[begin:stop],
+                strict=True,
+            )
+            for first, second, end, bends in pieces:
                 if bends:
-                    bend(one, two, end)
+                    bend(first, second, end)
                 else:
                     to(end)
             stroke(inks[lane][beyond], (2.5 if lane == lit and not beyond else 1.6) * scale)
 
 
 class Plot:
-    """Knows the curves of all values that are shown, and where they are on the screen as long as nothing moves."""
+    """The curves of all visible values, with cached positions on the screen."""
 
     def __init__(self) -> None:
-        self.samples = Samples()
-        self._bundles = Bundles()
+        self.samples = ExpressionSamples()
+        self._builder = BundleBuilder()
         self._bundle = Bundle()
-        self._seen = self._bundle.seen(Plane(View(), (0.0, 0.0, 1.0, 1.0)))
-        self._made_of: tuple[object, ...] = ()
-        self._seen_of: tuple[object, ...] = ()
-        self._chosen_of: tuple[object, ...] = ()
-        self._inks_of: tuple[object, ...] = ()
-        self._ways: list[Ways] = []
-        self._dashes: list[tuple[Lane, Drawn]] = []
+        self._visible = self._bundle.project(Plane(View(), (0.0, 0.0, 1.0, 1.0)))
+        self._bundle_inputs: tuple[object, ...] = ()
+        self._visible_inputs: tuple[object, ...] = ()
+        self._chosen_inputs: tuple[object, ...] = ()
+        self._ink_inputs: tuple[object, ...] = ()
+        self._paths: list[CurvePaths] = []
+        self._dashes: list[tuple[Lane, ScreenPoints]] = []
         self._keys: tuple[list[float], list[float], list[Interpolation], list[int]] = [], [], [], []
-        """The keys that are seen: places, shapes, and the numbers of their channels."""
+        """The visible keys: places, shapes, and the numbers of their channels."""
         self._chosen: list[bool] = []
         self._inks: dict[Lane, tuple[int, int]] = {}
 
-    def see(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> None:
-        """Find curves and keys on the screen; nothing is made anew while nothing has changed."""
+    def update(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> None:
+        """Update curves and keys on the screen; unchanged parts come from the caches."""
         hidden = frozenset(frame.state.hidden)
-        if not _same(self._made_of[:1], (rows,)) or self._made_of[1:] != (hidden,):
-            self._made_of = rows, hidden
-            self._bundle = self._bundles.make(rows, hidden)
+        if not _is_same(self._bundle_inputs[:1], (rows,)) or self._bundle_inputs[1:] != (hidden,):
+            self._bundle_inputs = rows, hidden
+            self._bundle = self._builder.make(rows, hidden)
         graph = frame.graph
-        of = self._bundle, graph.animation, graph.nodes, graph.controls, frame.context.session.settings
-        also = frame.plane, frame.scale
-        if not _same(self._seen_of[:5], of) or self._seen_of[5:] != also:
-            self._seen_of = *of, *also
+        inputs = self._bundle, graph.animation, graph.nodes, graph.controls, frame.context.session.settings
+        view_inputs = frame.plane, frame.scale
+        if not _is_same(self._visible_inputs[:5], inputs) or self._visible_inputs[5:] != view_inputs:
+            self._visible_inputs = *inputs, *view_inputs
             self._project(frame, rows)
         spots = frame.state.spots
-        seen = self._seen
-        if not _same(self._chosen_of, (self._bundle, spots)):
-            self._chosen_of = self._bundle, spots
-            self._chosen = [not spots.isdisjoint(one) for one in self._bundle.spots] if spots else []
-        frame.marks, frame.count, frame.lane_at = seen.marks, len(seen.shown), seen.lane_at
-        frame.near = lambda x, y, reach: seen.near(x, y, reach, spots)
+        visible = self._visible
+        if not _is_same(self._chosen_inputs, (self._bundle, spots)):
+            self._chosen_inputs = self._bundle, spots
+            self._chosen = [not spots.isdisjoint(key_spots) for key_spots in self._bundle.spots] if spots else []
+        frame.list_marks, frame.count, frame.find_lane = visible.list_marks, len(visible.key_indices), visible.find_lane
+        frame.find_mark = lambda x, y, reach: visible.find_mark(x, y, reach, spots)
 
     def _project(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> None:
-        """Put everything on the screen."""
+        """Project curves and keys to the screen."""
         bundle = self._bundle
-        seen = self._seen = bundle.seen(frame.plane)
-        of, ends, bent, cuts = bundle.ends(frame.plane)
-        self._ways = [
-            Ways(ends, bent.tolist(), cuts, [(bundle.lanes[one], True) for one in of]),
-            Ways(seen.screen, seen.bent.tolist(), seen.cuts, [(lane, False) for lane in bundle.lanes]),
+        visible = self._visible = bundle.project(frame.plane)
+        lane_indices, ends, bent, cuts = bundle.project_outside(frame.plane)
+        self._paths = [
+            CurvePaths(ends, bent.tolist(), cuts, [(bundle.lanes[lane_index], True) for lane_index in lane_indices]),
+            CurvePaths(visible.screen, visible.bent.tolist(), visible.cuts, [(lane, False) for lane in bundle.lanes]),
         ]
-        looks = [bundle.looks[key] for key in seen.shown.tolist()]
-        self._keys = seen.xs.tolist(), seen.ys.tolist(), looks, bundle.key_of[seen.shown].tolist()
+        looks = [bundle.looks[key] for key in visible.key_indices.tolist()]
+        self._keys = visible.xs.tolist(), visible.ys.tolist(), looks, bundle.key_of[visible.key_indices].tolist()
         self._dashes = [
             dash
             for row in rows
             if row.port and row.keys is None
             for channel in range(len(row.channels) or 1)
             if (row.port, channel) not in frame.state.hidden
-            for dash in self._dashed(frame, row.port, channel)
+            for dash in self._make_dashes(frame, row.port, channel)
         ]
 
-    def _dashed(self, frame: CurvesFrame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:
+    def _make_dashes(self, frame: CurvesFrame, port: Port, channel: int) -> list[tuple[Lane, ScreenPoints]]:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
-        found: list[tuple[Lane, Drawn]] = []
+        lane_dashes: list[tuple[Lane, ScreenPoints]] = []
         lane = port, channel
         settings = frame.context.session.settings
-        for line in self.samples.line(frame.graph, settings, port, channel, view.first, view.last):
+        for line in self.samples.sample_lines(frame.graph, settings, port, channel, view.first, view.last):
             line[:, 0] = plane.rect[0] + (line[:, 0] - view.first) * plane.across
             line[:, 1] = (plane.rect[3] - (line[:, 1] - view.low) * plane.up).clip(-1e6, 1e6)
-            for dash in dashes(line, 6.0 * scale, 4.0 * scale):
-                found.append((lane, list(map(ImVec2, *dash.T.tolist()))))
-        return found
+            for dash in cut_dashes(line, 6.0 * scale, 4.0 * scale):
+                lane_dashes.append((lane, list(map(ImVec2, *dash.T.tolist()))))
+        return lane_dashes
 
     # --- painting ----------------------------------------------------------------------------------------------------
 
     def paint(self, frame: CurvesFrame, rows: tuple[CurveRow, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
         """Draw the grid of values, the curves, and on top of them keys and handles."""
         draw, scale = imgui.get_window_draw_list(), frame.scale
-        inks = self._colors(frame, rows)
-        for ways in self._ways:
+        inks = self._choose_inks(frame, rows)
+        for ways in self._paths:
             ways.draw(draw, inks, lit, scale)
         for lane, dash in self._dashes:
             draw.add_polyline(dash, inks[lane][0], 1.6 * scale, 0)
-        self._tips(frame)
+        self._paint_tips(frame)
         palette, size = frame.context.palette, KEY * scale * 0.85
         colors = [inks[lane][0] for lane in self._bundle.lanes]
-        chosen = [self._chosen[key] for key in self._seen.shown.tolist()] if self._chosen else None
-        if chosen is None and len(colors) and len(self._keys[0]) > CROWD:
+        chosen = [self._chosen[key] for key in self._visible.key_indices.tolist()] if self._chosen else None
+        if chosen is None and len(colors) and len(self._keys[0]) > MAX_DISTINCT_KEYS:
             mark = draw.add_ngon_filled
             for x, y, _, of in zip(*self._keys, strict=True):
                 mark((x, y), size, colors[of], 4)
@@ -154,20 +160,20 @@ class Plot:
         if hot:
             draw.add_circle((hot.x, hot.y), size * 1.9, u32(palette.accent, 0.9), 20, 1.5 * scale)
 
-    def _colors(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> dict[Lane, tuple[int, int]]:
-        """What curves are drawn with inside and outside of their keys."""
-        of = frame.rows, rows, frame.context.palette
-        if not _same(self._inks_of, of):
-            self._inks_of, self._inks = of, {}
-            shown = {row.port for row in rows}
+    def _choose_inks(self, frame: CurvesFrame, rows: tuple[CurveRow, ...]) -> dict[Lane, tuple[int, int]]:
+        """The colors of curves inside and outside of their keys."""
+        inputs = frame.rows, rows, frame.context.palette
+        if not _is_same(self._ink_inputs, inputs):
+            self._ink_inputs, self._inks = inputs, {}
+            visible_ports = {row.port for row in rows}
             for place, row in enumerate(row for row in frame.rows if row.port):
                 for channel in range(len(row.channels) or 1):
-                    if row.port and row.port in shown:
+                    if row.port and row.port in visible_ports:
                         color = color_of(frame.context, row, channel, place)
                         self._inks[row.port, channel] = u32(color), u32(color, 0.32)
         return self._inks
 
-    def grid(self, frame: CurvesFrame) -> None:
+    def paint_grid(self, frame: CurvesFrame) -> None:
         """Lines of values."""
         draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
         left, _, right, _ = plane.rect
@@ -177,7 +183,7 @@ class Plot:
             y = round(plane.y(tick.at)) + 0.5
             draw.add_line((left, y), (right, y), zero if abs(tick.at) < 1e-12 else strong if tick.label else faint)
 
-    def labels(self, frame: CurvesFrame) -> None:
+    def paint_labels(self, frame: CurvesFrame) -> None:
         """The numbers of the lines of values, over the curves."""
         draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
         left, top, _, bottom = plane.rect
@@ -190,9 +196,9 @@ class Plot:
             draw.add_rect_filled(
                 (left + 2.0 * scale, y - half), (left + 10.0 * scale + wide, y + half), ground, 3.0 * scale
             )
-            small(frame, left + 6.0 * scale, y, tick.label, palette.dim)
+            draw_small_text(frame, left + 6.0 * scale, y, tick.label, palette.dim)
 
-    def _tips(self, frame: CurvesFrame) -> None:
+    def _paint_tips(self, frame: CurvesFrame) -> None:
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         line, fill = u32(palette.text, 0.55), u32(palette.text)
         for tip in frame.tips:
@@ -201,5 +207,5 @@ class Plot:
             draw.add_circle_filled((tip.x, tip.y), 1.9 * scale, u32(palette.canvas), 10)
 
 
-def _same(before: tuple[object, ...], now: tuple[object, ...]) -> bool:
-    return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))
+def _is_same(before: tuple[object, ...], after: tuple[object, ...]) -> bool:
+    return len(before) == len(after) and all(a is b for a, b in zip(before, after, strict=True))

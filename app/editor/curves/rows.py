@@ -1,4 +1,4 @@
-"""The values that change over time, as rows grouped by node. Nothing here draws."""
+"""Animated values as rows, grouped by node. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ class CurveRow:
     label: str
     animation: Animation | None
     ports: tuple[Port, ...]
-    """The values that it stands for."""
+    """The values in this row."""
     channels: str = ""
-    """The names of the channels: of one number there is none."""
+    """The letters of the channels; empty for a single number."""
 
     @property
     def keys(self) -> Keys | None:
-        """Its keys, if it has some."""
+        """The keys of the value, or None."""
         return self.animation if isinstance(self.animation, Keys) else None
 
 
-def rows(
+def make_rows(
     graph: Graph, selection: Collection[str] = (), only: bool = False, folded: Collection[str] = ()
 ) -> tuple[CurveRow, ...]:
     """A row for every node and every value of it that is animated: selected nodes first, or `only` those."""
@@ -47,22 +47,24 @@ def rows(
         if port.node in graph.nodes:
             by_node.setdefault(port.node, []).append(port)
     order = {id: place for place, id in enumerate(graph.nodes)}
-    found: list[CurveRow] = []
+    curve_rows: list[CurveRow] = []
     for node in sorted(by_node, key=lambda id: (id not in selection, order[id])):
         if only and node not in selection:
             continue
-        names = list(_names(graph, node))
-        ports = tuple(sorted(by_node[node], key=lambda port: _place(names, port.socket)))
-        found.append(CurveRow(node, None, node, None, ports))
+        names = list(_list_value_names(graph, node))
+        ports = tuple(sorted(by_node[node], key=lambda port: _make_sort_key(names, port.socket)))
+        curve_rows.append(CurveRow(node, None, node, None, ports))
         if node not in folded:
-            found.extend(
-                CurveRow(node, port, value_label(graph, port), graph.animation[port], (port,), channels(graph, port))
+            curve_rows.extend(
+                CurveRow(
+                    node, port, value_label(graph, port), graph.animation[port], (port,), name_channels(graph, port)
+                )
                 for port in ports
             )
-    return tuple(found)
+    return tuple(curve_rows)
 
 
-def channels(graph: Graph, port: Port) -> str:
+def name_channels(graph: Graph, port: Port) -> str:
     """The letters of the channels that a value has; none for one number."""
     try:
         value = declared(graph.node(port.node), port.socket, port.node)
@@ -74,12 +76,12 @@ def channels(graph: Graph, port: Port) -> str:
     return letters[: len(value.default)] if len(value.default) <= 4 else "abcdefghijklmnop"[: len(value.default)]
 
 
-def width(graph: Graph, port: Port) -> int:
-    """How many numbers a value has."""
-    return len(channels(graph, port)) or 1
+def count_channels(graph: Graph, port: Port) -> int:
+    """The number of channels of a value."""
+    return len(name_channels(graph, port)) or 1
 
 
-def spots_of(port: Port, keys: Keys, frames: Iterable[float] | None = None) -> frozenset[Spot]:
+def list_spots(port: Port, keys: Keys, frames: Iterable[float] | None = None) -> frozenset[Spot]:
     """All channels of the keys at those frames, or of all."""
     count = max((len(key.parts) for key in keys.keys), default=0) or 1
     return frozenset(
@@ -87,8 +89,8 @@ def spots_of(port: Port, keys: Keys, frames: Iterable[float] | None = None) -> f
     )
 
 
-def limits(graph: Graph, port: Port) -> tuple[float, float]:
-    """What the numbers of a value cannot leave."""
+def find_limits(graph: Graph, port: Port) -> tuple[float, float]:
+    """The smallest and the largest number that a value may have."""
     try:
         value = declared(graph.node(port.node), port.socket, port.node)
     except GraphError:
@@ -96,10 +98,10 @@ def limits(graph: Graph, port: Port) -> tuple[float, float]:
     return value.minimum, value.maximum
 
 
-def _names(graph: Graph, node: str) -> Iterable[str]:
-    item = graph.nodes[node]
-    return getattr(item, "values", {})
+def _list_value_names(graph: Graph, node: str) -> Iterable[str]:
+    graph_item = graph.nodes[node]
+    return getattr(graph_item, "values", {})
 
 
-def _place(names: list[str], name: str) -> tuple[int, str]:
+def _make_sort_key(names: list[str], name: str) -> tuple[int, str]:
     return (names.index(name) if name in names else len(names)), name

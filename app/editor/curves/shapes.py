@@ -1,6 +1,6 @@
-"""What curves look like: keys as cubic pieces, pieces as points no finer than the screen. Nothing here draws.
+"""Shapes of curves: keys as cubic pieces, pieces as points no finer than the screen. Nothing here draws.
 
-Every way from key to key is a cubic in (frame, value), so its pieces are exact: `Keys.at` lies on them.
+Every segment between two keys is a cubic in (frame, value), so its pieces are exact: `Keys.at` lies on them.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ Line = NDArray[np.float64]
 """Points [n, 2]."""
 
 TOLERANCE = 0.15
-"""Pixels that a drawn curve may be off."""
+"""The largest error of a drawn curve, in pixels."""
 
 _MOST, _REPEATS, _SAMPLES = 1024, 64, 240
 
 
-def level(key: Key, channel: int) -> float:
+def read_key_channel(key: Key, channel: int) -> float:
     """A channel of a key as a number: of a switch, 0 or 1."""
     return key.parts[channel] if channel < len(key.parts) else float(bool(key.value))
 
 
-def runs(keys: Keys, place: int) -> bool:
+def is_interpolated(keys: Keys, place: int) -> bool:
     """True if the value goes from the key of that place to the next one, rather than being held."""
     key = keys.keys[place]
     return (
@@ -43,20 +43,20 @@ def runs(keys: Keys, place: int) -> bool:
     )
 
 
-def pieces(keys: Keys, channel: int) -> Pieces:
+def make_pieces(keys: Keys, channel: int) -> Pieces:
     """A channel between the first and the last key."""
-    return all_pieces(keys)[channel]
+    return make_all_pieces(keys)[channel]
 
 
-def all_pieces(keys: Keys) -> list[Pieces]:
+def make_all_pieces(keys: Keys) -> list[Pieces]:
     """Every channel between the first and the last key."""
     count = max((len(key.parts) for key in keys.keys), default=0) or 1
-    found: list[tuple[tuple[float, ...], ...]] = []
-    all = [(key.frame, *(level(key, channel) for channel in range(count))) for key in keys.keys]
-    going = [runs(keys, place) for place in range(len(all))]
-    bezier = [on and keys.keys[place].interpolation == "bezier" for place, on in enumerate(going)]
-    smooth = [on and keys.keys[place].interpolation == "smooth" for place, on in enumerate(going)]
-    hands = [
+    cubics: list[tuple[tuple[float, ...], ...]] = []
+    key_points = [(key.frame, *(read_key_channel(key, channel) for channel in range(count))) for key in keys.keys]
+    interpolated = [is_interpolated(keys, place) for place in range(len(key_points))]
+    bezier = [on and keys.keys[place].interpolation == "bezier" for place, on in enumerate(interpolated)]
+    smooth = [on and keys.keys[place].interpolation == "smooth" for place, on in enumerate(interpolated)]
+    handles = [
         keys.handles(frame) if bezier[place] or (place and bezier[place - 1]) else ((), ())
         for place, frame in enumerate(keys.frames)
     ]
@@ -64,37 +64,41 @@ def all_pieces(keys: Keys) -> list[Pieces]:
         keys.slopes(frame) if smooth[place] or (place and smooth[place - 1]) else ()
         for place, frame in enumerate(keys.frames)
     ]
-    for place, (a, b) in enumerate(pairwise(all)):
-        if not going[place]:
+    for place, (a, b) in enumerate(pairwise(key_points)):
+        if not interpolated[place]:
             corner = b[0], *a[1:]
-            found += [(a, a, corner, corner), (corner, corner, b, b)]
+            cubics += [(a, a, corner, corner), (corner, corner, b, b)]
         elif bezier[place]:
-            found.append((a, _plus(a, hands[place][1]), _plus(b, hands[place + 1][0]), b))
+            cubics.append((a, _add(a, handles[place][1]), _add(b, handles[place + 1][0]), b))
         elif smooth[place]:
             third = (b[0] - a[0]) / 3.0
             out = third, *(third * slope for slope in slopes[place])
             back = -third, *(-third * slope for slope in slopes[place + 1])
-            found.append((a, _plus(a, out), _plus(b, back), b))
+            cubics.append((a, _add(a, out), _add(b, back), b))
         else:
-            found.append((a, a, b, b))
-    whole = np.array(found, np.float64).reshape(-1, 4, 1 + count)
+            cubics.append((a, a, b, b))
+    whole = np.array(cubics, np.float64).reshape(-1, 4, 1 + count)
     return [np.ascontiguousarray(whole[..., (0, 1 + channel)]) for channel in range(count)]
 
 
-def outside(keys: Keys, channel: int, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
+def make_outside_pieces(keys: Keys, channel: int, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
     """A channel before the first key, from the frame `first`, and after the last one, to the frame `last`."""
     start, end = keys.frames[0], keys.frames[-1]
     if keys.outside in ("loop", "mirror") and end > start:
-        return _repeated(keys, inner, first, last)
+        return _repeat_pieces(keys, inner, first, last)
     before, after = np.empty((0, 4, 2)), np.empty((0, 4, 2))
     if first < start:
-        before = _straight((first, number(keys.at(first), channel)), (start, level(keys.keys[0], channel)))
+        before = _make_straight(
+            (first, read_channel(keys.at(first), channel)), (start, read_key_channel(keys.keys[0], channel))
+        )
     if last > end:
-        after = _straight((end, level(keys.keys[-1], channel)), (last, number(keys.at(last), channel)))
+        after = _make_straight(
+            (end, read_key_channel(keys.keys[-1], channel)), (last, read_channel(keys.at(last), channel))
+        )
     return before, after
 
 
-def number(value: object, channel: int) -> float:
+def read_channel(value: object, channel: int) -> float:
     """A channel of a value."""
     part = value[channel] if isinstance(value, tuple) else value
     return float(part) if isinstance(part, int | float) else 0.0
@@ -105,7 +109,7 @@ def is_straight(curve: Pieces) -> NDArray[np.bool_]:
     return (curve[:, 0] == curve[:, 1]).all(axis=1) & (curve[:, 2] == curve[:, 3]).all(axis=1)
 
 
-def on_screen(
+def project_pieces(
     curve: Pieces, plane: Plane, straight: NDArray[np.bool_] | None = None
 ) -> tuple[Pieces, NDArray[np.bool_]]:
     """Pieces in pixels, and which of them are bent where they can be seen."""
@@ -117,100 +121,106 @@ def on_screen(
     return screen, ~(unseen | (is_straight(curve) if straight is None else straight))
 
 
-def points(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
+def flatten_curves(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
     """Every curve as points on the screen, as far as it is seen: none where nothing of it is."""
     view = plane.view
-    kept = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
-    screen, bent = on_screen(np.concatenate([np.empty((0, 4, 2)), *kept]), plane)
+    visible_curves = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
+    screen, bent = project_pieces(np.concatenate([np.empty((0, 4, 2)), *visible_curves]), plane)
     if not len(screen):
-        return [np.empty((0, 2)) for _ in kept]
+        return [np.empty((0, 2)) for _ in visible_curves]
     p0, p1, p2, p3 = (screen[:, place] for place in range(4))
     bend = np.maximum(np.hypot(*(p0 - 2.0 * p1 + p2).T), np.hypot(*(p1 - 2.0 * p2 + p3).T)) * bent
     count = np.clip(np.ceil(np.sqrt(0.75 * bend / TOLERANCE)), 1, _MOST).astype(np.int64)
     ends = np.cumsum(count)
-    of = np.repeat(np.arange(len(count)), count)
-    t = ((np.arange(ends[-1]) - (ends - count)[of] + 1) / count[of])[:, None]
+    piece_of = np.repeat(np.arange(len(count)), count)
+    t = ((np.arange(ends[-1]) - (ends - count)[piece_of] + 1) / count[piece_of])[:, None]
     v = 1.0 - t
-    made = v**3 * p0[of] + 3.0 * v * v * t * p1[of] + 3.0 * v * t * t * p2[of] + t**3 * p3[of]
-    found: list[Line] = []
+    curve_points = (
+        v**3 * p0[piece_of] + 3.0 * v * v * t * p1[piece_of] + 3.0 * v * t * t * p2[piece_of] + t**3 * p3[piece_of]
+    )
+    lines: list[Line] = []
     place = 0
-    for curve in kept:
+    for curve in visible_curves:
         if len(curve):
             begin = ends[place] - count[place]
-            found.append(np.concatenate([p0[place : place + 1], made[begin : ends[place + len(curve) - 1]]]))
+            lines.append(np.concatenate([p0[place : place + 1], curve_points[begin : ends[place + len(curve) - 1]]]))
         else:
-            found.append(np.empty((0, 2)))
+            lines.append(np.empty((0, 2)))
         place += len(curve)
-    return found
+    return lines
 
 
-class Samples:
+class ExpressionSamples:
     """An expression at whole frames, each computed once until the graph changes."""
 
     def __init__(self) -> None:
-        self._of: tuple[object, ...] = ()
+        self._inputs: tuple[object, ...] = ()
         self._graph = Graph()
-        self._known: dict[tuple[Port, int], object] = {}
+        self._values: dict[tuple[Port, int], object] = {}
 
-    def line(self, graph: Graph, settings: Settings, port: Port, channel: int, first: float, last: float) -> list[Line]:
+    def sample_lines(
+        self, graph: Graph, settings: Settings, port: Port, channel: int, first: float, last: float
+    ) -> list[Line]:
         """Points (frame, value), one line for each run of frames that has a value; fewer where there are many."""
-        of = graph.nodes, graph.animation, graph.controls, settings
-        if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):
-            self._of, self._known, self._graph = of, {}, replace(graph, settings=settings)
+        inputs = graph.nodes, graph.animation, graph.controls, settings
+        if len(inputs) != len(self._inputs) or any(a is not b for a, b in zip(inputs, self._inputs, strict=True)):
+            self._inputs, self._values, self._graph = inputs, {}, replace(graph, settings=settings)
         stride = 1
         while (last - first) / stride > _SAMPLES:
             stride *= 2
-        found: list[list[tuple[float, float]]] = [[]]
+        runs: list[list[tuple[float, float]]] = [[]]
         for frame in range(int(first // stride) * stride, int(last) + stride + 1, stride):
-            value = self._at(port, frame)
+            value = self._evaluate(port, frame)
             if value is not None:
-                found[-1].append((float(frame), number(value, channel)))
-            elif found[-1]:
-                found.append([])
-        return [np.array(run, np.float64) for run in found if run]
+                runs[-1].append((float(frame), read_channel(value, channel)))
+            elif runs[-1]:
+                runs.append([])
+        return [np.array(run, np.float64) for run in runs if run]
 
-    def _at(self, port: Port, frame: int) -> object:
-        if (port, frame) not in self._known:
+    def _evaluate(self, port: Port, frame: int) -> object:
+        if (port, frame) not in self._values:
             try:
-                self._known[port, frame] = value_at(self._graph, port, frame)
+                self._values[port, frame] = value_at(self._graph, port, frame)
             except GraphError:
-                self._known[port, frame] = None
-        return self._known[port, frame]
+                self._values[port, frame] = None
+        return self._values[port, frame]
 
 
-def dashes(line: Line, on: float, off: float) -> list[Line]:
+def cut_dashes(line: Line, on: float, off: float) -> list[Line]:
     """A line cut into dashes, on the screen."""
     if len(line) < 2:
         return []
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
-    found: list[Line] = []
+    dash_lines: list[Line] = []
     for begin in np.arange(0.0, along[-1], on + off)[:2000]:
         end = min(begin + on, along[-1])
         a, b = np.searchsorted(along, begin, "right"), np.searchsorted(along, end)
         corners = [begin, *along[a:b], end]
-        found.append(np.stack([np.interp(corners, along, line[:, axis]) for axis in (0, 1)], axis=1))
-    return found
+        dash_lines.append(np.stack([np.interp(corners, along, line[:, axis]) for axis in (0, 1)], axis=1))
+    return dash_lines
 
 
-def heights(keys: Keys, channel: int, at: Callable[[Key], bool] = lambda key: True) -> tuple[float, float] | None:
-    """The least and the highest that a channel comes to, around the keys that `at` names."""
-    chosen = [key for key in keys.keys if at(key)]
-    if not chosen:
+def find_value_range(
+    keys: Keys, channel: int, at: Callable[[Key], bool] = lambda key: True
+) -> tuple[float, float] | None:
+    """The lowest and the highest value of a channel, over the keys for which `at` is true."""
+    chosen_keys = [key for key in keys.keys if at(key)]
+    if not chosen_keys:
         return None
-    found = [level(key, channel) for key in chosen]
-    inner = pieces(keys, channel)
-    frames = {key.frame for key in chosen}
+    numbers = [read_key_channel(key, channel) for key in chosen_keys]
+    inner = make_pieces(keys, channel)
+    frames = {key.frame for key in chosen_keys}
     near = [piece for piece in inner if piece[0, 0] < piece[3, 0] and {piece[0, 0], piece[3, 0]} <= frames]
-    found += [float(part) for piece in near for part in piece[1:3, 1]]
-    return min(found), max(found)
+    numbers += [float(part) for piece in near for part in piece[1:3, 1]]
+    return min(numbers), max(numbers)
 
 
-def _straight(start: tuple[float, float], end: tuple[float, float]) -> Pieces:
+def _make_straight(start: tuple[float, float], end: tuple[float, float]) -> Pieces:
     return np.array([(start, start, end, end)], np.float64)
 
 
-def _repeated(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
-    """What lies between the ends, over and over or to and fro, as often as it is seen."""
+def _repeat_pieces(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
+    """The pieces between the ends, repeated forwards or to and fro over the visible frames."""
     start, end = keys.frames[0], keys.frames[-1]
     span = end - start
     back = inner[::-1, ::-1].copy()
@@ -218,23 +228,23 @@ def _repeated(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pie
     before = min(int(max(start - first, 0.0) // span) + 1, _REPEATS) if first < start else 0
     after = min(int(max(last - end, 0.0) // span) + 1, _REPEATS) if last > end else 0
 
-    jump = _straight((start, inner[-1, 3, 1]), (start, inner[0, 0, 1]))
+    jump = _make_straight((start, inner[-1, 3, 1]), (start, inner[0, 0, 1]))
 
-    def copies(turns: range) -> list[Pieces]:
-        made: list[Pieces] = []
+    def repeat(turns: range) -> list[Pieces]:
+        repeats: list[Pieces] = []
         for turn in turns:
             later = np.array((turn * span, 0.0))
             if keys.outside == "loop":
-                made.append(jump + later)
-            made.append((back if keys.outside == "mirror" and turn % 2 else inner) + later)
-        return made
+                repeats.append(jump + later)
+            repeats.append((back if keys.outside == "mirror" and turn % 2 else inner) + later)
+        return repeats
 
-    ahead, behind = copies(range(1, after + 1)), copies(range(-before, 0))
+    ahead, behind = repeat(range(1, after + 1)), repeat(range(-before, 0))
     if behind and keys.outside == "loop":
         behind.append(jump)
     none = np.empty((0, 4, 2))
     return np.concatenate([none, *behind]), np.concatenate([none, *ahead])
 
 
-def _plus(point: tuple[float, ...], offset: tuple[float, ...]) -> tuple[float, ...]:
+def _add(point: tuple[float, ...], offset: tuple[float, ...]) -> tuple[float, ...]:
     return tuple(a + b for a, b in zip(point, offset, strict=True))

@@ -1,4 +1,4 @@
-"""What the panel shows and what is chosen in it. Nothing here draws."""
+"""The state of the Animation panel: view, rows and selection. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Literal
 
 from ...graph import Graph, Keys, Port
 from ..toolkit.plane import View
-from .rows import CurveRow, Spot, rows
+from .rows import CurveRow, Spot, make_rows
 
 Mode = Literal["sheet", "curves"]
 Fit = Literal["", "all", "chosen"]
@@ -15,12 +15,12 @@ Fit = Literal["", "all", "chosen"]
 
 @dataclass
 class CurvesState:
-    """The Animation panel. Both modes share the view, the rows and the chosen keys."""
+    """The Animation panel. Both modes share the view, the rows and the selected keys."""
 
     mode: Mode = "sheet"
     view: View = field(default_factory=View)
-    wanted: Fit = "all"
-    """What is to be brought into view when next drawn."""
+    pending_fit: Fit = "all"
+    """What to fit into the view in the next frame."""
     scroll: float = 0.0
     """Pixels that the rows are scrolled."""
     only_selected: bool = False
@@ -28,9 +28,9 @@ class CurvesState:
     snap: bool = True
     """True keeps moved keys on whole frames."""
     spots: frozenset[Spot] = frozenset()
-    """The chosen channels of keys."""
-    shown: frozenset[Port] = frozenset()
-    """The chosen rows: their curves are drawn. None means all."""
+    """The selected channels of keys."""
+    chosen_rows: frozenset[Port] = frozenset()
+    """The selected rows: their curves are drawn. Empty means all."""
     anchor: Port | None = None
     """The row from which Shift extends."""
     folded: set[str] = field(default_factory=set[str])
@@ -42,47 +42,52 @@ class CurvesState:
     """True while the mouse is over the panel."""
     _rows: tuple[tuple[object, ...], tuple[CurveRow, ...]] = ((), ())
     _curves: tuple[tuple[CurveRow, ...] | None, frozenset[Port] | None, tuple[CurveRow, ...]] = (None, None, ())
-    _kept: tuple[object, ...] = ()
+    _tidied: tuple[object, ...] = ()
 
-    def rows(self, graph: Graph, selection: frozenset[str]) -> tuple[CurveRow, ...]:
-        """The rows, made again only when something has changed."""
-        asked = (self.only_selected, frozenset(self.folded), selection)
-        of = (graph.animation, graph.nodes, asked)
-        known = self._rows[0]
-        if len(known) != 3 or known[0] is not of[0] or known[1] is not of[1] or known[2] != asked:
-            self._rows = of, rows(graph, selection, self.only_selected, self.folded)
+    def list_rows(self, graph: Graph, selection: frozenset[str]) -> tuple[CurveRow, ...]:
+        """The rows, rebuilt only when their inputs change."""
+        filters = (self.only_selected, frozenset(self.folded), selection)
+        inputs = (graph.animation, graph.nodes, filters)
+        old_inputs = self._rows[0]
+        if (
+            len(old_inputs) != 3
+            or old_inputs[0] is not inputs[0]
+            or old_inputs[1] is not inputs[1]
+            or old_inputs[2] != filters
+        ):
+            self._rows = inputs, make_rows(graph, selection, self.only_selected, self.folded)
         return self._rows[1]
 
-    def curves(self, all: tuple[CurveRow, ...]) -> tuple[CurveRow, ...]:
+    def list_curve_rows(self, all: tuple[CurveRow, ...]) -> tuple[CurveRow, ...]:
         """The rows whose curves are drawn; values of folded nodes are not."""
-        known, shown, found = self._curves
-        if known is not all or shown is not self.shown:
-            found = tuple(row for row in all if row.port)
-            if any(row.port in self.shown for row in found):
-                found = tuple(row for row in found if row.port in self.shown)
-            self._curves = all, self.shown, found
-        return found
+        old_rows, old_chosen, curve_rows = self._curves
+        if old_rows is not all or old_chosen is not self.chosen_rows:
+            curve_rows = tuple(row for row in all if row.port)
+            if any(row.port in self.chosen_rows for row in curve_rows):
+                curve_rows = tuple(row for row in curve_rows if row.port in self.chosen_rows)
+            self._curves = all, self.chosen_rows, curve_rows
+        return curve_rows
 
     def tidy(self, graph: Graph) -> None:
-        """Forget what is not there any more."""
-        if self._kept and self._kept[0] is graph.animation:
+        """Drop keys and rows that no longer exist from the selection."""
+        if self._tidied and self._tidied[0] is graph.animation:
             return
-        self._kept = (graph.animation,)
+        self._tidied = (graph.animation,)
         animation = graph.animation
         self.spots = frozenset(
             spot
             for spot in self.spots
             if isinstance(keys := animation.get(spot[0]), Keys) and keys.key(spot[1]) is not None
         )
-        self.shown = frozenset(port for port in self.shown if port in animation)
+        self.chosen_rows = frozenset(port for port in self.chosen_rows if port in animation)
         self.hidden = {lane for lane in self.hidden if lane[0] in animation}
 
-    def fit(self, what: Fit = "all") -> None:
-        """Bring something into view."""
-        self.wanted = what
+    def fit(self, target: Fit = "all") -> None:
+        """Fit the view to all keys, or to the selected ones, in the next frame."""
+        self.pending_fit = target
 
     def choose(self, spots: frozenset[Spot], how: Literal["replace", "add", "toggle", "remove"] = "replace") -> None:
-        """Choose keys: those alone, those too, the others of both, or no longer those."""
+        """Select keys: replace, extend, toggle or reduce the selection."""
         match how:
             case "replace":
                 self.spots = spots
@@ -95,6 +100,6 @@ class CurvesState:
 
     @property
     def single(self) -> tuple[Port, float] | None:
-        """The chosen key, if it is one alone."""
-        found = {(port, frame) for port, frame, _ in self.spots}
-        return next(iter(found)) if len(found) == 1 else None
+        """The selected key, if there is exactly one."""
+        chosen_keys = {(port, frame) for port, frame, _ in self.spots}
+        return next(iter(chosen_keys)) if len(chosen_keys) == 1 else None

@@ -15,7 +15,6 @@ from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet_button, tip_of, tool, width_of_buttons
-from ..toolkit.words import tip
 from . import commands
 from .paint import paint_key
 from .state import Mode
@@ -24,16 +23,16 @@ if TYPE_CHECKING:
     from .context import CurvesContext
 
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
-_GAP, _APART = 2.0, 10.0
+_GAP, _GROUP_GAP = 2.0, 10.0
 _MEANING = {
     "constant": "holds the value up to the next key",
     "linear": "goes straight to the next key",
     "smooth": "goes smoothly, never beyond a key",
-    "bezier": "goes as the handles say",
+    "bezier": "follows the handles",
 }
 _MOUSE = (
     ("Drag keys", "move them; Shift between frames"),
-    ("Alt + drag, ends of the bar", "draw keys out or together"),
+    ("Alt + drag, ends of the bar", "scale the keys in time"),
     ("Drag on nothing", "select with a box; Shift adds, Ctrl toggles"),
     ("Double click", "a key on the curve"),
     ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"),
@@ -47,54 +46,54 @@ _MOUSE = (
 class _CurveTool:
     width: float
     draw: Callable[[], object]
-    apart: bool = False
+    starts_group: bool = False
 
 
 def draw_toolbar(context: CurvesContext, room: float) -> None:
-    """Draw the tools in one row; what does not fit is in the context menu, behind dots."""
+    """Draw the tools in one row; tools that do not fit are in the menu behind the dots."""
     scale = ui_scale()
-    tools = _tools(context)
-    more = width_of_buttons(icons.ICON_FA_ELLIPSIS) + _APART * scale
+    tools = _make_tools(context)
+    more = width_of_buttons(icons.ICON_FA_ELLIPSIS) + _GROUP_GAP * scale
     first = True
-    for place, one in enumerate(tools):
-        gap = 0.0 if first else (_APART if one.apart else _GAP) * scale
-        needed = gap + one.width + (more if place + 1 < len(tools) else 0.0)
+    for place, curve_tool in enumerate(tools):
+        gap = 0.0 if first else (_GROUP_GAP if curve_tool.starts_group else _GAP) * scale
+        needed = gap + curve_tool.width + (more if place + 1 < len(tools) else 0.0)
         if needed > room:
-            imgui.same_line(0.0, _APART * scale)
-            dropdown(context, icons.ICON_FA_ELLIPSIS, "button more keys", "More tools", lambda: keys_menu(context))
+            imgui.same_line(0.0, _GROUP_GAP * scale)
+            dropdown(context, icons.ICON_FA_ELLIPSIS, "button more keys", "More tools", lambda: draw_keys_menu(context))
             return
         if not first:
             imgui.same_line(0.0, gap)
         first = False
-        room -= gap + one.width
-        one.draw()
+        room -= gap + curve_tool.width
+        curve_tool.draw()
 
 
-def _tools(context: CurvesContext) -> list[_CurveTool]:
+def _make_tools(context: CurvesContext) -> list[_CurveTool]:
     state = context.curves
-    some, square = commands.some(context), imgui.get_frame_height()
+    has_keys, square = commands.has_chosen_keys(context), imgui.get_frame_height()
 
-    def mode(which: Mode, icon: str, label: str) -> _CurveTool:
+    def make_mode_tool(which: Mode, icon: str, label: str) -> _CurveTool:
         def draw() -> None:
             if quiet_button(context, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
                 state.mode = which
 
         return _CurveTool(square, draw)
 
-    def menu(icon: str, name: str, doc: str, actions: str, apart: bool = False) -> _CurveTool:
+    def make_menu_tool(icon: str, name: str, doc: str, actions: str, starts_group: bool = False) -> _CurveTool:
         return _CurveTool(
             width_of_buttons(icon),
             lambda: dropdown(context, icon, f"button keys {name}", doc, lambda: draw_entries(context, actions)),
-            apart,
+            starts_group,
         )
 
     rows = "Selected nodes" if state.only_selected else "All values"
     width = max(
         map(width_of_buttons, (f"{icons.ICON_FA_FILTER}  Selected nodes", f"{icons.ICON_FA_FILTER}  All values"))
     )
-    found = [
-        mode("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
-        mode("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
+    tools = [
+        make_mode_tool("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
+        make_mode_tool("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
         _CurveTool(
             width,
             lambda: dropdown(
@@ -102,7 +101,7 @@ def _tools(context: CurvesContext) -> list[_CurveTool]:
                 f"{icons.ICON_FA_FILTER}  {rows}",
                 "button keys filter",
                 "Which values have a row",
-                lambda: _filters(context),
+                lambda: _draw_filters(context),
                 lit=state.only_selected,
                 width=width,
             ),
@@ -114,25 +113,28 @@ def _tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 icons.ICON_FA_PLUS,
                 "button keys add",
-                "Key a value of the selected nodes",
-                lambda: offered(context),
+                "Animate a value of the selected nodes",
+                lambda: draw_animatable(context),
             ),
         ),
     ]
-    found += [_CurveTool(square, lambda look=look: _shape(context, look, some), look == "constant") for look in LOOKS]
-    found += [
-        _CurveTool(square, lambda how=how: _ease(context, how), how == "keys.ease_in")
+    tools += [
+        _CurveTool(square, lambda look=look: _draw_shape_button(context, look, has_keys), look == "constant")
+        for look in LOOKS
+    ]
+    tools += [
+        _CurveTool(square, lambda how=how: _draw_ease_button(context, how), how == "keys.ease_in")
         for how in ("keys.ease_in", "keys.ease", "keys.ease_out")
     ]
-    found += [
-        menu(
+    tools += [
+        make_menu_tool(
             f"Handles  {icons.ICON_FA_CARET_DOWN}",
             "handles",
             "How handles of selected keys turn",
             "keys handles",
-            apart=True,
+            starts_group=True,
         ),
-        menu(
+        make_menu_tool(
             f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key", "keys outside"
         ),
         _CurveTool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
@@ -143,24 +145,24 @@ def _tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 icons.ICON_FA_CIRCLE_QUESTION,
                 "button keys legend",
-                "What the shapes mean, what the mouse does",
-                lambda: legend(context),
+                "Shapes of keys, and mouse controls",
+                lambda: draw_legend(context),
             ),
         ),
     ]
-    return found
+    return tools
 
 
-def _shape(context: CurvesContext, look: Interpolation, some: bool) -> None:
+def _draw_shape_button(context: CurvesContext, look: Interpolation, has_keys: bool) -> None:
     action = context.actions[f"keys.{look}"]
-    if quiet_button(context, " ", f"button keys.{look}", tip_of(context, action), enabled=some):
+    if quiet_button(context, " ", f"button keys.{look}", tip_of(context, action), enabled=has_keys):
         context.actions.run(action.id)
     left, top, right, bottom = context.places[f"button keys.{look}"]
-    ink = u32(context.palette.text, 1.0 if some else 0.4)
+    ink = u32(context.palette.text, 1.0 if has_keys else 0.4)
     paint_key(imgui.get_window_draw_list(), (left + right) / 2, (top + bottom) / 2, 5.5 * ui_scale(), look, ink)
 
 
-def _ease(context: CurvesContext, id: str) -> None:
+def _draw_ease_button(context: CurvesContext, id: str) -> None:
     """A button with a small curve on it."""
     action = context.actions[id]
     enabled = context.actions.is_enabled(action)
@@ -181,25 +183,25 @@ def _ease(context: CurvesContext, id: str) -> None:
     imgui.get_window_draw_list().add_polyline(line, ink, 1.8 * ui_scale(), 0)
 
 
-def _filters(context: CurvesContext) -> None:
+def _draw_filters(context: CurvesContext) -> None:
     for label, only in (("All Values", False), ("Selected Nodes", True)):
         if imgui.menu_item(label, "", context.curves.only_selected == only)[0]:
             context.curves.only_selected = only
 
 
 def draw_entries(context: CurvesContext, menu: str) -> None:
-    """The actions of a context, as entries of the menu that is open."""
+    """Draw the actions of a context as entries of the open menu."""
     for action in context.actions.in_menu(menu):
         entry(context, action)
 
 
-def offered(context: CurvesContext) -> None:
-    """Values of the selected nodes that can be keyed."""
-    found = commands.animatable(context)
-    if not found:
+def draw_animatable(context: CurvesContext) -> None:
+    """Draw the list of values of the selected nodes that can be animated."""
+    ports = commands.list_animatable(context)
+    if not ports:
         imgui.text_colored(vec4(context.palette.dim), "Select a node whose values can be keyed")
     node = ""
-    for port in found:
+    for port in ports:
         if port.node != node:
             node = port.node
             imgui.separator_text(node)
@@ -207,8 +209,8 @@ def offered(context: CurvesContext) -> None:
             context.log.attempt(lambda port=port: context.session.apply(SetKey(port)))
 
 
-def keys_menu(context: CurvesContext) -> None:
-    """What can be done to chosen keys."""
+def draw_keys_menu(context: CurvesContext) -> None:
+    """Draw the menu of the selected keys."""
     for label, menu in (
         ("Interpolation", "keys interpolation"),
         ("Ease", "keys ease"),
@@ -225,8 +227,8 @@ def keys_menu(context: CurvesContext) -> None:
         entry(context, context.actions[id])
 
 
-def legend(context: CurvesContext) -> None:
-    """What the shapes of keys mean."""
+def draw_legend(context: CurvesContext) -> None:
+    """Draw the legend: the shapes of keys, and the mouse."""
     scale, line = ui_scale(), imgui.get_text_line_height()
     for look in LOOKS:
         corner = imgui.get_cursor_screen_pos()
@@ -250,4 +252,4 @@ def legend(context: CurvesContext) -> None:
         imgui.text_colored(vec4(context.palette.dim), act)
 
 
-__all__ = ["draw_entries", "draw_toolbar", "keys_menu", "legend", "offered", "tip"]
+__all__ = ["draw_animatable", "draw_entries", "draw_keys_menu", "draw_legend", "draw_toolbar"]

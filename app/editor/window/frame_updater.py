@@ -40,7 +40,7 @@ class FrameUpdater:
     def update(self) -> None:
         """Do the work of one frame."""
         editor = self._editor
-        editor.code.turn()
+        editor.code.begin_frame()
         self._watch()
         for change in editor.watcher.poll():
             editor.log.attempt(lambda change=change: self._take_change(change))

@@ -6,7 +6,14 @@ import itertools
 
 import numpy as np
 import pytest
-from halation.editor.curves.shapes import Samples, dashes, heights, outside, pieces, points
+from halation.editor.curves.shapes import (
+    ExpressionSamples,
+    cut_dashes,
+    find_value_range,
+    flatten_curves,
+    make_outside_pieces,
+    make_pieces,
+)
 from halation.editor.toolkit.plane import Plane, View, ticks
 from halation.graph import Expression, Graph, Key, Keys, Port, Settings
 from toy_nodes import Gain
@@ -29,9 +36,9 @@ def some_keys(outside="hold", channels: int = 1) -> Keys:
 
 def curve(keys: Keys, channel: int) -> np.ndarray:
     """All that is drawn of a channel, in frames and values."""
-    inner = pieces(keys, channel)
-    before, after = outside(keys, channel, inner, PLANE.view.first, PLANE.view.last)
-    lines = [line for line in points([before, inner, after], PLANE) if len(line)]
+    inner = make_pieces(keys, channel)
+    before, after = make_outside_pieces(keys, channel, inner, PLANE.view.first, PLANE.view.last)
+    lines = [line for line in flatten_curves([before, inner, after], PLANE) if len(line)]
     found = np.concatenate(lines)
     return np.stack(
         [PLANE.view.first + found[:, 0] / PLANE.across, PLANE.view.low + (PLANE.rect[3] - found[:, 1]) / PLANE.up],
@@ -59,39 +66,39 @@ def test_a_drawn_curve_is_where_the_keys_say(ends: str, channels: int) -> None:
 
 def test_what_is_not_seen_is_not_made() -> None:
     keys = some_keys()
-    inner = pieces(keys, 0)
-    (none,) = points([inner], Plane(View(100.0, 200.0, 0.0, 1.0), PLANE.rect))
+    inner = make_pieces(keys, 0)
+    (none,) = flatten_curves([inner], Plane(View(100.0, 200.0, 0.0, 1.0), PLANE.rect))
     assert len(none) == 0
-    (part,) = points([inner], Plane(View(10.0, 12.0, 0.0, 1.0), PLANE.rect))
-    (whole,) = points([inner], Plane(View(-100.0, 200.0, 0.0, 1.0), PLANE.rect))
+    (part,) = flatten_curves([inner], Plane(View(10.0, 12.0, 0.0, 1.0), PLANE.rect))
+    (whole,) = flatten_curves([inner], Plane(View(-100.0, 200.0, 0.0, 1.0), PLANE.rect))
     assert 2 <= len(part) < 400 and 2 <= len(whole) < 200
 
 
 def test_switches_and_whole_numbers_are_curves_too() -> None:
     keys = Keys((Key(1, False), Key(5, True), Key(9, False)))
-    assert pieces(keys, 0)[:, 3, 1].tolist() == [0.0, 1.0, 1.0, 0.0]
-    assert heights(keys, 0) == (0.0, 1.0)
-    assert heights(keys, 0, lambda key: key.frame == 5) == (1.0, 1.0)
-    assert heights(keys, 0, lambda key: False) is None
+    assert make_pieces(keys, 0)[:, 3, 1].tolist() == [0.0, 1.0, 1.0, 0.0]
+    assert find_value_range(keys, 0) == (0.0, 1.0)
+    assert find_value_range(keys, 0, lambda key: key.frame == 5) == (1.0, 1.0)
+    assert find_value_range(keys, 0, lambda key: False) is None
 
 
 def test_an_expression_is_sampled_once_and_has_gaps() -> None:
     graph = Graph().add("gain", Gain()).animate(Port("gain", "gain"), Expression("1 / (frame - 5)"))
-    samples = Samples()
-    first, second = samples.line(graph, Settings(), Port("gain", "gain"), 0, 2.5, 9.0)
+    samples = ExpressionSamples()
+    first, second = samples.sample_lines(graph, Settings(), Port("gain", "gain"), 0, 2.5, 9.0)
     assert first[:, 0].tolist() == [2.0, 3.0, 4.0] and second[:, 0].tolist()[0] == 6.0
     assert second[0, 1] == pytest.approx(1.0)
-    many = samples.line(graph, Settings(), Port("gain", "gain"), 0, 0.0, 1e5)
+    many = samples.sample_lines(graph, Settings(), Port("gain", "gain"), 0, 0.0, 1e5)
     assert sum(map(len, many)) < 300
 
 
 def test_dashes_cover_a_line_in_turn() -> None:
     line = np.array([(0.0, 0.0), (50.0, 0.0), (50.0, 50.0)])
-    found = dashes(line, 6.0, 4.0)
+    found = cut_dashes(line, 6.0, 4.0)
     assert len(found) == 10
     assert found[0].tolist() == [[0.0, 0.0], [6.0, 0.0]]
     assert found[5][0].tolist() == [50.0, 0.0]
-    assert dashes(line[:1], 6.0, 4.0) == []
+    assert cut_dashes(line[:1], 6.0, 4.0) == []
 
 
 def test_ticks_are_round_and_far_enough_apart() -> None:
