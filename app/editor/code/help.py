@@ -76,13 +76,11 @@ def list_includes() -> Iterator[tuple[str, str]]:
     """The files that code can include, and the signatures of their functions."""
     for name, text in sorted(installed_library().texts.items()):
         if name.startswith("lib/"):
-            yield (
-                name,
-                "\n".join(
-                    f"{function.result} {function.name}({', '.join(' '.join(parameter) for parameter in function.parameters)})"
-                    for function in text.all_functions
-                ),
+            signatures = (
+                f"{function.result} {function.name}({', '.join(map(' '.join, function.parameters))})"
+                for function in text.all_functions
             )
+            yield name, "\n".join(signatures)
 
 
 def _draw_table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:

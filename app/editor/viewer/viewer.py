@@ -201,7 +201,7 @@ class Viewer:
     def _draw_messages(self, now: _Now, sight: Sight) -> None:
         preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault and (now.a is None or preview.faults.get(self._context.code.told) != fault):
+        if fault and (now.a is None or preview.faults.get(self._context.code.fault_path) != fault):
             draw_message(self._context, sight, fault, palette.error, dim=now.a is not None)
         elif now.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
