@@ -75,6 +75,6 @@ class ReportedFault(Protocol):
     """The Code panel, for panels that would repeat its message."""
 
     @property
-    def told(self) -> str:
+    def fault_path(self) -> str:
         """The path of the node whose fault the Code panel shows."""
         ...
