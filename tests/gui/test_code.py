@@ -138,7 +138,7 @@ def test_labels_and_colors_of_code_are_shown(gui, path) -> None:
         ui.ctx.window_focus("//Graph")
         ui.session.select("code")
         ui.wait(3)
-        boxes = ui.window._panels["Graph"]._mouse.dragged.scene.boxes
+        boxes = ui.window._panels["Graph"]._mouse.preview.scene.boxes
         assert [row.label for row in boxes["code"].layout.rows if row.value] == ["The Shade"]
         ui.click("field code.shade")
         ui.wait(2)

@@ -1,4 +1,4 @@
-"""Actions on nodes, links and their places."""
+"""Actions of the graph canvas: nodes, links, groups, frames and layout."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from ...authoring.commands import (
 from ...graph import Group
 from ..shared.action import Act, Action
 from ..shared.dialogs import Browse
-from .pictures import with_room
+from .pictures import reserve_pictures
 from .view import Tool
 
 if TYPE_CHECKING:
     from .context import CanvasContext
 
-_SIDES = (
+_ALIGNMENTS = (
     ("left", "Left"),
     ("right", "Right"),
     ("top", "Top"),
@@ -40,19 +40,19 @@ _SIDES = (
 )
 
 
-def _some(context: CanvasContext) -> bool:
+def _has_selection(context: CanvasContext) -> bool:
     return bool(context.session.selection)
 
 
-def _several(context: CanvasContext) -> bool:
+def _has_several(context: CanvasContext) -> bool:
     return len(context.session.selection) > 1
 
 
-def _node(context: CanvasContext) -> bool:
+def _is_node(context: CanvasContext) -> bool:
     return context.session.active in context.session.graph.nodes
 
 
-def _group(context: CanvasContext) -> bool:
+def _is_group(context: CanvasContext) -> bool:
     return isinstance(context.session.graph.nodes.get(context.session.active), Group)
 
 
@@ -62,13 +62,13 @@ def _is_borrowed_group(context: CanvasContext) -> bool:
 
 
 def _save_group(context: CanvasContext) -> None:
-    """Ask for a file, and let the group come from it from now on."""
+    """Ask for a file, save the group in it, and link the group to it."""
     id = context.session.active
 
-    def saved(path: Path) -> None:
+    def save(path: Path) -> None:
         context.log.attempt(lambda: context.session.save_group(id, path.with_suffix(".json"), link=True))
 
-    context.dialogs.browse = Browse("Save the group as", "graph", saved, saving=True, name=f"{id}.json")
+    context.dialogs.browse = Browse("Save the group as", "graph", save, saving=True, name=f"{id}.json")
 
 
 def _open_group(context: CanvasContext) -> None:
@@ -81,11 +81,11 @@ def _replace(context: CanvasContext) -> None:
     context.canvas.replacing = context.session.active
 
 
-def _search(context: CanvasContext) -> None:
+def _open_search(context: CanvasContext) -> None:
     context.canvas.searching = True
 
 
-def _frame(context: CanvasContext) -> None:
+def _add_frame(context: CanvasContext) -> None:
     at = None if context.session.selection else context.canvas.pointer
     context.session.apply(AddFrame(at=at, sizes=context.canvas.sizes))
 
@@ -94,26 +94,26 @@ def _rename(context: CanvasContext) -> None:
     context.canvas.renaming = context.session.active
 
 
-def _tool(tool: Tool) -> Act:
-    def take(context: CanvasContext) -> None:
+def _make_tool_act(tool: Tool) -> Act:
+    def set_tool(context: CanvasContext) -> None:
         context.canvas.tool = tool
 
-    return take
+    return set_tool
 
 
-def _align(side: str, label: str) -> Action:
+def _make_align_action(side: str, label: str) -> Action:
     return Action(
         f"align.{side.replace(' ', '_')}",
         label,
         lambda context: context.session.apply(AlignSelection(side, context.canvas.sizes or {})),
         "Graph/Align",
         scope="graph",
-        enabled=_several,
+        enabled=_has_several,
     )
 
 
 GRAPH: tuple[Action, ...] = (
-    Action("node.add", "Add Node...", _search, "Graph", "Tab", "graph", contexts=frozenset({"canvas"})),
+    Action("node.add", "Add Node...", _open_search, "Graph", "Tab", "graph", contexts=frozenset({"canvas"})),
     Action(
         "node.mute",
         "Mute",
@@ -121,7 +121,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "M",
         "graph",
-        _some,
+        _has_selection,
         contexts=frozenset({"node"}),
         doc="The node passes its first input through.",
         separated=True,
@@ -133,7 +133,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "H",
         "graph",
-        _some,
+        _has_selection,
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -143,7 +143,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "V",
         "graph",
-        _node,
+        _is_node,
         contexts=frozenset({"node"}),
         doc="Show this node in the viewer; again shows its next output.",
     ),
@@ -154,7 +154,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Shift+V",
         "graph",
-        _node,
+        _is_node,
         contexts=frozenset({"node"}),
         doc="Compare with this node.",
     ),
@@ -165,9 +165,9 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Alt+X",
         "graph",
-        _some,
+        _has_selection,
         contexts=frozenset({"node"}),
-        doc="Take the selection out of its chain, which closes behind it.",
+        doc="Take the selection out of its chain, and link the nodes before and after it.",
     ),
     Action(
         "node.swap",
@@ -176,7 +176,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Alt+S",
         "graph",
-        _node,
+        _is_node,
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -186,16 +186,16 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Shift+S",
         "graph",
-        _node,
+        _is_node,
         contexts=frozenset({"node"}),
-        doc="Another type of node in its place; links stay where they fit.",
+        doc="Replace the node by one of another type; links stay where they fit.",
     ),
     Action(
         "node.reset",
         "Reset Values",
         lambda context: context.session.apply(ResetNode(context.session.active)),
         "Graph",
-        enabled=_node,
+        enabled=_is_node,
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -211,7 +211,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "link.cut",
         "Cut Links",
-        _tool("cut"),
+        _make_tool_act("cut"),
         "Graph",
         scope="graph",
         contexts=frozenset({"canvas"}),
@@ -221,7 +221,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "link.dots",
         "Put Dots on Links",
-        _tool("dot"),
+        _make_tool_act("dot"),
         "Graph",
         scope="graph",
         contexts=frozenset({"canvas"}),
@@ -234,7 +234,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Ctrl+G",
         "graph",
-        _some,
+        _has_selection,
         contexts=frozenset({"node"}),
         separated=True,
     ),
@@ -245,7 +245,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Ctrl+Shift+G",
         "graph",
-        _group,
+        _is_group,
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -255,7 +255,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "Ctrl+Enter",
         "graph",
-        _group,
+        _is_group,
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -273,9 +273,9 @@ GRAPH: tuple[Action, ...] = (
         "Save Group As...",
         _save_group,
         "Graph",
-        enabled=_group,
+        enabled=_is_group,
         contexts=frozenset({"group"}),
-        doc="Write the group to a file of its own, for use in other graphs; from now on it comes from there.",
+        doc="Save the group in a file of its own, for use in other graphs, and link it to that file.",
     ),
     Action(
         "group.local",
@@ -297,7 +297,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "frame.add",
         "Frame",
-        _frame,
+        _add_frame,
         "Graph",
         "Shift+F",
         "graph",
@@ -316,7 +316,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda context: context.session.apply(ArrangeElements(with_room(context))),
+        lambda context: context.session.apply(ArrangeElements(reserve_pictures(context))),
         "Graph",
         "L",
         "graph",
@@ -324,7 +324,7 @@ GRAPH: tuple[Action, ...] = (
         doc="Lay out the selection, or everything, from left to right.",
         separated=True,
     ),
-    *(_align(side, label) for side, label in _SIDES),
+    *(_make_align_action(side, label) for side, label in _ALIGNMENTS),
     Action(
         "view.fit_all",
         "Fit All",

@@ -1,4 +1,4 @@
-"""What painting needs in one frame: where, how large, in which colors."""
+"""Drawing on the canvas: transform, zoom, colors and text of one frame."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .geometry import CanvasTransform, Point, Rect
 from .layout import HEADER
 
 TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
-"""Sizes of letters in canvas units."""
+"""Font sizes in canvas units."""
 
 _MEASURED = 48.0
 
@@ -62,16 +62,16 @@ class CanvasColors:
     over: int
     """Text of less weight on a header."""
 
-    def category(self, name: str, muted: bool = False) -> int:
-        """The header of a node of that menu."""
-        known = self.headers_muted if muted else self.headers
-        return known.get(name) or known[""]
+    def find_header_color(self, name: str, muted: bool = False) -> int:
+        """The header color of a node category."""
+        header_colors = self.headers_muted if muted else self.headers
+        return header_colors.get(name) or header_colors[""]
 
 
 @lru_cache(maxsize=4)
-def ink(theme: str) -> CanvasColors:
-    """The colors of a theme by its name."""
-    p = on_nodes(theme)
+def make_canvas_colors(theme: str) -> CanvasColors:
+    """The canvas colors of a theme, by its name."""
+    p = make_node_palette(theme)
     dark = theme == "dark"
     kinds: dict[Kind | None, RGB] = {**p.kinds, None: p.dim}
     strength = 0.10 if dark else 0.055
@@ -107,45 +107,45 @@ def ink(theme: str) -> CanvasColors:
 
 
 @lru_cache(maxsize=4)
-def on_nodes(theme: str) -> Palette:
-    """A theme where fields stand out from nodes as they do from panels elsewhere."""
+def make_node_palette(theme: str) -> Palette:
+    """The palette of a theme with fields that stand out from nodes as they do from panels."""
     p = PALETTES[theme]
     return replace(p, field=mix(p.node, p.canvas, 0.62), hover=mix(p.node, p.dim, 0.28))
 
 
 @dataclass
 class TextCache:
-    """Widths of words, measured once."""
+    """Cached widths of texts, and texts cut to a width."""
 
     _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
     sketches: dict[str, Any] = field(default_factory=dict[str, Any])
-    """What was thought out of elements, by key."""
+    """Cached drawings of elements, by key."""
     _short: dict[tuple[bool, str, float], str] = field(default_factory=dict[tuple[bool, str, float], str])
-    """Lines that were cut, by how many times their height they may be wide."""
+    """Lines cut to a width, by the ratio of that width to the font size."""
 
-    def width(self, fonts: Fonts, text: str, size: float, bold: bool = False) -> float:
-        """The width of a line in the units of `size`."""
-        known = self._widths.get((bold, text))
-        if known is None:
+    def measure(self, fonts: Fonts, text: str, size: float, bold: bool = False) -> float:
+        """Measure the width of a line in the units of `size`."""
+        relative_width = self._widths.get((bold, text))
+        if relative_width is None:
             imgui.push_font(fonts.bold if bold else fonts.text, _MEASURED)
-            known = self._widths[bold, text] = imgui.calc_text_size(text).x / imgui.get_font_size()
+            relative_width = self._widths[bold, text] = imgui.calc_text_size(text).x / imgui.get_font_size()
             imgui.pop_font()
-        return known * size
+        return relative_width * size
 
-    def short(self, fonts: Fonts, text: str, size: float, room: float, bold: bool = False) -> str:
-        """A line that fits in `room`, cut with an ellipsis where it must be."""
-        if self.width(fonts, text, size, bold) <= room:
+    def shorten(self, fonts: Fonts, text: str, size: float, room: float, bold: bool = False) -> str:
+        """Cut a line with an ellipsis where it does not fit in `room`."""
+        if self.measure(fonts, text, size, bold) <= room:
             return text
         key = (bold, text, round(room / size, 2))
-        known = self._short.get(key)
-        if known is None:
+        shortened = self._short.get(key)
+        if shortened is None:
             if len(self._short) > 4000:
                 self._short.clear()
             length = len(text) - 1
-            while length > 1 and self.width(fonts, text[:length].rstrip() + "…", size, bold) > room:
+            while length > 1 and self.measure(fonts, text[:length].rstrip() + "…", size, bold) > room:
                 length -= 1
-            known = self._short[key] = text[:length].rstrip() + "…"
-        return known
+            shortened = self._short[key] = text[:length].rstrip() + "…"
+        return shortened
 
 
 @dataclass
@@ -158,7 +158,7 @@ class DrawContext:
     ink: CanvasColors
     fonts: Fonts
     texts: TextCache
-    seen: Rect
+    visible: Rect
     """The part of the canvas that is visible."""
     title: float = field(init=False)
     """The size of titles in canvas units: it grows where they could not be read otherwise."""
@@ -169,25 +169,25 @@ class DrawContext:
         self.title = max(TITLE, READABLE / self.zoom)
         self.header = max(HEADER, self.title * 1.45)
 
-    def text(self, x: float, y: float, color: int, text: str, size: float = TEXT, bold: bool = False) -> None:
-        """A line whose left end is at `x` and whose middle is at `y` (canvas units)."""
+    def draw_text(self, x: float, y: float, color: int, text: str, size: float = TEXT, bold: bool = False) -> None:
+        """Draw a line whose left end is at `x` and whose middle is at `y` (canvas units)."""
         to, s = self.to, self.to.scale
         font = self.fonts.bold if bold else self.fonts.text
         self.draw.add_text(font, size * s, (to.x + x * s, to.y + (y - size * 0.5) * s), color, text)
 
-    def right(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
-        """A line whose right end is at `x`."""
-        self.text(x - self.texts.width(self.fonts, text, size), y, color, text, size)
+    def draw_right(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
+        """Draw a line whose right end is at `x`."""
+        self.draw_text(x - self.texts.measure(self.fonts, text, size), y, color, text, size)
 
-    def short(self, text: str, room: float, size: float = TEXT, bold: bool = False) -> str:
-        """Text that fits in `room` canvas units."""
-        return self.texts.short(self.fonts, text, size, room, bold)
+    def shorten(self, text: str, room: float, size: float = TEXT, bold: bool = False) -> str:
+        """Cut text to a width of `room` canvas units."""
+        return self.texts.shorten(self.fonts, text, size, room, bold)
 
-    def width(self, text: str, size: float = TEXT, bold: bool = False) -> float:
-        """The width of a line in canvas units."""
-        return self.texts.width(self.fonts, text, size, bold)
+    def measure(self, text: str, size: float = TEXT, bold: bool = False) -> float:
+        """Measure the width of a line in canvas units."""
+        return self.texts.measure(self.fonts, text, size, bold)
 
-    def corners(self, rect: Rect, grow: float = 0.0) -> tuple[Point, Point]:
+    def project_corners(self, rect: Rect, grow: float = 0.0) -> tuple[Point, Point]:
         """A rectangle on the screen, `grow` units larger on each side."""
         to, s = self.to, self.to.scale
         return (
@@ -195,22 +195,24 @@ class DrawContext:
             (to.x + (rect[2] + grow) * s, to.y + (rect[3] + grow) * s),
         )
 
-    def on_screen(self, rect: Rect) -> Rect:
+    def project(self, rect: Rect) -> Rect:
         """A rectangle in pixels of the screen."""
-        low, high = self.corners(rect)
+        low, high = self.project_corners(rect)
         return *low, *high
 
-    def fill(self, rect: Rect, color: int, rounding: float = 0.0, grow: float = 0.0, flags: int = 0) -> None:
-        """A filled rectangle."""
-        low, high = self.corners(rect, grow)
+    def fill_rect(self, rect: Rect, color: int, rounding: float = 0.0, grow: float = 0.0, flags: int = 0) -> None:
+        """Draw a filled rectangle."""
+        low, high = self.project_corners(rect, grow)
         self.draw.add_rect_filled(low, high, color, (rounding + grow) * self.to.scale, flags)
 
-    def frame(self, rect: Rect, color: int, rounding: float = 0.0, thickness: float = 1.0, grow: float = 0.0) -> None:
-        """The outline of a rectangle; `thickness` is in pixels at UI scale 1."""
-        low, high = self.corners(rect, grow)
+    def draw_outline(
+        self, rect: Rect, color: int, rounding: float = 0.0, thickness: float = 1.0, grow: float = 0.0
+    ) -> None:
+        """Draw the outline of a rectangle; `thickness` is in pixels at UI scale 1."""
+        low, high = self.project_corners(rect, grow)
         self.draw.add_rect(low, high, color, (rounding + grow) * self.to.scale, thickness * self.line)
 
     @property
     def line(self) -> float:
-        """Pixels of a line of thickness 1: thinner when far, never lost."""
+        """Pixels of a line of thickness 1: thinner when zoomed out, but always visible."""
         return max(self.to.scale, self.to.scale / self.zoom * 0.75)

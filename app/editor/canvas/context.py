@@ -1,4 +1,4 @@
-"""What the canvas uses."""
+"""The collaborators of the canvas."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The way to the group that is shown; every step leads back."""
+"""The breadcrumbs: the path to the open group, one button a step."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def draw_crumbs(context: CanvasContext, brush: DrawContext, panel: Rect) -> None
             imgui.align_text_to_frame_padding()
             imgui.text_disabled(icons.ICON_FA_CHEVRON_RIGHT)
             imgui.same_line()
-        here = place == session.place
-        imgui.push_style_color(imgui.Col_.text, vec4(palette.text if here else palette.dim))
-        if imgui.button(f"{title}##crumb {index}") and not here:
+        is_open = place == session.place
+        imgui.push_style_color(imgui.Col_.text, vec4(palette.text if is_open else palette.dim))
+        if imgui.button(f"{title}##crumb {index}") and not is_open:
             context.log.attempt(lambda place=place: session.go(place))
         imgui.pop_style_color()
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()

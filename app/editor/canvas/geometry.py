@@ -1,4 +1,4 @@
-"""Shapes on the canvas: rectangles, curves of links, what is near a point, what a line crosses. Canvas units."""
+"""Shapes on the canvas: rectangles, curves of links, distances and crossings. Canvas units."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Curve = tuple[float, float, float, float, float, float, float, float]
 """A cubic Bezier: start, two handles, end, each as x, y."""
 
 GRID = 8.0
-"""Everything on the canvas is a multiple of it."""
+"""The grid step; positions snap to a multiple of twice this step."""
 
 SAMPLES = 24
-"""Straight pieces that stand for a curve where it is measured."""
+"""The number of straight pieces that approximate a curve for distances and crossings."""
 
 _MIN_HANDLE, _MAX_HANDLE = 24.0, 200.0
 _MARGIN = 48.0
@@ -45,7 +45,7 @@ class CanvasTransform:
         return (x - self.x) / self.scale, (y - self.y) / self.scale
 
 
-def transform(panel: Rect, center: Point, scale: float) -> CanvasTransform:
+def make_transform(panel: Rect, center: Point, scale: float) -> CanvasTransform:
     """The transform that shows `center` in the middle of a panel; whole pixels at rest keep edges sharp."""
     left, top, right, bottom = panel
     return CanvasTransform(
@@ -53,52 +53,52 @@ def transform(panel: Rect, center: Point, scale: float) -> CanvasTransform:
     )
 
 
-def zoomed(center: Point, zoom: float, about: Point, factor: float) -> tuple[Point, float]:
+def zoom_about(center: Point, zoom: float, about: Point, factor: float) -> tuple[Point, float]:
     """Center and zoom after zooming by `factor` with the canvas position `about` staying where it is."""
-    wanted = min(max(zoom * factor, MIN_ZOOM), MAX_ZOOM)
-    ratio = zoom / wanted
-    return (about[0] + (center[0] - about[0]) * ratio, about[1] + (center[1] - about[1]) * ratio), wanted
+    new_zoom = min(max(zoom * factor, MIN_ZOOM), MAX_ZOOM)
+    ratio = zoom / new_zoom
+    return (about[0] + (center[0] - about[0]) * ratio, about[1] + (center[1] - about[1]) * ratio), new_zoom
 
 
-def bounds(rects: Iterable[Rect]) -> Rect | None:
+def find_bounds(rects: Iterable[Rect]) -> Rect | None:
     """The smallest rectangle around all, or None around nothing."""
-    found = tuple(rects)
-    if not found:
+    all_rects = tuple(rects)
+    if not all_rects:
         return None
-    lefts, tops, rights, bottoms = zip(*found, strict=True)
+    lefts, tops, rights, bottoms = zip(*all_rects, strict=True)
     return min(lefts), min(tops), max(rights), max(bottoms)
 
 
-def fitted(around: Rect, size: Point, most: float = 1.0) -> tuple[Point, float]:
+def fit_view(bounds: Rect, size: Point, max_zoom: float = 1.0) -> tuple[Point, float]:
     """Center and zoom that show a rectangle with a margin in a panel of `size` (pixels at UI scale 1)."""
-    left, top, right, bottom = around
+    left, top, right, bottom = bounds
     across, down = max(right - left, 1.0), max(bottom - top, 1.0)
     room = [max(side - 2 * min(_MARGIN, side * 0.1), 16.0) for side in size]
-    zoom = min(room[0] / across, room[1] / down, most)
+    zoom = min(room[0] / across, room[1] / down, max_zoom)
     return ((left + right) / 2, (top + bottom) / 2), min(max(zoom, MIN_ZOOM), MAX_ZOOM)
 
 
-def holds(rect: Rect, x: float, y: float, margin: float = 0.0) -> bool:
-    """True if the point is within the rectangle, or `margin` outside of it."""
+def contains(rect: Rect, x: float, y: float, margin: float = 0.0) -> bool:
+    """True if a point is in a rectangle, or at most `margin` outside."""
     return rect[0] - margin <= x <= rect[2] + margin and rect[1] - margin <= y <= rect[3] + margin
 
 
-def overlap(first: Rect, second: Rect) -> bool:
+def overlaps(first: Rect, second: Rect) -> bool:
     """True if the rectangles share any point."""
     return first[0] <= second[2] and second[0] <= first[2] and first[1] <= second[3] and second[1] <= first[3]
 
 
-def spanned(start: Point, end: Point) -> Rect:
+def span_rect(start: Point, end: Point) -> Rect:
     """The rectangle between two corners."""
     return min(start[0], end[0]), min(start[1], end[1]), max(start[0], end[0]), max(start[1], end[1])
 
 
-def snapped(number: float, step: float = GRID * 2) -> float:
+def snap_to_grid(number: float, step: float = GRID * 2) -> float:
     """The nearest line of the grid."""
     return math.floor(number / step + 0.5) * step
 
 
-def curve(x0: float, y0: float, x1: float, y1: float) -> Curve:
+def make_curve(x0: float, y0: float, x1: float, y1: float) -> Curve:
     """The shape of a link: it leaves to the right and arrives from the left, with room to turn where it runs back."""
     across, down = x1 - x0, abs(y1 - y0)
     if across > 0:
@@ -108,7 +108,7 @@ def curve(x0: float, y0: float, x1: float, y1: float) -> Curve:
     return x0, y0, x0 + handle, y0, x1 - handle, y1, x1, y1
 
 
-def sampled(curves: NDArray[np.float64], count: int = SAMPLES) -> NDArray[np.float64]:
+def sample_curves(curves: NDArray[np.float64], count: int = SAMPLES) -> NDArray[np.float64]:
     """Points along curves: [n, 8] to [n, count + 1, 2]."""
     handles = curves.reshape(-1, 4, 2)
     t = np.linspace(0.0, 1.0, count + 1)
@@ -116,8 +116,8 @@ def sampled(curves: NDArray[np.float64], count: int = SAMPLES) -> NDArray[np.flo
     return np.einsum("sk,nkd->nsd", weights, handles)
 
 
-def distances(lines: NDArray[np.float64], point: Point) -> NDArray[np.float64]:
-    """How far each of n polylines [n, m, 2] is from a point: [n]."""
+def measure_distances(lines: NDArray[np.float64], point: Point) -> NDArray[np.float64]:
+    """The distance of each of n polylines [n, m, 2] from a point: [n]."""
     starts, ends = lines[:, :-1], lines[:, 1:]
     along, to = ends - starts, np.asarray(point) - starts
     length = np.maximum((along * along).sum(axis=-1), 1e-12)
@@ -126,20 +126,20 @@ def distances(lines: NDArray[np.float64], point: Point) -> NDArray[np.float64]:
     return np.sqrt((gap * gap).sum(axis=-1).min(axis=1))
 
 
-def crossed(lines: NDArray[np.float64], start: Point, end: Point) -> NDArray[np.bool_]:
+def find_crossed(lines: NDArray[np.float64], start: Point, end: Point) -> NDArray[np.bool_]:
     """Which of n polylines [n, m, 2] a straight line crosses: [n]."""
     a, b = lines[:, :-1], lines[:, 1:]
     c, d = np.asarray(start), np.asarray(end)
-    apart = (_side(a, b, c) * _side(a, b, d) <= 0) & (_side(c, d, a) * _side(c, d, b) <= 0)
-    return np.asarray(apart.any(axis=1)) if start != end else np.zeros(len(lines), np.bool_)
+    is_crossed = (_find_side(a, b, c) * _find_side(a, b, d) <= 0) & (_find_side(c, d, a) * _find_side(c, d, b) <= 0)
+    return np.asarray(is_crossed.any(axis=1)) if start != end else np.zeros(len(lines), np.bool_)
 
 
-def crossing(line: NDArray[np.float64], start: Point, end: Point) -> Point:
+def find_crossing(line: NDArray[np.float64], start: Point, end: Point) -> Point:
     """Where a straight line meets a polyline [m, 2] that it crosses: the point of the polyline nearest to it."""
     c, d = np.asarray(start), np.asarray(end)
     a, b = line[:-1], line[1:]
-    first, second = _side(c, d, a), _side(c, d, b)
-    hit = (_side(a, b, c) * _side(a, b, d) <= 0) & (first * second <= 0)
+    first, second = _find_side(c, d, a), _find_side(c, d, b)
+    hit = (_find_side(a, b, c) * _find_side(a, b, d) <= 0) & (first * second <= 0)
     at = int(np.argmax(hit))
     span = first[at] - second[at]
     part = float(first[at] / span) if abs(span) > 1e-12 else 0.5
@@ -147,18 +147,18 @@ def crossing(line: NDArray[np.float64], start: Point, end: Point) -> Point:
     return float(x), float(y)
 
 
-def midpoint(shape: Curve) -> Point:
+def find_midpoint(shape: Curve) -> Point:
     """The middle of a curve."""
     x0, y0, x1, y1, x2, y2, x3, y3 = shape
     return (x0 + 3 * x1 + 3 * x2 + x3) / 8, (y0 + 3 * y1 + 3 * y2 + y3) / 8
 
 
-def drift(panel: Rect, x: float, y: float, border: float) -> Point:
+def find_pan_direction(panel: Rect, x: float, y: float, border: float) -> Point:
     """How to pan while something is dragged near the border of a panel: -1..1 per axis, growing outwards."""
-    return _push(x, panel[0], panel[2], border), _push(y, panel[1], panel[3], border)
+    return _find_push(x, panel[0], panel[2], border), _find_push(y, panel[1], panel[3], border)
 
 
-def _push(at: float, low: float, high: float, border: float) -> float:
+def _find_push(at: float, low: float, high: float, border: float) -> float:
     if at < low + border:
         return -min((low + border - at) / border, 1.0)
     if at > high - border:
@@ -166,7 +166,7 @@ def _push(at: float, low: float, high: float, border: float) -> float:
     return 0.0
 
 
-def _side(start: NDArray[np.float64], end: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
+def _find_side(start: NDArray[np.float64], end: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
     """Positive on one side of a line, negative on the other."""
     along, to = end - start, point - start
     return along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]

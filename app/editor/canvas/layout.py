@@ -1,4 +1,4 @@
-"""What a node shows and where: its rows, pins and fields, in canvas units from its top left corner."""
+"""The layout of a node: rows, pins and fields, in canvas units from its top left corner."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ HEADER, ROW, PAD = 32.0, 24.0, 8.0
 FIELD_PAD, FIELD_HEIGHT = 8.0, 20.0
 MORE = 16.0
 PICTURE = 96.0
-"""Height of the picture of what a node makes."""
+"""The height of the thumbnail of a node."""
 
 FIELDS = 4
-"""Values that a node shows before it is asked for all."""
+"""The number of values that a node shows until the user expands it."""
 
-What = Literal["node", "group", "unknown", "input", "output"]
+NodeSort = Literal["node", "group", "unknown", "input", "output"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Pin:
 
 @dataclass(frozen=True, slots=True)
 class FieldText:
-    """A number or word in a field; `part` is what of the field is filled."""
+    """A number or word in a field; `part` is the filled part of the field."""
 
     text: str
     part: tuple[float, float] | None = None
@@ -63,13 +63,13 @@ class NodeRow:
     plain: Plain | None = None
     linked: bool = False
     hint: str = ""
-    """What an input is without a link."""
-    shown: tuple[FieldText, ...] = ()
-    """The value as its field shows it: several numbers of a vector, else one."""
+    """The default of an input without a link."""
+    texts: tuple[FieldText, ...] = ()
+    """The texts of the field: one for each number of a vector, else one."""
 
     @property
     def field(self) -> Rect | None:
-        """Where the value is set, or None where a link drives it."""
+        """The rectangle of the field, or None where a link drives the value."""
         if self.value is None or self.linked:
             return None
         top = self.y + (ROW - FIELD_HEIGHT) / 2
@@ -80,7 +80,7 @@ class NodeRow:
 class NodeLayout:
     """One element as it is drawn. `hidden` counts values that are not shown; `open` is True if none would be."""
 
-    what: What
+    sort: NodeSort
     width: float
     height: float
     title: str
@@ -91,29 +91,29 @@ class NodeLayout:
     ins: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     outs: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     picture: Rect | None = None
-    """Where the picture is of what the node makes: below all else, so that nothing moves when there is a first one."""
+    """The place of the thumbnail: below all else, so that nothing moves when the first one appears."""
     foot: float = 0.0
-    """Where the strip begins that shows all values."""
+    """The top of the strip that expands the node."""
     hidden: int = 0
     open: bool = False
     collapsed: bool = False
 
     @property
     def more(self) -> Rect | None:
-        """The strip that shows all values, or fewer again."""
+        """The strip that expands or collapses the list of values."""
         if self.collapsed or not (self.hidden or self.open):
             return None
         return 0.0, self.foot, self.width, self.foot + MORE
 
 
-def value_kind(value: Value) -> Kind | None:
-    """What travels on a link that drives a value; None if none can."""
+def find_value_kind(value: Value) -> Kind | None:
+    """The kind of a link that drives a value; None if no link can."""
     if not value.wireable:
         return None
     return {"color": Kind.COLOR, "vector": Kind.VECTOR}.get(value.type, Kind.NUMBER)
 
 
-def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> NodeLayout:
+def make_end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> NodeLayout:
     """An input or output of the graph: a slim box with one pin."""
     side, _, name = key.partition(".")
     is_input = side == "inputs"
@@ -134,7 +134,7 @@ def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> NodeLa
 
 @dataclass(frozen=True, slots=True)
 class NodeFacts:
-    """What the layout of a node depends on besides the node: names of its linked sockets, and how it is shown."""
+    """What the layout of a node depends on besides the node: linked sockets, and display options."""
 
     linked_ins: frozenset[str] = frozenset()
     linked_outs: frozenset[str] = frozenset()
@@ -143,66 +143,78 @@ class NodeFacts:
     picture: bool = False
 
 
-def node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> NodeLayout:
+def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> NodeLayout:
     """The layout of a node of a graph."""
-    face = signature(item)
-    what: What = "group" if isinstance(item, Group) else "unknown" if isinstance(item, Unknown) else "node"
-    subtitle = subtitle_of(item)
-    category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else what
+    node_signature = signature(item)
+    sort: NodeSort = "group" if isinstance(item, Group) else "unknown" if isinstance(item, Unknown) else "node"
+    subtitle = find_subtitle(item)
+    category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else sort
     doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
     if spell_out(subtitle).lower() == spell_out(id).lower():
         subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
 
-    inputs = dict(face.inputs)
-    left = [Pin(name, one.kind, 0.0, 0.0, one.optional) for name, one in inputs.items()]
-    right = [Pin(name, one.kind, WIDTH, 0.0) for name, one in face.outputs.items()]
-    left += [Pin(name, None, 0.0, 0.0) for name in sorted(facts.linked_ins - {*face.inputs, *face.values})]
-    right += [Pin(name, None, WIDTH, 0.0) for name in sorted(facts.linked_outs - {*face.outputs})]
+    inputs = dict(node_signature.inputs)
+    input_pins = [Pin(name, socket.kind, 0.0, 0.0, socket.optional) for name, socket in inputs.items()]
+    output_pins = [Pin(name, socket.kind, WIDTH, 0.0) for name, socket in node_signature.outputs.items()]
+    input_pins += [
+        Pin(name, None, 0.0, 0.0)
+        for name in sorted(facts.linked_ins - {*node_signature.inputs, *node_signature.values})
+    ]
+    output_pins += [Pin(name, None, WIDTH, 0.0) for name in sorted(facts.linked_outs - {*node_signature.outputs})]
     if facts.collapsed:
         linked = [
-            Pin(name, value_kind(face.values[name]), 0.0, 0.0, True, True)
-            for name in face.values
+            Pin(name, find_value_kind(node_signature.values[name]), 0.0, 0.0, True, True)
+            for name in node_signature.values
             if name in facts.linked_ins
         ]
         return NodeLayout(
-            what,
+            sort,
             WIDTH,
             HEADER,
             id,
             subtitle,
             category,
             doc,
-            ins=_spread([*left, *linked]),
-            outs=_spread(right),
+            ins=_spread_pins([*input_pins, *linked]),
+            outs=_spread_pins(output_pins),
             collapsed=True,
         )
 
     y = HEADER + PAD / 2
     rows: list[NodeRow] = []
-    for index in range(max(len(left), len(right))):
-        start = _at(left[index], y) if index < len(left) else None
-        end = _at(right[index], y) if index < len(right) else None
-        hint = "" if start is None or end or start.name in facts.linked_ins else _default(inputs.get(start.name))
+    for index in range(max(len(input_pins), len(output_pins))):
+        start = _move_pin(input_pins[index], y) if index < len(input_pins) else None
+        end = _move_pin(output_pins[index], y) if index < len(output_pins) else None
+        hint = (
+            "" if start is None or end or start.name in facts.linked_ins else _describe_default(inputs.get(start.name))
+        )
         rows.append(NodeRow(y, start, end, hint=hint, linked=start is not None and start.name in facts.linked_ins))
         y += ROW
-    values = _value_rows(id, item, graph, facts, face.values)
-    shown = values if facts.expanded else _first(values)
-    for row in shown:
+    values = _make_value_rows(id, item, graph, facts, node_signature.values)
+    visible_rows = values if facts.expanded else _choose_rows(values)
+    for row in visible_rows:
         rows.append(
             NodeRow(
-                y, row.left and _at(row.left, y), None, row.value, row.label, row.plain, row.linked, shown=row.shown
+                y,
+                row.left and _move_pin(row.left, y),
+                None,
+                row.value,
+                row.label,
+                row.plain,
+                row.linked,
+                texts=row.texts,
             )
         )
         y += ROW
-    hidden = len(values) - len(shown)
-    is_open = facts.expanded and len(_first(values)) < len(values)
+    hidden = len(values) - len(visible_rows)
+    is_open = facts.expanded and len(_choose_rows(values)) < len(values)
     foot, picture = y, None
     y += MORE if hidden or is_open else PAD / 2 if facts.picture else PAD
     if facts.picture:
         picture = PAD / 2, y, WIDTH - PAD / 2, y + PICTURE
         y += PICTURE + PAD / 2
     return NodeLayout(
-        what,
+        sort,
         WIDTH,
         y,
         id,
@@ -219,26 +231,26 @@ def node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> NodeLayo
     )
 
 
-def subtitle_of(item: Item) -> str:
-    """What stands beside the id of a node: its type, of code what that calls itself."""
+def find_subtitle(item: Item) -> str:
+    """The subtitle of a node: the title of its type, or the name of its language."""
     if isinstance(item, Unknown):
         return LANGUAGES.get(item.type, item.type)
     return item.title if isinstance(item, Node) else ""
 
 
-def _value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values: Mapping[str, Value]) -> list[NodeRow]:
+def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values: Mapping[str, Value]) -> list[NodeRow]:
     rows: list[NodeRow] = []
     for name, value in values.items():
-        kind = value_kind(value) if name in facts.linked_ins or _wireable(graph, Port(id, name)) else None
+        kind = find_value_kind(value) if name in facts.linked_ins or _is_wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
         plain = getattr(item, name) if isinstance(item, Node) else graph.value(Port(id, name))
         linked, label = name in facts.linked_ins, value.label or spell_out(name)
-        rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, shown=_shown(value, plain)))
+        rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, texts=_make_field_texts(value, plain)))
     return rows
 
 
-def _first(rows: list[NodeRow]) -> list[NodeRow]:
-    """The values worth showing: those that are linked, and the first few others that fit a line and say something."""
+def _choose_rows(rows: list[NodeRow]) -> list[NodeRow]:
+    """The values of a node that is not expanded: linked values, and the first few others that fit on a line."""
     fields = [
         row
         for row in rows
@@ -253,19 +265,19 @@ def _first(rows: list[NodeRow]) -> list[NodeRow]:
     return [row for row in rows if row.linked or id(row) in chosen]
 
 
-def _wireable(graph: Graph, port: Port) -> bool:
+def _is_wireable(graph: Graph, port: Port) -> bool:
     try:
         return graph.target(port) is not None
     except GraphError:
         return False
 
 
-def _at(pin: Pin, y: float) -> Pin:
+def _move_pin(pin: Pin, y: float) -> Pin:
     return Pin(pin.name, pin.kind, pin.x, y + ROW / 2, pin.optional, pin.value)
 
 
-def _spread(pins: list[Pin]) -> dict[str, Pin]:
-    """Pins along the side of a closed node."""
+def _spread_pins(pins: list[Pin]) -> dict[str, Pin]:
+    """Pins spread along the side of a collapsed node."""
     step = HEADER / (len(pins) + 1)
     return {
         pin.name: Pin(pin.name, pin.kind, pin.x, step * (at + 1), pin.optional, pin.value)
@@ -273,7 +285,7 @@ def _spread(pins: list[Pin]) -> dict[str, Pin]:
     }
 
 
-def _shown(value: Value, plain: Plain) -> tuple[FieldText, ...]:
+def _make_field_texts(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     if value.type == "path":
         return (FieldText(PurePath(str(plain)).name),)
     if value.type in ("choice", "text"):
@@ -288,9 +300,9 @@ def _shown(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     return (FieldText(""),)
 
 
-def _default(socket: Socket | None) -> str:
-    """What an input is worth without a link."""
+def _describe_default(socket: Socket | None) -> str:
+    """The default of an input as text."""
     if socket is None or socket.default is None:
         return ""
-    given = socket.default
-    return f"{given:g}" if isinstance(given, int | float) else ", ".join(f"{part:g}" for part in given)
+    default = socket.default
+    return f"{default:g}" if isinstance(default, int | float) else ", ".join(f"{part:g}" for part in default)

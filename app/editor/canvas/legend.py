@@ -1,4 +1,4 @@
-"""What the shapes and colors of sockets mean, and what the mouse does: behind a question mark in the corner."""
+"""The legend of sockets and mouse controls, behind a question mark in the corner."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ class Legend:
 
     context: CanvasContext
 
-    def rect(self, panel: Rect) -> Rect:
-        """Where the question mark is."""
+    def find_rect(self, panel: Rect) -> Rect:
+        """The rectangle of the question mark."""
         scale = ui_scale()
         left, bottom = panel[0] + _GAP * scale, panel[3] - _GAP * scale
         return left, bottom - _SIDE * scale, left + _SIDE * scale, bottom
 
     def draw(self, brush: DrawContext, panel: Rect) -> None:
-        """Draw it."""
-        rect, palette, scale = self.rect(panel), self.context.palette, ui_scale()
+        """Draw the question mark, and the popup if it is open."""
+        rect, palette, scale = self.find_rect(panel), self.context.palette, ui_scale()
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
@@ -62,17 +62,17 @@ class Legend:
             imgui.open_popup(_POPUP)
         imgui.set_next_window_pos((rect[0], rect[1] - 6 * scale), imgui.Cond_.appearing, (0.0, 1.0))
         if imgui.begin_popup(_POPUP):
-            self._contents(brush)
+            self._draw_contents(brush)
             imgui.end_popup()
 
-    def _contents(self, brush: DrawContext) -> None:
+    def _draw_contents(self, brush: DrawContext) -> None:
         scale, line = ui_scale(), imgui.get_text_line_height()
         draw = imgui.get_window_draw_list()
         for kind, meaning in ((kind, kind.facts.doc) for kind in Kind):
             corner = imgui.get_cursor_screen_pos()
             at = corner.x + 8 * scale, corner.y + line / 2
             popup = DrawContext(
-                draw, CanvasTransform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.seen
+                draw, CanvasTransform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.visible
             )
             paint_pin(popup, at[0] / scale, at[1] / scale, kind, brush.ink.kinds[kind])
             imgui.dummy((18 * scale, line))

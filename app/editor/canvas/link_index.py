@@ -11,7 +11,16 @@ from halation.nodes import Kind
 from numpy.typing import NDArray
 
 from ...graph import Port
-from .geometry import SAMPLES, Curve, Point, crossed, crossing, distances, midpoint, sampled
+from .geometry import (
+    SAMPLES,
+    Curve,
+    Point,
+    find_crossed,
+    find_crossing,
+    find_midpoint,
+    measure_distances,
+    sample_curves,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,19 +36,19 @@ class Wire:
     fault: str = ""
     muted: bool = False
 
-    def leaves(self, keys: Collection[str]) -> bool:
-        """True if it joins what is among `keys` with what is not."""
+    def crosses_border(self, keys: Collection[str]) -> bool:
+        """True if exactly one end is among `keys`."""
         return (self.stops[0] in keys) != (self.stops[-1] in keys)
 
     @property
     def middle(self) -> Point:
-        """A point on it, about half way."""
-        return midpoint(self.curves[len(self.curves) // 2])
+        """A point about half way along the link."""
+        return find_midpoint(self.curves[len(self.curves) // 2])
 
 
 @dataclass(frozen=True)
-class Net:
-    """All links. What is costly to find out about them is kept while elements look different but stay in place."""
+class LinkIndex:
+    """All links, with cached polylines: they stay valid while elements change their looks but not their places."""
 
     wires: tuple[Wire, ...] = ()
 
@@ -47,11 +56,11 @@ class Net:
     def lines(self) -> NDArray[np.float64]:
         """All curves of all links as polylines."""
         shapes = [shape for wire in self.wires for shape in wire.curves]
-        return sampled(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
+        return sample_curves(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
 
     @cached_property
     def by_target(self) -> Mapping[Port, Wire]:
-        """Links by what they feed."""
+        """Links by target."""
         return {wire.target: wire for wire in self.wires}
 
     @cached_property
@@ -59,11 +68,11 @@ class Net:
         """The link that each of `lines` belongs to."""
         return [wire for wire in self.wires for _ in wire.curves]
 
-    def at(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
+    def find_near(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
         """The link nearest to a point within reach, leaving out those that join one of `skip`."""
         if not len(self.lines):
             return None
-        gaps = distances(self.lines, (x, y))
+        gaps = measure_distances(self.lines, (x, y))
         near = np.flatnonzero(gaps <= reach)
         for index in near[np.argsort(gaps[near])]:
             wire = self._owners[index]
@@ -71,11 +80,11 @@ class Net:
                 return wire
         return None
 
-    def crossed(self, start: Point, end: Point) -> dict[Port, Point]:
+    def find_crossed(self, start: Point, end: Point) -> dict[Port, Point]:
         """The links that a straight line crosses, and where."""
         if not len(self.lines):
             return {}
         return {
-            self._owners[index].target: crossing(self.lines[index], start, end)
-            for index in np.flatnonzero(crossed(self.lines, start, end))
+            self._owners[index].target: find_crossing(self.lines[index], start, end)
+            for index in np.flatnonzero(find_crossed(self.lines, start, end))
         }

@@ -18,10 +18,10 @@ from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
 from ..shared.dialogs import browse
-from .brush import TEXT, DrawContext, on_nodes
+from .brush import TEXT, DrawContext, make_node_palette
 from .geometry import Rect
 from .layout import FIELD_HEIGHT, NodeRow
-from .paint_field import MOST_PARTS, paint_label, split
+from .paint_field import MOST_PARTS, paint_label, split_vector
 from .scene import ElementBox
 from .sketch import Sketch
 
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 
 
-def drawn_live(row: NodeRow) -> bool:
-    """True for fields whose widgets draw themselves; those of the others only notice the mouse."""
+def has_live_widget(row: NodeRow) -> bool:
+    """True for fields with a real widget; other fields are painted and only react to clicks."""
     if row.value is None or row.field is None:
         return False
-    few = row.value.type == "vector" and len(row.shown) <= MOST_PARTS
+    few = row.value.type == "vector" and len(row.texts) <= MOST_PARTS
     return few or row.value.type in ("float", "int", "bool", "text")
 
 
 @dataclass
-class Live:
+class LiveFields:
     """The widgets on nodes. `open` is the value whose list or picker is open."""
 
     context: CanvasContext
@@ -48,7 +48,7 @@ class Live:
     open: tuple[Port, Value] | None = None
     _opening: str = ""
     _dragged: bool = False
-    _at: tuple[float, float] = (0.0, 0.0)
+    _popup_position: tuple[float, float] = (0.0, 0.0)
     _edits: list[tuple[Port, Edit]] = field(default_factory=list[tuple[Port, Edit]])
 
     @property
@@ -61,7 +61,7 @@ class Live:
 
     def begin(self) -> None:
         """Call before any node is drawn."""
-        palette = on_nodes(self.context.palette.name)
+        palette = make_node_palette(self.context.palette.name)
         if self.fields is None or self.fields.palette is not palette:
             self.fields = Fields(palette)
         self.fields.places = self.context.places
@@ -69,7 +69,7 @@ class Live:
         self._dragged = self.fields.dragging
 
     def draw(self, brush: DrawContext, box: ElementBox, rows: tuple[NodeRow, ...]) -> None:
-        """The fields of a node, which must have been painted up to them."""
+        """Draw the widgets of a node; call after the node is painted."""
         fields = self.fields
         if fields is None:
             return
@@ -82,14 +82,14 @@ class Live:
             if row.value and row.field and row.plain is not None:
                 place = row.field
                 rect = box.x + place[0], box.y + place[1], box.x + place[2], box.y + place[3]
-                self._draw(fields, brush, rect, Port(box.key, row.value.name), row, row.value, row.plain)
+                self._draw_field(fields, brush, rect, Port(box.key, row.value.name), row, row.value, row.plain)
         imgui.pop_style_var(3)
         imgui.pop_font()
 
-    def _draw(
+    def _draw_field(
         self, fields: Fields, brush: DrawContext, rect: Rect, port: Port, row: NodeRow, value: Value, plain: Plain
     ) -> None:
-        low, high = brush.corners(rect)
+        low, high = brush.project_corners(rect)
         width, id = high[0] - low[0], f"canvas {port}"
         imgui.set_cursor_screen_pos(low)
         edit: Edit | None = None
@@ -103,11 +103,11 @@ class Live:
             label = Sketch(brush)
             paint_label(label, rect, row.label, len(plain))
             label.draw(brush, 0.0, 0.0)
-            left, parts = split(rect, len(plain))
-            imgui.set_cursor_screen_pos(brush.corners((left, *parts[0][1:]))[0])
+            left, parts = split_vector(rect, len(plain))
+            imgui.set_cursor_screen_pos(brush.project_corners((left, *parts[0][1:]))[0])
             edit = row_of_numbers(fields, id, plain, value, (rect[2] - left) * brush.to.scale, ("",) * len(plain))
         elif value.type in ("choice", "color", "path") and imgui.invisible_button(f"##{id}", (width, high[1] - low[1])):
-            self.open, self._opening, self._at = (port, value), value.type, (low[0], high[1])
+            self.open, self._opening, self._popup_position = (port, value), value.type, (low[0], high[1])
         idle = not fields.dragging and fields.typing is None
         if value.doc and idle and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
             imgui.set_tooltip(value.doc)
@@ -115,23 +115,23 @@ class Live:
             self._edits.append((port, edit))
 
     def end(self) -> None:
-        """Call after all nodes: draws what is open, and sets what was changed."""
+        """Call after all nodes: draws the open popup, and applies the edits."""
         fields = self.fields
         if fields is None:
             return
-        self._popups(fields)
-        if left := fields.end():
-            self._edits.append((Port.parse(left[0].removeprefix("canvas ")), left[1]))
+        self._draw_popups(fields)
+        if last_edit := fields.end():
+            self._edits.append((Port.parse(last_edit[0].removeprefix("canvas ")), last_edit[1]))
         if fields.eyedropper:
             self.context.viewer.picking = fields.eyedropper.removeprefix("canvas ")
         self.context.interface.dragging = self.context.interface.dragging or fields.dragging
         for port, edit in self._edits:
-            self.context.log.attempt(lambda port=port, edit=edit: _put(self.context.session, port, edit))
+            self.context.log.attempt(lambda port=port, edit=edit: _apply_edit(self.context.session, port, edit))
         self._edits.clear()
         if self._dragged and not fields.dragging:
             self.context.session.seal()
 
-    def _popups(self, fields: Fields) -> None:
+    def _draw_popups(self, fields: Fields) -> None:
         if self.open is None:
             return
         (port, value), opening, self._opening = self.open, self._opening, ""
@@ -151,18 +151,18 @@ class Live:
         if opening:
             fields.stops = intensity(rgba(plain)) if opening == "color" else 0.0
             imgui.open_popup(_PICKER if opening == "color" else _CHOICES)
-        imgui.set_next_window_pos(self._at, imgui.Cond_.appearing)
+        imgui.set_next_window_pos(self._popup_position, imgui.Cond_.appearing)
         if value.type == "color" and imgui.begin_popup(_PICKER):
             if edit := color_picker(fields, f"canvas {port} picker", rgba(plain), alpha=has_alpha(plain)):
                 self._edits.append((port, edit))
             imgui.end_popup()
         elif value.type == "choice" and imgui.begin_popup(_CHOICES):
-            self._choices(port, value, plain)
+            self._draw_choices(port, value, plain)
             imgui.end_popup()
         elif not opening:
             self.open = None
 
-    def _choices(self, port: Port, value: Value, plain: Plain) -> None:
+    def _draw_choices(self, port: Port, value: Value, plain: Plain) -> None:
         appearing = imgui.is_window_appearing()
         for choice in value.choices:
             if imgui.selectable(choice or " ", choice == plain)[0]:
@@ -176,7 +176,7 @@ class Live:
             imgui.close_current_popup()
 
 
-def _put(session: Session, port: Port, edit: Edit) -> None:
+def _apply_edit(session: Session, port: Port, edit: Edit) -> None:
     if edit.expression:
         session.apply(SetExpression(port, edit.expression))
     else:

@@ -1,4 +1,4 @@
-"""Context menus, made from the table of actions."""
+"""Context menus of the canvas, built from the table of actions."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _POPUP = "on the canvas"
 
 
 @dataclass
-class Menus:
-    """The menu for what was clicked."""
+class CanvasMenus:
+    """The context menu for the clicked element."""
 
     context: CanvasContext
     is_open: bool = False
@@ -50,16 +50,16 @@ class Menus:
         session, hit = self.context.session, self._hit
         if hit.part == "link" and hit.port:
             target = hit.port
-            _item(self.context, "Add a dot", lambda: session.apply(AddDot(target, self._at)))
-            _item(self.context, "Cut this link", lambda: session.apply(CutLinks((target,))))
+            _draw_item(self.context, "Add a dot", lambda: session.apply(AddDot(target, self._at)))
+            _draw_item(self.context, "Cut this link", lambda: session.apply(CutLinks((target,))))
         elif hit.part == "pin" and hit.port:
-            self._pin(hit.port, hit.output)
+            self._draw_pin_items(hit.port, hit.output)
         elif hit.part == "field" and hit.port:
-            self._field(hit.port)
+            self._draw_field_items(hit.port)
             imgui.separator()
         if hit.part == "empty":
             label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search to add ..."
-            if imgui.menu_item(label, _key(self.context, "node.add"), False)[0]:
+            if imgui.menu_item(label, _find_shortcut(self.context, "node.add"), False)[0]:
                 self.context.canvas.searching = True
             record(self.context, "menu search")
             imgui.separator()
@@ -67,43 +67,43 @@ class Menus:
             if imgui.menu_item("Rename ..." if hit.key.startswith("frames") else "Edit text ...", "", False)[0]:
                 self.context.canvas.renaming = hit.key
             if hit.key.startswith("frames."):
-                _colors(self.context, hit.key)
-        for action in self.context.actions.in_menu(_context(hit)):
+                _draw_colors(self.context, hit.key)
+        for action in self.context.actions.in_menu(_find_menu(hit)):
             if action.id != "node.add":
-                _action(self.context, action)
+                _draw_action(self.context, action)
         if isinstance(self.context.session.graph.nodes.get(hit.key), Group):
             for action in self.context.actions.in_menu("group"):
-                _action(self.context, action)
+                _draw_action(self.context, action)
         if self.context.session.code(hit.key) is not None:
             for action in self.context.actions.in_menu("code"):
-                _action(self.context, action)
+                _draw_action(self.context, action)
         imgui.end_popup()
 
-    def _pin(self, port: Port, output: bool) -> None:
+    def _draw_pin_items(self, port: Port, output: bool) -> None:
         session = self.context.session
         if output:
-            _item(self.context, "View", lambda: session.view(port))
-            _item(self.context, "View as B", lambda: session.view(port, "B"))
+            _draw_item(self.context, "View", lambda: session.view(port))
+            _draw_item(self.context, "View as B", lambda: session.view(port, "B"))
             fed = [target for target, source in session.graph.links.items() if source == port]
-            _item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
+            _draw_item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
         else:
-            _item(self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links)
+            _draw_item(self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links)
             if port.node in session.graph.nodes and port in session.graph.links:
-                _item(self.context, "Add a dot", lambda: session.apply(AddDot(port, self._at)))
+                _draw_item(self.context, "Add a dot", lambda: session.apply(AddDot(port, self._at)))
 
-    def _field(self, port: Port) -> None:
+    def _draw_field_items(self, port: Port) -> None:
         session = self.context.session
-        _item(
+        _draw_item(
             self.context, f"Reset {port.socket}", lambda: session.apply(ResetValue(port)), not session.is_default(port)
         )
         control = session.control_of(port)
         if control:
-            _item(self.context, f"Hide the control '{control}'", lambda: session.apply(HideControl(control)))
+            _draw_item(self.context, f"Hide the control '{control}'", lambda: session.apply(HideControl(control)))
         else:
-            _item(self.context, "Show as a control of the graph", lambda: session.apply(ExposeValue(port)))
+            _draw_item(self.context, "Show as a control of the graph", lambda: session.apply(ExposeValue(port)))
 
 
-def _context(hit: Hit) -> str:
+def _find_menu(hit: Hit) -> str:
     if hit.part in ("link", "pin"):
         return hit.part
     if hit.part == "empty":
@@ -111,7 +111,7 @@ def _context(hit: Hit) -> str:
     return hit.key.partition(".")[0][:-1] if hit.key.startswith(("frames.", "comments.", "dots.")) else "node"
 
 
-def _colors(context: CanvasContext, key: str) -> None:
+def _draw_colors(context: CanvasContext, key: str) -> None:
     """Colors for a frame: those of headers, so that frames and nodes look alike."""
     id = key.removeprefix("frames.")
     for index, color in enumerate(dict.fromkeys(context.palette.categories.values())):
@@ -122,18 +122,18 @@ def _colors(context: CanvasContext, key: str) -> None:
     imgui.separator()
 
 
-def _action(context: CanvasContext, action: Action) -> None:
+def _draw_action(context: CanvasContext, action: Action) -> None:
     if action.separated:
         imgui.separator()
     entry(context, action)
 
 
-def _key(context: CanvasContext, id: str) -> str:
+def _find_shortcut(context: CanvasContext, id: str) -> str:
     text = context.actions.shortcut(id)
     return display_shortcut(text) if text else ""
 
 
-def _item(context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True) -> None:
+def _draw_item(context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True) -> None:
     if imgui.menu_item(label, "", False, enabled)[0]:
         context.log.attempt(act)
     record(context, f"menu {label}")

@@ -1,4 +1,4 @@
-"""The whole graph, small, in a corner: click or drag in it to go there."""
+"""The minimap: the whole graph in a corner. A click or drag in it pans the view."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 
 from ..theme.style import u32, ui_scale
 from .brush import DrawContext
-from .geometry import Rect, bounds
+from .geometry import Rect, find_bounds
 from .scene import CanvasScene
 
 if TYPE_CHECKING:
@@ -20,13 +20,13 @@ _SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
 
 @dataclass
 class Minimap:
-    """The overview; `dragging` while the mouse holds it."""
+    """The minimap; `dragging` while the user drags in it."""
 
     context: CanvasContext
     dragging: bool = False
 
-    def rect(self, panel: Rect) -> Rect | None:
-        """Where it is, unless the panel is too small for it."""
+    def find_rect(self, panel: Rect) -> Rect | None:
+        """The rectangle of the minimap, or None in a small panel."""
         scale = ui_scale()
         width, height, gap = _SIZE[0] * scale, _SIZE[1] * scale, _GAP * scale
         if panel[2] - panel[0] < width * 2.2 or panel[3] - panel[1] < height * 2.2:
@@ -34,16 +34,16 @@ class Minimap:
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
 
     def draw(self, brush: DrawContext, panel: Rect, scene: CanvasScene) -> None:
-        """Draw it, and pan where the mouse points in it."""
-        rect = self.rect(panel)
-        around = bounds([*(box.rect for box in scene.boxes.values()), brush.seen])
-        if rect is None or around is None:
+        """Draw the minimap, and pan the view to a click in it."""
+        rect = self.find_rect(panel)
+        bounds = find_bounds([*(box.rect for box in scene.boxes.values()), brush.visible])
+        if rect is None or bounds is None:
             return
         pad = _PAD * ui_scale()
         across, down = rect[2] - rect[0] - 2 * pad, rect[3] - rect[1] - 2 * pad
-        scale = min(across / (around[2] - around[0]), down / (around[3] - around[1]))
-        left = (rect[0] + rect[2]) / 2 - (around[0] + around[2]) / 2 * scale
-        top = (rect[1] + rect[3]) / 2 - (around[1] + around[3]) / 2 * scale
+        scale = min(across / (bounds[2] - bounds[0]), down / (bounds[3] - bounds[1]))
+        left = (rect[0] + rect[2]) / 2 - (bounds[0] + bounds[2]) / 2 * scale
+        top = (rect[1] + rect[3]) / 2 - (bounds[1] + bounds[3]) / 2 * scale
         draw, palette, selection = brush.draw, self.context.palette, self.context.session.selection
         rounding = 6.0 * ui_scale()
         draw.add_rect_filled(rect[:2], rect[2:], u32(palette.panel, 0.88), rounding)
@@ -55,8 +55,11 @@ class Minimap:
             high = max(low[0] + box.w * scale, low[0] + 2.0), max(low[1] + box.h * scale, low[1] + 1.5)
             header = brush.ink.marks.get(box.layout.category, brush.ink.marks[""]) if box.layout else faint
             draw.add_rect_filled(low, high, brush.ink.accent if key in selection else header, 1.0)
-        seen = brush.seen
-        low, high = (left + seen[0] * scale, top + seen[1] * scale), (left + seen[2] * scale, top + seen[3] * scale)
+        visible = brush.visible
+        low, high = (
+            (left + visible[0] * scale, top + visible[1] * scale),
+            (left + visible[2] * scale, top + visible[3] * scale),
+        )
         draw.push_clip_rect(rect[:2], rect[2:], True)
         draw.add_rect_filled(low, high, u32(palette.text, 0.06), 2.0)
         draw.add_rect(low, high, u32(palette.text, 0.55), 2.0)

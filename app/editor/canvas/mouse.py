@@ -1,4 +1,4 @@
-"""From the mouse to gestures, and from finished gestures to what they do to the document."""
+"""Mouse input of the canvas: starts gestures, and applies finished gestures to the document."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ from ...authoring.commands import (
     SpliceChain,
 )
 from ...graph import Group, Port
-from .frame import CanvasFrame, pan_at_border, turn_wheel
-from .geometry import Point, holds
+from .frame import CanvasFrame, apply_wheel, pan_at_border
+from .geometry import Point, contains
 from .gestures import (
     IDLE,
     Band,
-    BandGesture,
-    Dragged,
+    CutGesture,
     Gesture,
+    GesturePreview,
     Idle,
-    Link,
+    LinkGesture,
     MoveGesture,
     PanGesture,
     ResizeGesture,
-    band_rect,
-    dotted,
-    fitting,
-    insertable,
-    moved,
-    nearest,
-    refused,
-    resized,
-    shown,
-    touched,
-    with_members,
+    add_crossing_dots,
+    add_members,
+    find_fitting_pins,
+    find_insertion,
+    find_refused_pin,
+    find_snap_pin,
+    find_touched,
+    make_band_rect,
+    move_to,
+    preview_gesture,
+    resize_to,
 )
 from .scene import EMPTY, CanvasScene, Hit
 
@@ -54,12 +54,12 @@ if TYPE_CHECKING:
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
-_SNAP = 30.0
+_SNAP_REACH = 30.0
 
 
 @dataclass
-class Asked:
-    """What a gesture wants from others: a menu, the search, a text field."""
+class PanelRequests:
+    """Requests of a gesture to the canvas: a menu, the search, a text field, expanding a node."""
 
     menu: Hit | None = None
     search: tuple[Port, bool] | None = None
@@ -69,41 +69,41 @@ class Asked:
 
 @dataclass
 class CanvasMouse:
-    """Which gesture is going on, and what is under the pointer."""
+    """The current gesture, and what is under the pointer."""
 
     gesture: Gesture = IDLE
     hit: Hit = EMPTY
-    asked: Asked = field(default_factory=Asked)
-    dragged: Dragged = field(default_factory=lambda: Dragged(CanvasScene({})))
+    requests: PanelRequests = field(default_factory=PanelRequests)
+    preview: GesturePreview = field(default_factory=lambda: GesturePreview(CanvasScene({})))
     _pressed: tuple[Hit, Point] | None = None
-    """Where the right button went down."""
+    """Where the right button was pressed."""
     _moves: int = 0
     _hit: tuple[CanvasScene, Point, float, Hit] = field(
         default_factory=lambda: (CanvasScene({}), (0.0, 0.0), 0.0, EMPTY)
     )
-    """What was under the pointer last, and where and in what that was."""
+    """The last hit under the pointer, with its scene, position and reach."""
 
     def update(self, frame: CanvasFrame) -> None:
-        """Go on with the gesture, or begin one."""
-        self.asked = Asked()
+        """Continue the gesture, or begin one."""
+        self.requests = PanelRequests()
         io = imgui.get_io()
-        self.hit = self._found(frame) if frame.over and isinstance(self.gesture, Idle) else EMPTY
-        if frame.over or not isinstance(self.gesture, Idle):
-            turn_wheel(frame, io, on_field=self.hit.part == "field")
+        self.hit = self._find_hit(frame) if frame.hovered and isinstance(self.gesture, Idle) else EMPTY
+        if frame.hovered or not isinstance(self.gesture, Idle):
+            apply_wheel(frame, io, on_field=self.hit.part == "field")
         if isinstance(self.gesture, Idle):
-            if frame.over:
+            if frame.hovered:
                 self._begin(frame, io)
         else:
             if not isinstance(self.gesture, PanGesture):
                 pan_at_border(frame, io)
-            self._go_on(frame, io)
-        self._show(frame)
+            self._continue(frame, io)
+        self._update_preview(frame)
 
-    def _found(self, frame: CanvasFrame) -> Hit:
-        """What is under the pointer; looked for again only when something has moved."""
-        of = frame.scene, frame.at, frame.reach
-        if self._hit[0] is not frame.scene or self._hit[1:3] != of[1:]:
-            self._hit = *of, frame.scene.hit(*frame.at, frame.reach)
+    def _find_hit(self, frame: CanvasFrame) -> Hit:
+        """The hit under the pointer, cached until the scene or the pointer moves."""
+        inputs = frame.scene, frame.pointer, frame.reach
+        if self._hit[0] is not frame.scene or self._hit[1:3] != inputs[1:]:
+            self._hit = *inputs, frame.scene.find_hit(*frame.pointer, frame.reach)
         return self._hit[3]
 
     # --- beginning ---------------------------------------------------------------------------------------------------
@@ -114,35 +114,35 @@ class CanvasMouse:
             self.gesture = PanGesture(view.center, frame.screen)
         elif imgui.is_mouse_clicked(RIGHT):
             if io.key_ctrl or io.key_shift:
-                self.gesture = BandGesture(frame.at, dots=io.key_shift)
+                self.gesture = CutGesture(frame.pointer, dots=io.key_shift)
             else:
-                self._pressed = hit, frame.at
+                self._pressed = hit, frame.pointer
         elif imgui.is_mouse_double_clicked(LEFT):
-            self._double(frame, hit)
+            self._double_click(frame, hit)
         elif imgui.is_mouse_clicked(LEFT):
             if view.tool:
-                self.gesture = BandGesture(frame.at, dots=view.tool == "dot")
+                self.gesture = CutGesture(frame.pointer, dots=view.tool == "dot")
                 view.tool = ""
             else:
                 self._press(frame, io, hit)
         if self._pressed and imgui.is_mouse_released(RIGHT):
             (hit, start), self._pressed = self._pressed, None
             if not frame.is_far(start):
-                self._menu(context, hit)
+                self._request_menu(context, hit)
 
     def _press(self, frame: CanvasFrame, io: imgui.IO, hit: Hit) -> None:
         context, session = frame.context, frame.context.session
         match hit.part:
             case "pin" if hit.port:
-                self._take(frame, hit.port, hit.output, io.key_ctrl)
+                self._begin_link(frame, hit.port, hit.output, io.key_ctrl)
             case "field":
                 self._select(context, hit.key, "replace")
             case "more":
-                self.asked.toggle = hit.key
+                self.requests.toggle = hit.key
             case "edge":
                 self._select(context, hit.key, "replace")
                 rect = frame.scene.boxes[hit.key].rect
-                self.gesture = ResizeGesture(hit.key, hit.name, frame.at, rect, rect)
+                self.gesture = ResizeGesture(hit.key, hit.name, frame.pointer, rect, rect)
             case "title" | "body":
                 if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
                     context.log.attempt(lambda: session.view_node(hit.key))
@@ -152,29 +152,31 @@ class CanvasMouse:
                     alone = hit.key in session.selection
                     if not alone:
                         self._select(context, hit.key, "replace")
-                    self.gesture = MoveGesture(hit.key, frame.at, alone=alone)
+                    self.gesture = MoveGesture(hit.key, frame.pointer, alone=alone)
             case _:
                 mode = "add" if io.key_shift else "remove" if io.key_ctrl else "replace"
-                self.gesture = Band(frame.at, mode)
+                self.gesture = Band(frame.pointer, mode)
 
-    def _take(self, frame: CanvasFrame, port: Port, output: bool, keep: bool) -> None:
-        """Begin a link from a pin; the link into an input comes along, unless it shall stay."""
+    def _begin_link(self, frame: CanvasFrame, port: Port, output: bool, keep: bool) -> None:
+        """Begin a link from a pin; an input gives up its link, unless `keep`."""
         graph = frame.context.session.graph
         detached = None if output or keep else port if port in graph.links else None
         start, is_output = (graph.links[port], True) if detached else (port, output)
         scene = frame.scene
         if detached:
             graph = graph.disconnect(detached)
-        targets = frame.context.log.attempt(lambda: fitting(graph, scene, start, is_output), frozenset[Port]())
-        self.gesture = Link(start, is_output, detached, targets or frozenset())
+        targets = frame.context.log.attempt(
+            lambda: find_fitting_pins(graph, scene, start, is_output), frozenset[Port]()
+        )
+        self.gesture = LinkGesture(start, is_output, detached, targets or frozenset())
 
-    def _double(self, frame: CanvasFrame, hit: Hit) -> None:
+    def _double_click(self, frame: CanvasFrame, hit: Hit) -> None:
         context, session = frame.context, frame.context.session
         if hit.part == "link" and hit.port:
             target = hit.port
-            context.log.attempt(lambda: session.apply(AddDot(target, frame.at)))
+            context.log.attempt(lambda: session.apply(AddDot(target, frame.pointer)))
         elif hit.key.startswith(("frames.", "comments.")):
-            self.asked.rename = hit.key
+            self.requests.rename = hit.key
         elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
             item = session.graph.nodes.get(hit.key)
             if session.code(hit.key) is not None:
@@ -186,21 +188,21 @@ class CanvasMouse:
         elif hit.part == "empty":
             context.canvas.searching = True
 
-    def _menu(self, context: CanvasContext, hit: Hit) -> None:
-        """A context menu acts on what is selected, so what was clicked is."""
+    def _request_menu(self, context: CanvasContext, hit: Hit) -> None:
+        """Request a context menu; it acts on the selection, so a clicked element is selected first."""
         if hit.key and hit.part != "pin" and hit.key not in context.session.selection:
             self._select(context, hit.key, "replace")
-        self.asked.menu = hit
+        self.requests.menu = hit
 
     def _select(self, context: CanvasContext, key: str, mode: str) -> None:
         context.log.attempt(lambda: context.session.select((key,), mode))  # pyright: ignore[reportArgumentType]
 
     # --- going on ----------------------------------------------------------------------------------------------------
 
-    def _go_on(self, frame: CanvasFrame, io: imgui.IO) -> None:
+    def _continue(self, frame: CanvasFrame, io: imgui.IO) -> None:
         gesture, view = self.gesture, frame.context.canvas
         cancelled = imgui.is_key_pressed(imgui.Key.escape) or (
-            not isinstance(gesture, BandGesture | PanGesture) and imgui.is_mouse_clicked(RIGHT)
+            not isinstance(gesture, CutGesture | PanGesture) and imgui.is_mouse_clicked(RIGHT)
         )
         if cancelled:
             if isinstance(gesture, MoveGesture):
@@ -212,31 +214,31 @@ class CanvasMouse:
                 scale = frame.to.scale
                 dx, dy = frame.screen[0] - gesture.mouse[0], frame.screen[1] - gesture.mouse[1]
                 view.center = gesture.center[0] - dx / scale, gesture.center[1] - dy / scale
-                self._until(not (imgui.is_mouse_down(MIDDLE) or imgui.is_mouse_down(LEFT)), lambda: None)
+                self._end_if(not (imgui.is_mouse_down(MIDDLE) or imgui.is_mouse_down(LEFT)), lambda: None)
             case Band():
-                self._until(not imgui.is_mouse_down(LEFT), lambda: self._banded(frame, gesture))
+                self._end_if(not imgui.is_mouse_down(LEFT), lambda: self._finish_band(frame, gesture))
             case MoveGesture():
-                self.gesture = self._moving(frame, gesture, snap=io.key_ctrl, extract=io.key_alt)
-                self._until(not imgui.is_mouse_down(LEFT), lambda: self._moved(frame))
+                self.gesture = self._update_move(frame, gesture, snap=io.key_ctrl, extract=io.key_alt)
+                self._end_if(not imgui.is_mouse_down(LEFT), lambda: self._finish_move(frame))
             case ResizeGesture():
-                self.gesture = changed = resized(gesture, frame.at, snap=io.key_ctrl)
-                self._until(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.context, changed))
-            case BandGesture():
+                self.gesture = resized = resize_to(gesture, frame.pointer, snap=io.key_ctrl)
+                self._end_if(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.context, resized))
+            case CutGesture():
                 released = not (imgui.is_mouse_down(LEFT) or imgui.is_mouse_down(RIGHT))
-                self._until(released, lambda: _drawn(frame, gesture))
-            case Link():
-                self._until(not imgui.is_mouse_down(LEFT), lambda: self._linked(frame, gesture))
+                self._end_if(released, lambda: _finish_cut(frame, gesture))
+            case LinkGesture():
+                self._end_if(not imgui.is_mouse_down(LEFT), lambda: self._finish_link(frame, gesture))
             case Idle():
                 pass
 
-    def _until(self, over: bool, act: Callable[[], object]) -> None:
-        if over:
+    def _end_if(self, ended: bool, act: Callable[[], object]) -> None:
+        if ended:
             act()
             self.gesture = IDLE
 
-    def _moving(self, frame: CanvasFrame, move: MoveGesture, snap: bool, extract: bool) -> MoveGesture:
+    def _update_move(self, frame: CanvasFrame, move: MoveGesture, snap: bool, extract: bool) -> MoveGesture:
         session = frame.context.session
-        if not move.going:
+        if not move.is_moving:
             if not frame.is_far(move.start):
                 return move
             members = [
@@ -244,50 +246,52 @@ class CanvasMouse:
                 for key in session.selection
                 if key.startswith("frames.")
             ]
-            move = replace(move, keys=with_members(session.selection, frame.scene, members))
-            if extract and any(wire.leaves(move.keys) for wire in frame.scene.wires):
+            move = replace(move, keys=add_members(session.selection, frame.scene, members))
+            if extract and any(wire.crosses_border(move.keys) for wire in frame.scene.wires):
                 self._moves += 1
                 merge, steps = f"move {self._moves}", session.history.position
                 frame.context.log.attempt(lambda: session.apply(ExtractSelection(merge)))
                 if session.history.position > steps:
                     move = replace(move, merge=merge)
-        return moved(move, frame.scene, frame.at, snap)
+        return move_to(move, frame.scene, frame.pointer, snap)
 
-    def _moved(self, frame: CanvasFrame) -> None:
+    def _finish_move(self, frame: CanvasFrame) -> None:
         move, session = self.gesture, frame.context.session
         if not isinstance(move, MoveGesture):
             return
-        if not move.going:
+        if not move.is_moving:
             if move.alone:
                 self._select(frame.context, move.key, "replace")
             return
-        target = insertable(session.graph, shown(frame.scene, move), move.keys, frame.at, frame.reach)
+        target = find_insertion(
+            session.graph, preview_gesture(frame.scene, move), move.keys, frame.pointer, frame.reach
+        )
         if target:
             ids, sizes = sorted(move.keys & session.graph.nodes.keys()), frame.scene.sizes
-            frame.context.log.attempt(lambda: session.apply(SpliceChain(ids, target, move.by, sizes, move.merge)))
-        elif move.by != (0.0, 0.0):
+            frame.context.log.attempt(lambda: session.apply(SpliceChain(ids, target, move.offset, sizes, move.merge)))
+        elif move.offset != (0.0, 0.0):
             keys = sorted(move.keys & frame.scene.boxes.keys())
-            frame.context.log.attempt(lambda: session.apply(MoveElements(keys, *move.by, merge=move.merge)))
+            frame.context.log.attempt(lambda: session.apply(MoveElements(keys, *move.offset, merge=move.merge)))
         session.seal()
 
-    def _banded(self, frame: CanvasFrame, band: Band) -> None:
+    def _finish_band(self, frame: CanvasFrame, band: Band) -> None:
         context = frame.context
         if not frame.is_far(band.start):
-            hit = frame.scene.hit(*band.start, frame.reach)
+            hit = frame.scene.find_hit(*band.start, frame.reach)
             wire = frame.scene.by_target.get(hit.port) if hit.part == "link" and hit.port else None
             keys = {wire.stops[0], wire.stops[-1]} if wire else ()
             if keys or band.mode == "replace":
                 context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
             return
-        keys = touched(frame.scene, band_rect(band, frame.at))
+        keys = find_touched(frame.scene, make_band_rect(band, frame.pointer))
         context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
 
-    def _linked(self, frame: CanvasFrame, link: Link) -> None:
+    def _finish_link(self, frame: CanvasFrame, link: LinkGesture) -> None:
         context, session = frame.context, frame.context.session
-        snap = nearest(frame.scene, link, frame.at, _SNAP * frame.scale / frame.to.scale)
+        snap = find_snap_pin(frame.scene, link, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale)
         if snap:
-            other = snap[0]
-            source, target = (link.port, other) if link.output else (other, link.port)
+            snap_port = snap[0]
+            source, target = (link.port, snap_port) if link.output else (snap_port, link.port)
             detached = link.detached
             if detached == target:
                 return
@@ -295,41 +299,47 @@ class CanvasMouse:
                 context.log.attempt(lambda: session.apply(MoveLink(detached, target)))
             else:
                 context.log.attempt(lambda: session.apply(Connect(source, target)))
-        elif not frame.is_far(self._start(frame, link)):
+        elif not frame.is_far(self._find_link_start(frame, link)):
             if link.output and link.detached is None:
                 context.log.attempt(lambda: session.view(link.port))
-        elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
+        elif find_refused_pin(frame.scene, link, frame.pointer, frame.reach) is None and not frame.scene.find_node(
+            *frame.pointer
+        ):
             if link.detached:
                 target = link.detached
                 context.log.attempt(lambda: session.apply(Disconnect(target)))
-            elif holds(frame.panel, *frame.screen):
-                self.asked.search = link.port, link.output
+            elif contains(frame.panel, *frame.screen):
+                self.requests.search = link.port, link.output
 
-    def _start(self, frame: CanvasFrame, link: Link) -> Point:
+    def _find_link_start(self, frame: CanvasFrame, link: LinkGesture) -> Point:
         end = link.detached or link.port
-        for port, box, pin in frame.scene.pins(link.output and link.detached is None):
+        for port, box, pin in frame.scene.list_pins(link.output and link.detached is None):
             if port == end:
                 return box.x + pin.x, box.y + pin.y
-        return frame.at
+        return frame.pointer
 
     # --- what is seen of it ------------------------------------------------------------------------------------------
 
-    def _show(self, frame: CanvasFrame) -> None:
+    def _update_preview(self, frame: CanvasFrame) -> None:
         gesture, graph = self.gesture, frame.context.session.graph
-        self.dragged = Dragged(shown(frame.scene, gesture))
+        self.preview = GesturePreview(preview_gesture(frame.scene, gesture))
         frame.context.canvas.refusal = ""
         match gesture:
-            case MoveGesture() if gesture.going:
-                self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
-            case BandGesture():
-                self.dragged.crossed = frame.scene.net.crossed(gesture.start, frame.at)
-            case Link():
-                self.dragged.snap = nearest(frame.scene, gesture, frame.at, _SNAP * frame.scale / frame.to.scale)
-                if other := refused(frame.scene, gesture, frame.at, frame.reach):
-                    source, target = (gesture.port, other) if gesture.output else (other, gesture.port)
-                    if other != gesture.port and source.node != target.node:
+            case MoveGesture() if gesture.is_moving:
+                self.preview.insert = find_insertion(
+                    graph, self.preview.scene, gesture.keys, frame.pointer, frame.reach
+                )
+            case CutGesture():
+                self.preview.crossed = frame.scene.links.find_crossed(gesture.start, frame.pointer)
+            case LinkGesture():
+                self.preview.snap = find_snap_pin(
+                    frame.scene, gesture, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale
+                )
+                if refused_port := find_refused_pin(frame.scene, gesture, frame.pointer, frame.reach):
+                    source, target = (gesture.port, refused_port) if gesture.output else (refused_port, gesture.port)
+                    if refused_port != gesture.port and source.node != target.node:
                         frame.context.canvas.refusal = frame.context.session.refusal(source, target) or ""
-                    self.dragged.snap = None
+                    self.preview.snap = None
             case _:
                 pass
 
@@ -345,14 +355,14 @@ def _resize(context: CanvasContext, resize: ResizeGesture) -> None:
         context.log.attempt(lambda: context.session.apply(ResizeComment(id, left, top, right - left)))
 
 
-def _drawn(frame: CanvasFrame, draw: BandGesture) -> None:
+def _finish_cut(frame: CanvasFrame, gesture: CutGesture) -> None:
     context, session = frame.context, frame.context.session
-    crossings = frame.scene.net.crossed(draw.start, frame.at)
+    crossings = frame.scene.links.find_crossed(gesture.start, frame.pointer)
     if not crossings:
         return
 
-    def dots() -> None:
-        graph, keys = dotted(session.graph, crossings)
+    def add_dots() -> None:
+        graph, keys = add_crossing_dots(session.graph, crossings)
         session.apply(ReplaceGraph("Add dots", graph, keys))
 
-    context.log.attempt(dots if draw.dots else lambda: session.apply(CutLinks(tuple(crossings))))
+    context.log.attempt(add_dots if gesture.dots else lambda: session.apply(CutLinks(tuple(crossings))))

@@ -1,4 +1,4 @@
-"""Typing on the canvas: titles of frames, texts of comments, names of nodes and ends."""
+"""A text field on the canvas for titles of frames, texts of comments, names of nodes and ends."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Naming:
-    """The element that is being named or written in."""
+class NameField:
+    """The text field on an element, and which element that is."""
 
     context: CanvasContext
     key: str = ""
@@ -41,7 +41,7 @@ class Naming:
         self.key, self._starting = key, True
 
     def draw(self, brush: DrawContext, scene: CanvasScene) -> None:
-        """Draw the field, and keep what was typed once that is over."""
+        """Draw the field, and apply the text when the user leaves it."""
         self.rect = None
         if not self.key:
             return
@@ -49,14 +49,14 @@ class Naming:
         if box is None:
             self.key = ""
             return
-        s, many = brush.to.scale, box.sort == "comment"
-        low, _ = brush.corners(box.rect)
+        s, is_multiline = brush.to.scale, box.sort == "comment"
+        low, _ = brush.project_corners(box.rect)
         imgui.set_cursor_screen_pos(low)
         imgui.push_font(brush.fonts.text, TEXT * max(brush.zoom, 0.6))
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, (11.0 * s, (8.0 if many else 7.0) * s))
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (11.0 * s, (8.0 if is_multiline else 7.0) * s))
         if self._starting:
             imgui.set_keyboard_focus_here()
-        if many:
+        if is_multiline:
             flags = int(imgui.InputTextFlags_.word_wrap) | int(imgui.InputTextFlags_.ctrl_enter_for_new_line)
             size = (max(box.w, 80.0) * s, max(box.h, 40.0) * s)
             _, self._text = imgui.input_text_multiline("##naming", self._text, size, flags)
@@ -74,10 +74,10 @@ class Naming:
             escaped = imgui.is_key_pressed(imgui.Key.escape)
             key, self.key = self.key, ""
             if not escaped:
-                self.context.log.attempt(lambda: _keep(self.context, key, self._text))
+                self.context.log.attempt(lambda: _set_name(self.context, key, self._text))
 
 
-def _keep(context: CanvasContext, key: str, text: str) -> None:
+def _set_name(context: CanvasContext, key: str, text: str) -> None:
     session, id = context.session, key.partition(".")[2]
     if key.startswith("frames."):
         session.apply(EditFrame(id, title=text.strip()))

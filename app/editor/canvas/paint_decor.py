@@ -1,4 +1,4 @@
-"""Everything but nodes: the grid, frames, comments, dots, links, and what is drawn while the mouse does something."""
+"""Paints everything but nodes: the grid, frames, comments, dots, links and gestures."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ DASH, HOLE = 9.0, 6.0
 
 
 def paint_grid(brush: DrawContext, panel: Rect) -> None:
-    """Lines every 32 units, stronger every 128; the finer ones go when they would be too near."""
+    """Paint grid lines every 32 units, stronger every 128; fine lines disappear when zoomed out."""
     to, draw = brush.to, brush.draw
     draw.add_rect_filled(panel[:2], panel[2:], brush.ink.canvas)
     step = 32.0 * to.scale
@@ -36,39 +36,39 @@ def paint_grid(brush: DrawContext, panel: Rect) -> None:
                 draw.add_line((at, panel[1]), (at, panel[3]), color)
 
 
-def frame_color(ink: CanvasColors, facts: Mapping[str, Any]) -> tuple[float, float, float]:
+def find_frame_color(ink: CanvasColors, facts: Mapping[str, Any]) -> tuple[float, float, float]:
     """The color of a frame: its own, or that of headers."""
-    given = facts.get("color")
-    if isinstance(given, list | tuple) and len(given) == 3:
-        return given[0], given[1], given[2]
+    color = facts.get("color")
+    if isinstance(color, list | tuple) and len(color) == 3:
+        return color[0], color[1], color[2]
     return ink.palette.category("")
 
 
 def paint_frame(brush: DrawContext, box: ElementBox, facts: Mapping[str, Any], selected: bool, lit: bool) -> None:
-    """A frame with its title; `lit` while the mouse is on its edge or title."""
+    """Paint a frame with its title; `lit` while the mouse is on its edge or title."""
     ink = brush.ink
-    color = frame_color(ink, facts)
+    color = find_frame_color(ink, facts)
     rect = box.rect
-    brush.fill(rect, u32(mix(color, ink.palette.canvas, 0.55), 0.42), ROUND)
+    brush.fill_rect(rect, u32(mix(color, ink.palette.canvas, 0.55), 0.42), ROUND)
     title = (rect[0], rect[1], rect[2], rect[1] + min(FRAME_TITLE, box.h))
-    brush.fill(title, u32(color, 0.55), ROUND, flags=int(imgui.ImDrawFlags_.round_top))
+    brush.fill_rect(title, u32(color, 0.55), ROUND, flags=int(imgui.ImDrawFlags_.round_top))
     edge = ink.accent if selected else u32(mix(color, ink.palette.text, 0.25 if lit else 0.1), 0.9)
-    brush.frame(rect, edge, ROUND, 2.0 if selected else 1.0 + lit)
+    brush.draw_outline(rect, edge, ROUND, 2.0 if selected else 1.0 + lit)
     text = str(facts.get("title") or "frame")
     size = min(max(15.0, 11.0 / brush.zoom), 40.0)
     y = rect[1] + (FRAME_TITLE / 2 if brush.zoom >= 0.6 else max(FRAME_TITLE / 2, size * 0.8))
-    brush.text(rect[0] + 12.0, y, ink.text, brush.short(text, box.w - 24.0, size, True), size, True)
+    brush.draw_text(rect[0] + 12.0, y, ink.text, brush.shorten(text, box.w - 24.0, size, True), size, True)
 
 
 def paint_comment(brush: DrawContext, box: ElementBox, text: str, selected: bool) -> None:
-    """A note."""
+    """Paint a comment."""
     ink, rect = brush.ink, box.rect
-    brush.fill(rect, u32(mix(ink.palette.canvas, ink.palette.warning, 0.12)), 4.0)
+    brush.fill_rect(rect, u32(mix(ink.palette.canvas, ink.palette.warning, 0.12)), 4.0)
     bar = (rect[0], rect[1], rect[0] + 3.0, rect[3])
-    brush.fill(bar, u32(ink.palette.warning, 0.75), 1.5)
+    brush.fill_rect(bar, u32(ink.palette.warning, 0.75), 1.5)
     if selected:
-        brush.frame(rect, ink.accent, 4.0, 2.0, 1.0)
-    low, high = brush.corners(rect)
+        brush.draw_outline(rect, ink.accent, 4.0, 2.0, 1.0)
+    low, high = brush.project_corners(rect)
     s = brush.to.scale
     words, color = (text, ink.text) if text else ("double-click to write", ink.faint)
     brush.draw.push_clip_rect(low, high, True)
@@ -77,7 +77,7 @@ def paint_comment(brush: DrawContext, box: ElementBox, text: str, selected: bool
 
 
 def paint_dot(brush: DrawContext, box: ElementBox, color: int, selected: bool) -> None:
-    """A reroute."""
+    """Paint a dot of a link."""
     x, y = brush.to.to_screen(box.x + box.w / 2, box.y + box.h / 2)
     r = box.w / 2 * brush.to.scale
     if selected:
@@ -87,12 +87,12 @@ def paint_dot(brush: DrawContext, box: ElementBox, color: int, selected: bool) -
 
 
 def paint_wire(brush: DrawContext, wire: Wire, *, lit: bool, faded: bool) -> None:
-    """A link: in the color of what travels, brighter if `lit`, dashed where nothing passes or it cannot work."""
+    """Paint a link in the color of its kind, brighter if `lit`, dashed if it is muted or invalid."""
     ink = brush.ink
     color = ink.error if wire.fault else (ink.kinds_dim if faded or wire.muted else ink.kinds)[wire.kind]
     thickness = LINK + (1.0 if lit else 0.0)
     for shape in wire.curves:
-        if not _visible(brush, shape):
+        if not _is_visible(brush, shape):
             continue
         if wire.fault or wire.muted:
             paint_dashes(brush, shape, color, thickness)
@@ -101,7 +101,7 @@ def paint_wire(brush: DrawContext, wire: Wire, *, lit: bool, faded: bool) -> Non
 
 
 def paint_curve(brush: DrawContext, shape: Curve, color: int, thickness: float, halo: bool = True) -> None:
-    """One curve, with a rim that lifts it off what it crosses."""
+    """Paint one curve with a dark rim, so that crossing curves stand apart."""
     to = brush.to
     x, y, s = to.x, to.y, to.scale
     a, b, c, d = ((x + shape[at] * s, y + shape[at + 1] * s) for at in (0, 2, 4, 6))
@@ -111,7 +111,7 @@ def paint_curve(brush: DrawContext, shape: Curve, color: int, thickness: float, 
 
 
 def paint_dashes(brush: DrawContext, shape: Curve, color: int, thickness: float) -> None:
-    """One curve, dashed."""
+    """Paint one dashed curve."""
     x0, y0, x1, y1, x2, y2, x3, y3 = shape
     length = math.dist((x0, y0), (x1, y1)) + math.dist((x1, y1), (x2, y2)) + math.dist((x2, y2), (x3, y3))
     count = min(max(int(length / ((DASH + HOLE) * max(1.0, 0.5 / brush.zoom))), 2), 64)
@@ -125,19 +125,19 @@ def paint_dashes(brush: DrawContext, shape: Curve, color: int, thickness: float)
 
 
 def paint_band(brush: DrawContext, rect: Rect) -> None:
-    """The rectangle that selects."""
-    brush.fill(rect, brush.ink.accent_soft, 2.0)
-    brush.frame(rect, brush.ink.accent, 2.0)
+    """Paint the selection rectangle."""
+    brush.fill_rect(rect, brush.ink.accent_soft, 2.0)
+    brush.draw_outline(rect, brush.ink.accent, 2.0)
 
 
 def paint_cut(brush: DrawContext, start: Point, end: Point, color: int) -> None:
-    """The line that cuts links or puts dots on them."""
+    """Paint the line that cuts links or puts dots on them."""
     brush.draw.add_line(brush.to.to_screen(*start), brush.to.to_screen(*end), color, 2.0 * brush.line)
     brush.draw.add_circle_filled(brush.to.to_screen(*start), 3.0 * brush.line, color)
 
 
 def paint_note(brush: DrawContext, x: float, y: float, text: str, color: int) -> None:
-    """A sentence beside the pointer, on top of everything; `x`, `y` and sizes are pixels of the screen."""
+    """Paint a sentence beside the pointer, on top of everything; `x`, `y` and sizes are pixels of the screen."""
     scale = brush.to.scale / brush.zoom
     draw = imgui.get_foreground_draw_list()
     size, wrap = TEXT * scale, 340.0 * scale
@@ -154,18 +154,18 @@ def paint_note(brush: DrawContext, x: float, y: float, text: str, color: int) ->
 
 
 def paint_hint(brush: DrawContext, panel: Rect, lines: tuple[str, ...]) -> None:
-    """Words on an empty canvas, above the ends of the graph, which lie in the middle."""
+    """Paint a hint on an empty canvas, above the ends of the graph, which lie in the middle."""
     scale = brush.to.scale / brush.zoom
     x, y = (panel[0] + panel[2]) / 2, panel[1] + (panel[3] - panel[1]) * 0.14
     for index, line in enumerate(lines):
         size = (18.0 if index == 0 else TEXT) * scale
         font = brush.fonts.bold if index == 0 else brush.fonts.text
-        width = brush.texts.width(brush.fonts, line, size, index == 0)
+        width = brush.texts.measure(brush.fonts, line, size, index == 0)
         brush.draw.add_text(font, size, (x - width / 2, y), brush.ink.dim, line)
         y += size * 1.7
 
 
-def _visible(brush: DrawContext, shape: Curve) -> bool:
-    left, top, right, bottom = brush.seen
+def _is_visible(brush: DrawContext, shape: Curve) -> bool:
+    left, top, right, bottom = brush.visible
     xs, ys = shape[0::2], shape[1::2]
     return max(xs) >= left and min(xs) <= right and max(ys) >= top and min(ys) <= bottom

@@ -1,4 +1,4 @@
-"""Where things were drawn, for tests and hints."""
+"""Records where elements are drawn, for tests and hints."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from .brush import DETAILS_FROM, DrawContext
-from .geometry import CanvasTransform, Rect, overlap
-from .link_index import Net, Wire
+from .geometry import CanvasTransform, Rect, overlaps
+from .link_index import LinkIndex, Wire
 from .scene import CanvasScene, ElementBox
 
 if TYPE_CHECKING:
@@ -15,46 +15,46 @@ if TYPE_CHECKING:
 
 _PIN = 5.0
 
-Found = dict[str, Rect]
+NamedRects = dict[str, Rect]
 
 
 @dataclass
-class Places:
-    """Keeps what was found of every element and of all links for as long as it does not move."""
+class PlaceRecorder:
+    """Records the rectangles of elements and links, cached until they move."""
 
     context: CanvasContext
-    _of: tuple[object, ...] = ()
-    _boxes: dict[str, tuple[ElementBox, Found]] = field(default_factory=dict[str, tuple[ElementBox, Found]])
-    _net: tuple[Net, Found] = field(default_factory=lambda: (Net(), {}))
+    _inputs: tuple[object, ...] = ()
+    _boxes: dict[str, tuple[ElementBox, NamedRects]] = field(default_factory=dict[str, tuple[ElementBox, NamedRects]])
+    _links: tuple[LinkIndex, NamedRects] = field(default_factory=lambda: (LinkIndex(), {}))
 
     def record(self, scene: CanvasScene, brush: DrawContext) -> None:
-        """Note where everything visible is."""
-        of = brush.to, brush.seen
-        if self._of != of:
-            self._of, self._boxes, self._net = of, {}, (Net(), {})
-        known, boxes = self._boxes, dict[str, tuple[ElementBox, Found]]()
+        """Record the rectangles of everything visible."""
+        inputs = brush.to, brush.visible
+        if self._inputs != inputs:
+            self._inputs, self._boxes, self._links = inputs, {}, (LinkIndex(), {})
+        old_boxes, boxes = self._boxes, dict[str, tuple[ElementBox, NamedRects]]()
         places = self.context.places
         for key, box in scene.boxes.items():
-            one = known.get(key)
-            boxes[key] = one = one if one and one[0] is box else (box, _of_box(box, brush))
-            places.update(one[1])
+            cached = old_boxes.get(key)
+            boxes[key] = cached = cached if cached and cached[0] is box else (box, _find_box_rects(box, brush))
+            places.update(cached[1])
         self._boxes = boxes
-        if self._net[0] is not scene.net:
-            self._net = scene.net, dict(_of_wire(wire, brush.to) for wire in scene.wires)
-        places.update(self._net[1])
+        if self._links[0] is not scene.links:
+            self._links = scene.links, dict(_find_wire_rect(wire, brush.to) for wire in scene.wires)
+        places.update(self._links[1])
 
 
-def _of_wire(wire: Wire, to: CanvasTransform) -> tuple[str, Rect]:
+def _find_wire_rect(wire: Wire, to: CanvasTransform) -> tuple[str, Rect]:
     x, y = to.to_screen(*wire.middle)
     return f"link {wire.target}", (x - 2.0, y - 2.0, x + 2.0, y + 2.0)
 
 
-def _of_box(box: ElementBox, brush: DrawContext) -> Found:
-    if not overlap(box.rect, brush.seen):
+def _find_box_rects(box: ElementBox, brush: DrawContext) -> NamedRects:
+    if not overlaps(box.rect, brush.visible):
         return {}
     to, s, key = brush.to, brush.to.scale, box.key
     left, top = to.to_screen(box.x, box.y)
-    places: Found = {
+    places: NamedRects = {
         f"node {key}": (left, top, left + box.w * s, top + box.h * s),
         f"title {key}": (left, top, left + box.w * s, top + min(brush.header, box.h) * s),
     }
@@ -66,7 +66,7 @@ def _of_box(box: ElementBox, brush: DrawContext) -> Found:
 
     for word, output, pins in (("in", False, box.layout.ins), ("out", True, box.layout.outs)):
         for pin in pins.values():
-            add(f"pin {word} {box.port(pin, output)}", (pin.x - _PIN, pin.y - _PIN, pin.x + _PIN, pin.y + _PIN))
+            add(f"pin {word} {box.make_port(pin, output)}", (pin.x - _PIN, pin.y - _PIN, pin.x + _PIN, pin.y + _PIN))
     if box.layout.picture:
         add(f"picture {key}", box.layout.picture)
     if brush.zoom >= DETAILS_FROM:

@@ -1,4 +1,4 @@
-"""Everything on the canvas with its place: what is drawn, and what is under a point. Canvas units."""
+"""The scene: all elements and links with their places, and what is under a point. Canvas units."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from itertools import pairwise
 from typing import Literal
 
 from ...graph import Port
-from .geometry import Curve, Point, Rect, curve, holds
+from .geometry import Curve, Point, Rect, contains, make_curve
 from .layout import HEADER, ROW, NodeLayout, Pin
-from .link_index import Net, Wire
+from .link_index import LinkIndex, Wire
 
 DOT = 7.0
 """Radius of a dot."""
@@ -38,7 +38,7 @@ class ElementBox:
         """Left, top, right, bottom."""
         return self.x, self.y, self.x + self.w, self.y + self.h
 
-    def port(self, pin: Pin, output: bool) -> Port:
+    def make_port(self, pin: Pin, output: bool) -> Port:
         """The port that a pin stands for."""
         if self.sort == "end":
             return Port("inputs" if output else "outputs", pin.name)
@@ -64,93 +64,93 @@ class CanvasScene:
     """Elements in the order in which they are drawn, and links."""
 
     boxes: dict[str, ElementBox]
-    net: Net = field(default_factory=Net)
+    links: LinkIndex = field(default_factory=LinkIndex)
 
     @property
     def wires(self) -> tuple[Wire, ...]:
         """All links."""
-        return self.net.wires
+        return self.links.wires
 
     @property
     def by_target(self) -> Mapping[Port, Wire]:
-        """Links by what they feed."""
-        return self.net.by_target
+        """Links by target."""
+        return self.links.by_target
 
     @property
     def sizes(self) -> dict[str, tuple[float, float]]:
         """Width and height of every element."""
         return {key: (box.w, box.h) for key, box in self.boxes.items()}
 
-    def moved(self, keys: Collection[str], dx: float, dy: float) -> CanvasScene:
-        """The same with some elements elsewhere; links follow."""
+    def move(self, keys: Collection[str], dx: float, dy: float) -> CanvasScene:
+        """A scene with some elements moved; links follow."""
         if not keys or not (dx or dy):
             return self
         boxes = {
             key: replace(box, x=box.x + dx, y=box.y + dy) if key in keys else box for key, box in self.boxes.items()
         }
         wires = tuple(
-            replace(wire, curves=tuple(routed(boxes, wire.source, wire.target, wire.stops)))
+            replace(wire, curves=tuple(route_link(boxes, wire.source, wire.target, wire.stops)))
             if any(stop in keys for stop in wire.stops)
             else wire
             for wire in self.wires
         )
-        return CanvasScene(boxes, Net(wires))
+        return CanvasScene(boxes, LinkIndex(wires))
 
-    def resized(self, key: str, rect: Rect) -> CanvasScene:
-        """The same with one element of another shape."""
+    def resize(self, key: str, rect: Rect) -> CanvasScene:
+        """A scene with one element resized."""
         left, top, right, bottom = rect
         box = replace(self.boxes[key], x=left, y=top, w=right - left, h=bottom - top)
-        return CanvasScene({**self.boxes, key: box}, self.net)
+        return CanvasScene({**self.boxes, key: box}, self.links)
 
-    def hit(self, x: float, y: float, reach: float) -> Hit:
-        """What is at a point; `reach` is how far off pins, links and edges may be."""
-        found = self._on_top(x, y, reach)
-        if found is None and (wire := self.net.at(x, y, reach)):
+    def find_hit(self, x: float, y: float, reach: float) -> Hit:
+        """What is at a point; pins, links and edges may be `reach` away."""
+        node_hit = self._find_element_hit(x, y, reach)
+        if node_hit is None and (wire := self.links.find_near(x, y, reach)):
             return Hit("link", port=wire.target)
-        return found or self._frame(x, y, reach) or EMPTY
+        return node_hit or self._find_frame_hit(x, y, reach) or EMPTY
 
-    def node_at(self, x: float, y: float) -> str:
+    def find_node(self, x: float, y: float) -> str:
         """The node or end under a point, "" if none."""
         for key, box in reversed(self.boxes.items()):
-            if box.sort in ("node", "end") and holds(box.rect, x, y):
+            if box.sort in ("node", "end") and contains(box.rect, x, y):
                 return key
         return ""
 
-    def pins(self, output: bool) -> Iterator[tuple[Port, ElementBox, Pin]]:
+    def list_pins(self, output: bool) -> Iterator[tuple[Port, ElementBox, Pin]]:
         """Every pin of one side."""
         for box in self.boxes.values():
             if box.layout:
                 for pin in (box.layout.outs if output else box.layout.ins).values():
-                    yield box.port(pin, output), box, pin
+                    yield box.make_port(pin, output), box, pin
 
-    def _on_top(self, x: float, y: float, reach: float) -> Hit | None:
+    def _find_element_hit(self, x: float, y: float, reach: float) -> Hit | None:
         for key, box in reversed(self.boxes.items()):
-            if box.sort == "frame" or not holds(box.rect, x, y, reach):
+            if box.sort == "frame" or not contains(box.rect, x, y, reach):
                 continue
             if box.layout:
-                if hit := _in_node(box, box.layout, x, y, reach):
+                if hit := _find_node_hit(box, box.layout, x, y, reach):
                     return hit
             elif box.sort == "comment":
-                if edges := _edges(box.rect, x, y, reach * 0.7, "r"):
+                if edges := _find_edges(box.rect, x, y, reach * 0.7, "r"):
                     return Hit("edge", key, name=edges)
-                if holds(box.rect, x, y):
+                if contains(box.rect, x, y):
                     return Hit("body", key)
             elif (x - box.x - box.w / 2) ** 2 + (y - box.y - box.h / 2) ** 2 <= (box.w / 2 + reach * 0.5) ** 2:
                 return Hit("body", key)
         return None
 
-    def _frame(self, x: float, y: float, reach: float) -> Hit | None:
+    def _find_frame_hit(self, x: float, y: float, reach: float) -> Hit | None:
         for key, box in reversed(self.boxes.items()):
-            if box.sort != "frame" or not holds(box.rect, x, y, reach):
+            if box.sort != "frame" or not contains(box.rect, x, y, reach):
                 continue
-            if edges := _edges(box.rect, x, y, reach * 0.7, "lrtb"):
+            if edges := _find_edges(box.rect, x, y, reach * 0.7, "lrtb"):
                 return Hit("edge", key, name=edges)
             if y <= box.y + FRAME_TITLE:
                 return Hit("title", key)
         return None
 
 
-def pin_place(box: ElementBox, socket: str, output: bool) -> Point:
+def find_pin(box: ElementBox, socket: str, output: bool) -> Point:
     """Where a link meets an element."""
     if box.layout is None:
         return box.x + box.w / 2, box.y + box.h / 2
@@ -158,32 +158,32 @@ def pin_place(box: ElementBox, socket: str, output: bool) -> Point:
     return (box.x + pin.x, box.y + pin.y) if pin else (box.x + (box.w if output else 0.0), box.y + HEADER / 2)
 
 
-def routed(boxes: Mapping[str, ElementBox], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
+def route_link(boxes: Mapping[str, ElementBox], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
     """The curves of a link that joins elements."""
     places = [
-        pin_place(boxes[stops[0]], source.socket, output=True),
-        *(pin_place(boxes[stop], "", output=True) for stop in stops[1:-1]),
-        pin_place(boxes[stops[-1]], target.socket, output=False),
+        find_pin(boxes[stops[0]], source.socket, output=True),
+        *(find_pin(boxes[stop], "", output=True) for stop in stops[1:-1]),
+        find_pin(boxes[stops[-1]], target.socket, output=False),
     ]
-    return (curve(*start, *end) for start, end in pairwise(places))
+    return (make_curve(*start, *end) for start, end in pairwise(places))
 
 
-def _in_node(box: ElementBox, layout: NodeLayout, x: float, y: float, reach: float) -> Hit | None:
-    here, there = x - box.x, y - box.y
+def _find_node_hit(box: ElementBox, layout: NodeLayout, x: float, y: float, reach: float) -> Hit | None:
+    local_x, local_y = x - box.x, y - box.y
     for output, pins in ((True, layout.outs), (False, layout.ins)):
-        near = min(pins.values(), key=lambda pin: abs(pin.y - there), default=None)
-        if near and abs(near.x - here) <= reach and abs(near.y - there) <= min(reach, ROW / 2):
-            return Hit("pin", box.key, box.port(near, output), output)
-    if not (0 <= here <= box.w and 0 <= there <= box.h):
+        near = min(pins.values(), key=lambda pin: abs(pin.y - local_y), default=None)
+        if near and abs(near.x - local_x) <= reach and abs(near.y - local_y) <= min(reach, ROW / 2):
+            return Hit("pin", box.key, box.make_port(near, output), output)
+    if not (0 <= local_x <= box.w and 0 <= local_y <= box.h):
         return None
-    if layout.more and holds(layout.more, here, there):
+    if layout.more and contains(layout.more, local_x, local_y):
         return Hit("more", box.key)
     for row in layout.rows:
-        if row.field and row.value and holds(row.field, here, there):
+        if row.field and row.value and contains(row.field, local_x, local_y):
             return Hit("field", box.key, Port(box.key, row.value.name), name=row.value.name)
-    return Hit("title" if there <= HEADER else "body", box.key)
+    return Hit("title" if local_y <= HEADER else "body", box.key)
 
 
-def _edges(rect: Rect, x: float, y: float, reach: float, allowed: str) -> str:
+def _find_edges(rect: Rect, x: float, y: float, reach: float, allowed: str) -> str:
     gaps = {"l": abs(x - rect[0]), "t": abs(y - rect[1]), "r": abs(x - rect[2]), "b": abs(y - rect[3])}
     return "".join(side for side in "lrtb" if side in allowed and gaps[side] <= reach)

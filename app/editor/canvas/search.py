@@ -51,8 +51,8 @@ _WIDTH, _HEIGHT = 300.0, 360.0
 
 
 @dataclass
-class Search:
-    """What is typed, which line is marked, and where the new node goes."""
+class NodeSearch:
+    """The search popup: its text, the marked line, and where the new node goes."""
 
     context: CanvasContext
     is_open: bool = False
@@ -61,10 +61,10 @@ class Search:
     _at: Point = (0.0, 0.0)
     _link: tuple[Port, bool] | None = None
     _replaced: str = ""
-    """The node that gets another type, instead of a new one."""
+    """The node to replace, or empty for a new node."""
     _entries: tuple[CatalogEntry, ...] = ()
     _awaits: bool = False
-    """True while shaders of this machine are being looked for, which are added then."""
+    """True while a search for the shader files of this machine runs; its shaders are added at the end."""
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
 
@@ -73,7 +73,7 @@ class Search:
         return (*code_entries(), *preset_entries(preset_paths()), *graph_entries())
 
     def begin(self, at: Point, port: Port | None = None, output: bool = True) -> None:
-        """Open it for something at a canvas position; with a port, for what can be linked with it."""
+        """Open the search at a canvas position; with a port, for nodes that can be linked with it."""
         session = self.context.session
         self._replaced = ""
         nodes = node_entries(session.types)
@@ -87,15 +87,15 @@ class Search:
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 
     def begin_replacing(self, id: str) -> None:
-        """Open it for another type of a node."""
-        now = self.context.session.graph.nodes.get(id)
-        others = [type for type in self.context.session.types if not isinstance(now, self.context.session.types[type])]
+        """Open the search for another type of a node."""
+        node = self.context.session.graph.nodes.get(id)
+        types = [type for type in self.context.session.types if not isinstance(node, self.context.session.types[type])]
         self._link, self._replaced = None, id
-        self._entries = (*keep_fitting(node_entries(self.context.session.types), others), *code_entries())
+        self._entries = (*keep_fitting(node_entries(self.context.session.types), types), *code_entries())
         self._query, self._marked, self._opening, self._awaits = "", 0, True, False
 
     def draw(self) -> None:
-        """Draw the popup, if it is open, and add what is chosen."""
+        """Draw the popup, if it is open, and add the chosen entry."""
         scale = ui_scale()
         if self._opening:
             imgui.open_popup(_POPUP)
@@ -111,7 +111,7 @@ class Search:
         if self._opening:
             imgui.set_keyboard_focus_here()
             self._opening = False
-        chosen = self._contents()
+        chosen = self._draw_contents()
         if chosen or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
         imgui.end_popup()
@@ -126,10 +126,10 @@ class Search:
         if self._link is not None:
             port, output = self._link
             takes = self.context.log.attempt(lambda: self.context.session.fits_picture(port, output), False)
-            files = [one for one in files if takes and (one.has_image_input or not output)]
+            files = [shader for shader in files if takes and (shader.has_image_input or not output)]
         self._entries = (*self._entries, *shader_entries(files))
 
-    def _contents(self) -> CatalogEntry | None:
+    def _draw_contents(self) -> CatalogEntry | None:
         imgui.set_next_item_width(-1)
         hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
         hint = f"Replace {self._replaced} by ..." if self._replaced else hint
@@ -140,18 +140,18 @@ class Search:
             self._marked = 0
         sections = arrange_entries(self._entries, self._query, self._recent)
         lines = [entry for section in sections for entry in section.entries]
-        moved = _arrows()
+        moved = _read_arrows()
         self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
         chosen = None
         foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2 + 2.0 * ui_scale()
         if imgui.begin_child("##found", (0, -foot)):
-            chosen = self._list(sections, bool(moved) or self._query != before)
+            chosen = self._draw_list(sections, bool(moved) or self._query != before)
         imgui.end_child()
-        self._foot(lines)
+        self._draw_footer(lines)
         entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
         return lines[self._marked] if entered and lines else chosen
 
-    def _list(self, sections: tuple[Section, ...], follow: bool) -> CatalogEntry | None:
+    def _draw_list(self, sections: tuple[Section, ...], follow: bool) -> CatalogEntry | None:
         chosen, index = None, 0
         palette, scale = self.context.palette, ui_scale()
         draw = imgui.get_window_draw_list()
@@ -166,7 +166,7 @@ class Search:
                 if imgui.selectable(f"      {entry.title}##{section.title} {entry.id}", marked)[0]:
                     chosen = entry
                 record(self.context, f"search {entry.title}")
-                if imgui.is_item_hovered() and _mouse_moved():
+                if imgui.is_item_hovered() and _is_mouse_moving():
                     self._marked = index
                 if marked and follow:
                     imgui.set_scroll_here_y()
@@ -184,10 +184,10 @@ class Search:
                     draw.add_text((right, corner.y), u32(palette.dim, 0.8), entry.category)
                 index += 1
         if not index:
-            imgui.text_colored(vec4(palette.dim), "Nothing is called like that.")
+            imgui.text_colored(vec4(palette.dim), "No entry has this name.")
         return chosen
 
-    def _foot(self, lines: list[CatalogEntry]) -> None:
+    def _draw_footer(self, lines: list[CatalogEntry]) -> None:
         imgui.separator()
         doc = lines[self._marked].doc if lines else ""
         imgui.push_style_color(imgui.Col_.text, vec4(self.context.palette.dim))
@@ -222,18 +222,18 @@ class Search:
 
 def _add_end(context: CanvasContext, side: str, kind: Kind, at: Point) -> None:
     session = context.session
-    taken = session.graph.inputs if side == "input" else session.graph.outputs
-    name = fresh_name(kind.lower(), taken)
+    ends = session.graph.inputs if side == "input" else session.graph.outputs
+    name = fresh_name(kind.lower(), ends)
     if side == "input":
         session.apply(AddInput(name, kind, at=at))
     else:
         session.apply(AddOutput(name, kind, at=at))
 
 
-def _arrows() -> int:
+def _read_arrows() -> int:
     return imgui.is_key_pressed(imgui.Key.down_arrow) - imgui.is_key_pressed(imgui.Key.up_arrow)
 
 
-def _mouse_moved() -> bool:
+def _is_mouse_moving() -> bool:
     delta = imgui.get_io().mouse_delta
     return bool(delta.x or delta.y)

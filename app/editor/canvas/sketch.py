@@ -1,4 +1,4 @@
-"""What is drawn on a node again and again, thought out once: shapes and words relative to its corner."""
+"""A cached drawing of a node: shapes and words relative to its corner."""
 
 from __future__ import annotations
 
@@ -23,43 +23,43 @@ class Sketch:
 
     @property
     def ink(self) -> CanvasColors:
-        """The colors."""
+        """The canvas colors."""
         return self.brush.ink
 
-    def fill(self, rect: Rect, color: int, rounding: float = 0.0, flags: int = 0) -> None:
-        """A filled rectangle."""
+    def fill_rect(self, rect: Rect, color: int, rounding: float = 0.0, flags: int = 0) -> None:
+        """Add a filled rectangle."""
         self.fills.append((*rect, color, rounding, flags))
 
-    def frame(self, rect: Rect, color: int, rounding: float = 0.0) -> None:
-        """The outline of a rectangle."""
+    def draw_outline(self, rect: Rect, color: int, rounding: float = 0.0) -> None:
+        """Add the outline of a rectangle."""
         self.frames.append((*rect, color, rounding))
 
-    def circle(self, x: float, y: float, radius: float, color: int) -> None:
-        """A filled circle."""
+    def draw_circle(self, x: float, y: float, radius: float, color: int) -> None:
+        """Add a filled circle."""
         self.circles.append((x, y, radius, color))
 
-    def triangle(self, a: Corner, b: Corner, c: Corner, color: int) -> None:
-        """A filled triangle."""
+    def draw_triangle(self, a: Corner, b: Corner, c: Corner, color: int) -> None:
+        """Add a filled triangle."""
         self.triangles.append((a, b, c, color))
 
-    def text(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
-        """A line whose left end is at `x` and whose middle is at `y`."""
+    def draw_text(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
+        """Add a line whose left end is at `x` and whose middle is at `y`."""
         self.words.append((x, y - size * 0.5, size, color, text))
 
-    def right(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
-        """A line whose right end is at `x`."""
-        self.text(x - self.width(text, size), y, color, text, size)
+    def draw_right(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
+        """Add a line whose right end is at `x`."""
+        self.draw_text(x - self.measure(text, size), y, color, text, size)
 
-    def short(self, text: str, room: float, size: float = TEXT) -> str:
-        """Text that fits in `room`."""
-        return self.brush.short(text, room, size)
+    def shorten(self, text: str, room: float, size: float = TEXT) -> str:
+        """Cut text to a width of `room`."""
+        return self.brush.shorten(text, room, size)
 
-    def width(self, text: str, size: float = TEXT) -> float:
-        """The width of a line."""
-        return self.brush.width(text, size)
+    def measure(self, text: str, size: float = TEXT) -> float:
+        """Measure the width of a line."""
+        return self.brush.measure(text, size)
 
     def draw(self, brush: DrawContext, x: float, y: float) -> None:
-        """Draw it all with its corner at a canvas position."""
+        """Draw the sketch with its corner at a canvas position."""
         draw, s = brush.draw, brush.to.scale
         left, top = brush.to.to_screen(x, y)
         for x0, y0, x1, y1, color, rounding, flags in self.fills:

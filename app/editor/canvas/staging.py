@@ -1,4 +1,4 @@
-"""From a graph to a scene, doing again only what changed."""
+"""Builds the scene of a graph; unchanged parts come from caches."""
 
 from __future__ import annotations
 
@@ -14,31 +14,31 @@ from ...authoring.edits.elements import element_of, entries, entry
 from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
 from .geometry import Point
-from .layout import NodeFacts, NodeLayout, end_layout, node_layout
-from .link_index import Net, Wire
-from .scene import DOT, CanvasScene, ElementBox, routed
+from .layout import NodeFacts, NodeLayout, make_end_layout, make_node_layout
+from .link_index import LinkIndex, Wire
+from .scene import DOT, CanvasScene, ElementBox, route_link
 
 _LETTER = 6.6, 17.0
-"""Width of a letter, and height of a line, in comments."""
+"""The width of a letter and the height of a line in comments."""
 
-Shown = tuple[Collection[str], str, frozenset[str]]
-"""How elements are shown: those with pictures, the one that is open for now, those that are open."""
+SceneOptions = tuple[Collection[str], str, frozenset[str]]
+"""Display options: elements with a thumbnail, the element that is expanded for now, all expanded elements."""
 
 FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
 
 
 @dataclass
 class SceneBuilder:
-    """Builds scenes; keeps layouts of nodes that stay the same. `expanded` are nodes that show all their values."""
+    """Builds scenes; caches the layouts of unchanged nodes. `expanded` are nodes that show all their values."""
 
     expanded: set[str] = field(default_factory=set[str])
     _layouts: dict[str, tuple[Item, NodeFacts, NodeLayout]] = field(
         default_factory=dict[str, tuple[Item, NodeFacts, NodeLayout]]
     )
     _links: object = None
-    _linked: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
+    _linked_sockets: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
-    _last: tuple[Graph, Shown, dict[str, ElementBox], Net] | None = None
+    _last: tuple[Graph, SceneOptions, dict[str, ElementBox], LinkIndex] | None = None
 
     def build(
         self,
@@ -52,17 +52,17 @@ class SceneBuilder:
 
         `top` are drawn last, in order; `pictures` are the elements with one; `open` shows all its values for now.
         """
-        shown = pictures, open, frozenset(self.expanded)
-        boxes, net = self._changed(graph, shown) or self._whole(graph, position, *shown[:2])
-        self._last = graph, shown, boxes, net
+        options = pictures, open, frozenset(self.expanded)
+        boxes, net = self._update(graph, options) or self._rebuild(graph, position, *options[:2])
+        self._last = graph, options, boxes, net
         raised = [key for key in top if key in boxes and boxes[key].sort != "frame"]
         if raised:
             boxes = {key: box for key, box in boxes.items() if key not in raised} | {key: boxes[key] for key in raised}
         return CanvasScene(boxes, net)
 
-    def _changed(self, graph: Graph, shown: Shown) -> tuple[dict[str, ElementBox], Net] | None:
+    def _update(self, graph: Graph, options: SceneOptions) -> tuple[dict[str, ElementBox], LinkIndex] | None:
         """The last boxes and links, with new boxes of changed nodes; None where more differs than values."""
-        if self._last is None or self._last[1] != shown:
+        if self._last is None or self._last[1] != options:
             return None
         last, (pictures, open, _), boxes, net = self._last
         parts = ("ui", "links", "inputs", "outputs", "muted")
@@ -72,53 +72,57 @@ class SceneBuilder:
         for id, item in graph.nodes.items():
             if item is not last.nodes[id]:
                 box = boxes[id]
-                layout = self._layout(graph, id, item, box.layout is not None and box.layout.collapsed, pictures, open)
+                layout = self._find_layout(
+                    graph, id, item, box.layout is not None and box.layout.collapsed, pictures, open
+                )
                 if box.layout is None or (layout.ins, layout.outs) != (box.layout.ins, box.layout.outs):
                     return None
-                if _face(graph, Port(id, "")) != _face(last, Port(id, "")):
+                if _find_interface(graph, Port(id, "")) != _find_interface(last, Port(id, "")):
                     return None
                 fresh[id] = replace(box, h=layout.height, layout=layout)
         return ({**boxes, **fresh} if fresh else boxes), net
 
-    def _whole(
+    def _rebuild(
         self, graph: Graph, position: Callable[[str], Point], pictures: Collection[str], open: str
-    ) -> tuple[dict[str, ElementBox], Net]:
+    ) -> tuple[dict[str, ElementBox], LinkIndex]:
         if graph.links is not self._links:
-            self._links, self._linked = graph.links, _linked_names(graph)
-            self._faults = {ends: known for ends, known in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
-            self._layouts = {id: known for id, known in self._layouts.items() if id in graph.nodes}
-        boxes = {box.key: box for box in self._frames(graph, position)}
+            self._links, self._linked_sockets = graph.links, _find_linked_sockets(graph)
+            self._faults = {ends: fault for ends, fault in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
+            self._layouts = {id: layout for id, layout in self._layouts.items() if id in graph.nodes}
+        boxes = {box.key: box for box in self._make_frames(graph, position)}
         for id in entries(graph, "comments"):
-            box = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
+            box = _make_sized_box(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
             text = str(entry(graph, box.key).get("text", ""))
-            boxes[box.key] = replace(box, h=comment_height(text, box.w))
-        for key, layout in self._ends(graph, pictures):
+            boxes[box.key] = replace(box, h=measure_comment(text, box.w))
+        for key, layout in self._make_ends(graph, pictures):
             boxes[key] = ElementBox(key, "end", *position(key), layout.width, layout.height, layout)
-        closed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
+        collapsed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
         for id, item in graph.nodes.items():
-            layout = self._layout(graph, id, item, id in closed, pictures, open)
+            layout = self._find_layout(graph, id, item, id in collapsed, pictures, open)
             boxes[id] = ElementBox(id, "node", *position(id), layout.width, layout.height, layout)
         for id in entries(graph, "dots"):
             x, y = position(f"dots.{id}")
             boxes[f"dots.{id}"] = ElementBox(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
-        return boxes, Net(tuple(self._wires(graph, boxes)))
+        return boxes, LinkIndex(tuple(self._make_wires(graph, boxes)))
 
-    def _frames(self, graph: Graph, position: Callable[[str], Point]) -> list[ElementBox]:
-        found = [_sized(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")]
-        return sorted(found, key=lambda box: (-box.w * box.h, box.key))
+    def _make_frames(self, graph: Graph, position: Callable[[str], Point]) -> list[ElementBox]:
+        frames = [
+            _make_sized_box(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")
+        ]
+        return sorted(frames, key=lambda box: (-box.w * box.h, box.key))
 
-    def _ends(self, graph: Graph, pictures: Collection[str]):
+    def _make_ends(self, graph: Graph, pictures: Collection[str]):
         for name, end in graph.inputs.items():
             key = f"{INPUTS}.{name}"
-            yield key, _end(key, end.socket(name), key in pictures, end.doc)
+            yield key, _make_end(key, end.socket(name), key in pictures, end.doc)
         for name, end in graph.outputs.items():
             key = f"{OUTPUTS}.{name}"
-            yield key, _end(key, end.socket(name), False, "")
+            yield key, _make_end(key, end.socket(name), False, "")
 
-    def _layout(
+    def _find_layout(
         self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: Collection[str], open: str
     ) -> NodeLayout:
-        ins, outs = self._linked
+        ins, outs = self._linked_sockets
         facts = NodeFacts(
             frozenset(ins.get(id, ())),
             frozenset(outs.get(id, ())),
@@ -126,20 +130,20 @@ class SceneBuilder:
             id in self.expanded or id == open,
             id in pictures,
         )
-        known = self._layouts.get(id)
-        if known and known[0] is item and known[1] == facts:
-            return known[2]
-        layout = node_layout(id, item, graph, facts)
+        cached = self._layouts.get(id)
+        if cached and cached[0] is item and cached[1] == facts:
+            return cached[2]
+        layout = make_node_layout(id, item, graph, facts)
         self._layouts[id] = item, facts, layout
         return layout
 
-    def _wires(self, graph: Graph, boxes: dict[str, ElementBox]):
-        passed = routes(graph)
+    def _make_wires(self, graph: Graph, boxes: dict[str, ElementBox]):
+        dots_by_target = routes(graph)
         for target, source in graph.links.items():
             start, end = element_of(source), element_of(target)
             if start not in boxes or end not in boxes:
                 continue
-            dots = (f"dots.{dot}" for dot in passed.get(str(target), ()))
+            dots = (f"dots.{dot}" for dot in dots_by_target.get(str(target), ()))
             stops = (start, *(dot for dot in dots if dot in boxes), end)
             layout = boxes[start].layout
             pin = layout.outs.get(source.socket) if layout else None
@@ -148,30 +152,30 @@ class SceneBuilder:
                 source,
                 stops,
                 pin.kind if pin else None,
-                tuple(routed(boxes, source, target, stops)),
-                self._fault(graph, source, target),
+                tuple(route_link(boxes, source, target, stops)),
+                self._find_fault(graph, source, target),
                 start in graph.muted or end in graph.muted,
             )
 
-    def _fault(self, graph: Graph, source: Port, target: Port) -> str:
-        types = _face(graph, source), _face(graph, target)
-        known = self._faults.get((source, target))
-        if known and known[0] == types:
-            return known[1]
+    def _find_fault(self, graph: Graph, source: Port, target: Port) -> str:
+        types = _find_interface(graph, source), _find_interface(graph, target)
+        cached = self._faults.get((source, target))
+        if cached and cached[0] == types:
+            return cached[1]
         fault = graph.link_fault(source, target) or ""
         self._faults[source, target] = types, fault
         return fault
 
 
-def comment_height(text: str, width: float) -> float:
-    """How high a comment must be for its text, with letters of the usual width."""
+def measure_comment(text: str, width: float) -> float:
+    """The height of a comment for its text, estimated from the usual width of letters."""
     across = max(int((width - 20.0) / _LETTER[0]), 1)
     lines = sum(max(len(wrap(line, across)), 1) for line in text.split("\n"))
     return max(lines * _LETTER[1] + 16.0, 40.0)
 
 
-def _face(graph: Graph, port: Port) -> object:
-    """What decides which links an element takes; compared, not looked into."""
+def _find_interface(graph: Graph, port: Port) -> object:
+    """What decides which links fit an element; only for comparison."""
     if port.node == INPUTS:
         return graph.inputs.get(port.socket)
     if port.node == OUTPUTS:
@@ -182,7 +186,7 @@ def _face(graph: Graph, port: Port) -> object:
     return type(item) if isinstance(item, Node) else item
 
 
-def _linked_names(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]]]:
+def _find_linked_sockets(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]]]:
     """The linked inputs and outputs of every node."""
     ins, outs = dict[str, set[str]](), dict[str, set[str]]()
     for target, source in graph.links.items():
@@ -191,7 +195,7 @@ def _linked_names(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]
     return ins, outs
 
 
-def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> ElementBox:
+def _make_sized_box(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> ElementBox:
     facts = entry(graph, key)
     w, h = (facts.get(name) for name in ("w", "h"))
     width = float(w) if isinstance(w, int | float) else size[0]
@@ -199,5 +203,5 @@ def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[s
 
 
 @lru_cache(maxsize=1024)
-def _end(key: str, socket: Any, picture: bool, doc: str) -> NodeLayout:
-    return end_layout(key, socket, picture, doc)
+def _make_end(key: str, socket: Any, picture: bool, doc: str) -> NodeLayout:
+    return make_end_layout(key, socket, picture, doc)

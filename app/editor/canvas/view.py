@@ -1,4 +1,4 @@
-"""Which part of the canvas is seen, and what the canvas is asked to do."""
+"""The view of the canvas, and requests to the canvas."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ class CanvasView:
 
     center: tuple[float, float] = (0.0, 0.0)
     zoom: float = 1.0
-    wanted: Collection[str] | None = ()
-    """Elements to bring into view when next drawn: empty means all, None nothing."""
+    pending_fit: Collection[str] | None = ()
+    """Elements to fit into the view in the next frame: empty means all, None nothing."""
     pointer: tuple[float, float] = (0.0, 0.0)
     """The canvas position under the mouse when it was last over the panel: where new things go."""
     sizes: dict[str, tuple[float, float]] | None = None
@@ -28,15 +28,15 @@ class CanvasView:
     searching: bool = False
     """True asks the canvas to open the search at the pointer."""
     replacing: str = ""
-    """A node that is to be of another type: the canvas opens the search for it."""
+    """A node to replace: the canvas opens the search for it."""
     tool: Tool = ""
     """What the next drag with the left button does instead of selecting: cut links, or put dots on them."""
     renaming: str = ""
-    """An element whose name is to be typed: the canvas opens a field on it."""
+    """An element to rename: the canvas opens a text field on it."""
 
     refusal: str = ""
-    """Why the link in the hand does not fit the socket under the pointer."""
+    """Why the dragged link does not fit the socket under the pointer."""
 
     def fit(self, keys: Collection[str] = ()) -> None:
-        """Bring elements into view; none means all."""
-        self.wanted = keys
+        """Fit the view to elements; none means all."""
+        self.pending_fit = keys

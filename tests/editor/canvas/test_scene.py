@@ -6,21 +6,21 @@ import pytest
 from halation.authoring.edits.decor import add_frame
 from halation.authoring.edits.layout import pin_places, positions
 from halation.editor.canvas.gestures import (
-    Link,
+    LinkGesture,
     MoveGesture,
     ResizeGesture,
-    dotted,
-    fitting,
-    insertable,
-    moved,
-    nearest,
-    refused,
-    resized,
-    shown,
-    touched,
+    add_crossing_dots,
+    find_fitting_pins,
+    find_insertion,
+    find_refused_pin,
+    find_snap_pin,
+    find_touched,
+    move_to,
+    preview_gesture,
+    resize_to,
 )
 from halation.editor.canvas.scene import CanvasScene
-from halation.editor.canvas.staging import SceneBuilder, comment_height
+from halation.editor.canvas.staging import SceneBuilder, measure_comment
 from halation.editor.shared.entries import GROUP, arrange_entries, graph_entries, keep_fitting, node_entries
 from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import catalogue
@@ -37,31 +37,31 @@ def staged(
 
 
 def pin(scene: CanvasScene, port: str, output: bool) -> tuple[float, float]:
-    return next((box.x + one.x, box.y + one.y) for name, box, one in scene.pins(output) if name == P(port))
+    return next((box.x + one.x, box.y + one.y) for name, box, one in scene.list_pins(output) if name == P(port))
 
 
 def test_hits_pins_fields_titles_and_links() -> None:
     scene = staged(chain("exposure", "bloom"))
     box = scene.boxes["exposure"]
-    assert scene.hit(*pin(scene, "exposure.out", True), 8.0).port == P("exposure.out")
-    assert scene.hit(box.x + 60, box.y + 10, 8.0).part == "title"
+    assert scene.find_hit(*pin(scene, "exposure.out", True), 8.0).port == P("exposure.out")
+    assert scene.find_hit(box.x + 60, box.y + 10, 8.0).part == "title"
     field = next(row.field for row in box.layout.rows if row.field)
-    hit = scene.hit(box.x + field[0] + 40, box.y + field[1] + 5, 8.0)
+    hit = scene.find_hit(box.x + field[0] + 40, box.y + field[1] + 5, 8.0)
     assert (hit.part, hit.port) == ("field", P("exposure.stops"))
     wire = scene.by_target[P("bloom.image")]
-    assert scene.hit(*wire.middle, 8.0).port == P("bloom.image")
-    assert scene.hit(box.x, box.y - 300, 8.0).part == "empty"
+    assert scene.find_hit(*wire.middle, 8.0).port == P("bloom.image")
+    assert scene.find_hit(box.x, box.y - 300, 8.0).part == "empty"
 
 
 def test_what_is_drawn_last_is_hit_first() -> None:
     graph = chain("exposure", "bloom")
     scene = SceneBuilder().build(graph, lambda key: (0.0, 0.0), ["exposure"])
-    assert scene.hit(60.0, 12.0, 1.0).key == "exposure"
+    assert scene.find_hit(60.0, 12.0, 1.0).key == "exposure"
 
 
 def test_links_follow_what_moves_and_nothing_else_does() -> None:
     scene = staged(chain("exposure", "bloom"))
-    after = scene.moved({"bloom"}, 10.0, 20.0)
+    after = scene.move({"bloom"}, 10.0, 20.0)
     start, end = after.by_target[P("bloom.image")].curves[0][:2], after.by_target[P("bloom.image")].curves[0][6:]
     assert start == scene.by_target[P("bloom.image")].curves[0][:2]
     assert end == pin(after, "bloom.image", False)
@@ -80,7 +80,7 @@ def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
     stage, graph = SceneBuilder(), pin_places(chain("exposure", "bloom"))
     first = staged(graph, stage)
     second = staged(graph.set(P("exposure.stops"), 2.0), stage)
-    assert second.net is first.net
+    assert second.links is first.links
     assert [key for key, box in second.boxes.items() if box is not first.boxes[key]] == ["exposure"]
     assert second == staged(graph.set(P("exposure.stops"), 2.0))
 
@@ -105,7 +105,7 @@ def test_what_is_staged_again_is_what_is_staged_anew(change) -> None:
 def test_a_first_picture_moves_no_pin_and_no_field() -> None:
     graph = chain("exposure", "tone_map")
     before, after = staged(graph), staged(graph, pictures=frozenset({"exposure", "tone_map", "inputs.beauty"}))
-    assert before.net.wires == after.net.wires
+    assert before.links.wires == after.links.wires
     for key in ("exposure", "tone_map"):
         old, new = before.boxes[key].layout, after.boxes[key].layout
         assert (new.rows, new.ins, new.outs, new.more) == (old.rows, old.ins, old.outs, old.more)
@@ -134,13 +134,13 @@ def test_unknown_nodes_keep_pins_for_their_links() -> None:
 def test_a_dragged_link_fits_what_makes_no_loop_and_snaps() -> None:
     graph = chain("exposure", "bloom")
     scene = staged(graph)
-    targets = fitting(graph, scene, P("bloom.out"), True)
+    targets = find_fitting_pins(graph, scene, P("bloom.out"), True)
     assert P("outputs.image") in targets and P("exposure.image") not in targets
-    link = Link(P("bloom.out"), True, None, targets)
+    link = LinkGesture(P("bloom.out"), True, None, targets)
     x, y = pin(scene, "outputs.image", False)
-    assert nearest(scene, link, (x - 10, y + 5), 20.0)[0] == P("outputs.image")
-    assert nearest(scene, link, (x - 100, y - 200), 20.0) is None
-    assert refused(scene, link, pin(scene, "exposure.image", False), 8.0) == P("exposure.image")
+    assert find_snap_pin(scene, link, (x - 10, y + 5), 20.0)[0] == P("outputs.image")
+    assert find_snap_pin(scene, link, (x - 100, y - 200), 20.0) is None
+    assert find_refused_pin(scene, link, pin(scene, "exposure.image", False), 8.0) == P("exposure.image")
 
 
 def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
@@ -148,21 +148,21 @@ def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
     scene = staged(graph)
     box = scene.boxes["clip"]
     x, y = scene.by_target[P("bloom.image")].middle
-    there = scene.moved({"clip"}, x - box.x - box.w / 2, y - box.y - 24.0)
-    assert insertable(graph, there, {"clip"}, (x, y), 9.0) == P("bloom.image")
-    assert insertable(graph, there, {"exposure"}, (x, y), 9.0) is None
-    assert insertable(graph, there, {"clip", "bloom"}, (x, y), 9.0) is None
+    there = scene.move({"clip"}, x - box.x - box.w / 2, y - box.y - 24.0)
+    assert find_insertion(graph, there, {"clip"}, (x, y), 9.0) == P("bloom.image")
+    assert find_insertion(graph, there, {"exposure"}, (x, y), 9.0) is None
+    assert find_insertion(graph, there, {"clip", "bloom"}, (x, y), 9.0) is None
     pair = graph.add("vignette", catalogue()["vignette"]()).connect(P("clip.out"), P("vignette.image"))
     scene = staged(pair)
-    there = scene.moved({"clip", "vignette"}, x - scene.boxes["clip"].x - 90.0, y - scene.boxes["clip"].y - 24.0)
-    assert insertable(pair, there, {"clip", "vignette"}, (x, y), 9.0) == P("bloom.image")
-    assert insertable(pair, there, {"clip"}, (x, y), 9.0) is None, "it is linked with what stays"
+    there = scene.move({"clip", "vignette"}, x - scene.boxes["clip"].x - 90.0, y - scene.boxes["clip"].y - 24.0)
+    assert find_insertion(pair, there, {"clip", "vignette"}, (x, y), 9.0) == P("bloom.image")
+    assert find_insertion(pair, there, {"clip"}, (x, y), 9.0) is None, "it is linked with what stays"
 
 
 def test_links_of_one_source_share_the_dot_that_a_line_makes() -> None:
     graph = chain("exposure").add("bloom", catalogue()["bloom"]())
     graph = graph.connect(P("exposure.out"), P("bloom.image"))
-    after, keys = dotted(graph, {P("bloom.image"): (500.0, 10.0), P("outputs.image"): (500.0, 20.0)})
+    after, keys = add_crossing_dots(graph, {P("bloom.image"): (500.0, 10.0), P("outputs.image"): (500.0, 20.0)})
     assert len(keys) == 1
     assert after.ui["routes"]["bloom.image"] == after.ui["routes"]["outputs.image"]
     wires = staged(after).by_target
@@ -174,26 +174,26 @@ def test_rectangles_take_what_they_touch_but_frames_only_whole() -> None:
     scene = staged(graph)
     box = scene.boxes["exposure"]
     rect = (box.x - 5, box.y - 5, box.x + 5, box.y + 5)
-    assert touched(scene, rect) == ("exposure",)
+    assert find_touched(scene, rect) == ("exposure",)
     framed, _ = add_frame(graph, ["exposure"], positions(graph))
     scene = staged(framed)
-    assert touched(scene, rect) == ("exposure",)
-    assert set(touched(scene, (-900.0, -900.0, 2000.0, 900.0))) == set(scene.boxes)
+    assert find_touched(scene, rect) == ("exposure",)
+    assert set(find_touched(scene, (-900.0, -900.0, 2000.0, 900.0))) == set(scene.boxes)
 
 
 def test_moving_snaps_to_the_grid_and_resizing_keeps_the_other_edges() -> None:
     scene = staged(chain("exposure"))
-    move = moved(MoveGesture("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
-    box = shown(scene, move).boxes["exposure"]
+    move = move_to(MoveGesture("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
+    box = preview_gesture(scene, move).boxes["exposure"]
     assert box.x % 16 == 0 and box.y % 16 == 0
     before = (0.0, 0.0, 200.0, 100.0)
-    assert resized(ResizeGesture("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (
+    assert resize_to(ResizeGesture("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (
         0,
         0,
         260,
         100,
     )
-    assert resized(ResizeGesture("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (
+    assert resize_to(ResizeGesture("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (
         104,
         36,
         200,
@@ -223,12 +223,12 @@ def test_words_of_the_description_find_too() -> None:
 def test_ends_and_outputs_are_boxes_with_one_pin() -> None:
     graph = Graph().add_input("a", Input()).add_output("b", Output()).connect(P("inputs.a"), P("outputs.b"))
     scene = staged(graph)
-    assert [str(port) for port, _, _ in scene.pins(True)] == ["inputs.a"]
-    assert [str(port) for port, _, _ in scene.pins(False)] == ["outputs.b"]
+    assert [str(port) for port, _, _ in scene.list_pins(True)] == ["inputs.a"]
+    assert [str(port) for port, _, _ in scene.list_pins(False)] == ["outputs.b"]
 
 
 def test_comments_are_as_high_as_their_text() -> None:
-    short, long = (comment_height(text, 200.0) for text in ("a note", "many words " * 20))
+    short, long = (measure_comment(text, 200.0) for text in ("a note", "many words " * 20))
     assert short == 40.0 and long > 120.0
-    assert comment_height("one\n\ntwo", 200.0) > comment_height("one", 200.0)
-    assert comment_height("many words " * 20, 400.0) < long
+    assert measure_comment("one\n\ntwo", 200.0) > measure_comment("one", 200.0)
+    assert measure_comment("many words " * 20, 400.0) < long

@@ -154,7 +154,7 @@ def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> Non
     show_element(contexts.problems, f"{group}/bloom")
     assert desk.session.place == (group,)
     assert desk.session.selection == {"bloom"}
-    assert desk.canvas.wanted == ("bloom",)
+    assert desk.canvas.pending_fit == ("bloom",)
     show_element(contexts.problems, "inputs.beauty")
     assert desk.session.place == ()
     assert desk.session.selection == {"inputs.beauty"}
