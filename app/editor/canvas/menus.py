@@ -87,7 +87,9 @@ class CanvasMenus:
             fed = [target for target, source in session.graph.links.items() if source == port]
             _draw_item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
         else:
-            _draw_item(self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links)
+            _draw_item(
+                self.context, "Cut its link", lambda: session.apply(Disconnect(port)), port in session.graph.links
+            )
             if port.node in session.graph.nodes and port in session.graph.links:
                 _draw_item(self.context, "Add a dot", lambda: session.apply(AddDot(port, self._at)))
 
