@@ -46,7 +46,7 @@ def _make_outside_action(how: Outside, label: str, doc: str) -> Action:
         f"Outside: {label}",
         commands.extrapolate(how),
         scope="animation",
-        enabled=lambda context: bool(context.curves.spots or context.curves.shown),
+        enabled=lambda context: bool(context.curves.spots or context.curves.chosen_rows),
         checked=lambda context: commands.extrapolates(context, how),
         contexts=frozenset({"keys outside"}),
         doc=doc,
