@@ -71,7 +71,8 @@ class PictureJob:
     def preroll_progress(self) -> tuple[str, int, int] | None:
         """What of the history is under way: "plan" or "pre-roll", how many frames are done, and how many there are."""
         if self.run is None and self.planned_frames[0] < self.planned_frames[1]:
-            return "plan", *self.planned_frames
+            planned, total = self.planned_frames
+            return "plan", planned, total
         done, total = self.preroll
         return ("pre-roll", done, total) if total and done < total else None
 

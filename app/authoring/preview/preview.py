@@ -320,7 +320,7 @@ class Preview:
         if job is not None:
             job.close()
             now.queue.insert(0, job.ports)
-        self._job, self._cameras = found, self._cameras | found.plan.cameras
+        self._job, self._cameras = found, {**self._cameras, **found.plan.cameras}
         return True
 
     def _compile(self, now: PreviewWork) -> bool:
