@@ -9,7 +9,7 @@ import pytest
 from devices import open_renderer
 from halation.compiler import Precision
 from halation.graph import Graph, Input, Output, Port
-from halation.nodes import Camera, Kind, Node
+from halation.nodes import CameraModel, Kind, Node
 from halation.renderer import Renderer, RenderRequest
 
 Array = np.ndarray
@@ -26,11 +26,11 @@ def renderer() -> Iterator[Renderer]:
     renderer.close()
 
 
-def graph_of(node: Node, inputs: Mapping[str, Array | Camera]) -> Graph:
+def graph_of(node: Node, inputs: Mapping[str, Array | CameraModel]) -> Graph:
     """A graph of one node with an input for every array or camera; arrays may feed values too."""
     graph = Graph().add("node", node)
     for name, array in inputs.items():
-        if isinstance(array, Camera):
+        if isinstance(array, CameraModel):
             graph = graph.add_input(name, Input(Kind.CAMERA, default=array.rows))
             graph = graph.connect(Port("inputs", name), Port("node", name))
             continue
@@ -56,7 +56,7 @@ def run(renderer: Renderer) -> Run:
 
     def render(
         subject: Node | Graph,
-        inputs: Mapping[str, Array | Camera] | None = None,
+        inputs: Mapping[str, Array | CameraModel] | None = None,
         *,
         size: tuple[int, int] | None = None,
         output: str = "out",
@@ -65,7 +65,7 @@ def run(renderer: Renderer) -> Run:
         engine: Renderer | None = None,
     ) -> Array:
         given = inputs or {}
-        cameras = {name: item for name, item in given.items() if isinstance(item, Camera)}
+        cameras = {name: item for name, item in given.items() if isinstance(item, CameraModel)}
         arrays = {name: np.asarray(item, np.float32) for name, item in given.items() if name not in cameras}
         graph = graph_of(subject, arrays | cameras) if isinstance(subject, Node) else subject
         if output not in graph.outputs:

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 from halation import media
-from halation.nodes import Camera, Kind, look_at
+from halation.nodes import CameraModel, Kind, look_at
 from halation.presets import sample
 
 Array = np.ndarray
@@ -22,7 +22,7 @@ def places(width: int, height: int) -> Array:
     return np.dstack([(u + 0.5) / width, (v + 0.5) / height])
 
 
-def rays(camera: Camera, width: int, height: int) -> Array:
+def rays(camera: CameraModel, width: int, height: int) -> Array:
     """From the eye to what lies one unit deep, by numpy's inverse of the matrix: [h, w, 3]."""
     matrix = np.reshape(camera.rows, (3, 4))[:, :3]
     seen = np.dstack([places(width, height), np.ones((height, width))])
@@ -37,17 +37,17 @@ def sample_layer(name: str) -> Array:
 
 
 @cache
-def sample_camera() -> Camera:
+def sample_camera() -> CameraModel:
     """The camera of the sample, from its positions and depth by linear least squares."""
     depth, position = sample_layer("Depth")[..., 0].astype(float), sample_layer("Position").astype(float)
     there = depth < 1e9
     height, width = depth.shape
     world = np.column_stack([position[there], np.ones(there.sum())])
     seen = np.dstack([places(width, height), np.ones((height, width))])[there] * depth[there, None]
-    return Camera(tuple(np.linalg.lstsq(world, seen, rcond=None)[0].T.ravel().tolist()))
+    return CameraModel(tuple(np.linalg.lstsq(world, seen, rcond=None)[0].T.ravel().tolist()))
 
 
-def ball(camera: Camera, center: tuple[float, ...], radius: float, width: int, height: int) -> dict[str, Array]:
+def ball(camera: CameraModel, center: tuple[float, ...], radius: float, width: int, height: int) -> dict[str, Array]:
     """Depth, normal and position of a ball, by casting rays; background as renderers write it."""
     ray, eye = rays(camera, width, height), np.array(camera.eye)
     # |eye + depth ray - center|^2 = radius^2

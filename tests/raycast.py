@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 
 Array = np.ndarray
 CENTER, RADIUS = np.array([0.6, 2.0, 1.0]), 1.0
@@ -23,7 +23,7 @@ class RaycastImage:
     hit: Array
 
 
-def cast_rays(camera: Camera, width: int, height: int) -> RaycastImage:
+def cast_rays(camera: CameraModel, width: int, height: int) -> RaycastImage:
     """Through the middle of every pixel."""
     rows = np.reshape(camera.rows, (3, 4))
     eye = -np.linalg.solve(rows[:, :3], rows[:, 3])

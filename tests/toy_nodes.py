@@ -30,7 +30,7 @@ from halation.nodes import (
     Vector,
     numbers_of,
 )
-from halation.nodes import Output as Made
+from halation.nodes import OutputSocket as Made
 
 
 class Gain(Pointwise):

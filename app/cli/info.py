@@ -12,7 +12,7 @@ from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from halation.nodes import Camera
+    from halation.nodes import CameraModel
 
     from ..media.layers import Layer
     from ..media.sequences import FrameSequence
@@ -144,7 +144,7 @@ def _layer_facts(layer: Layer) -> dict[str, Any]:
     }
 
 
-def _camera_facts(camera: Camera | None, reason: str, solved: CameraSolution | None) -> dict[str, Any]:
+def _camera_facts(camera: CameraModel | None, reason: str, solved: CameraSolution | None) -> dict[str, Any]:
     if camera is None:
         return {"reason": reason}
     from ..render_layers.report import measure_field_of_view

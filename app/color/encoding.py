@@ -8,7 +8,7 @@ from msgspec import Struct, field
 
 from ..errors import UsageError
 from .display import check_view, find_display, find_view, to_display
-from .management import LINEAR_REC709, ColorManager, ColorSpace, get_color_manager, load_ocio
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager, load_ocio
 from .primaries import find_chromaticities
 from .transforms import Array, from_working, quantize, unpremultiply
 
@@ -57,7 +57,7 @@ class Encoding(Struct, frozen=True):
         if self.is_plain:
             return array
         target = self._target if self.space else self.manager.find(LINEAR_REC709)
-        return self._convert(array, target or ColorSpace(LINEAR_REC709, False))
+        return self._convert(array, target or OcioColorSpace(LINEAR_REC709, False))
 
     def to_codes(self, array: Array, bits: int) -> Array:
         """Color [h, w, 3 or 4] as integers: through the view, or in the color space; alpha is straight."""
@@ -113,14 +113,14 @@ class Encoding(Struct, frozen=True):
         )
 
     @property
-    def _target(self) -> ColorSpace:
+    def _target(self) -> OcioColorSpace:
         manager = self.manager
         space = manager.find(self.space)
         if space is None:
             raise UsageError(f"there is no color space '{self.space}'{manager.suggest_space(self.space)}")
         return space
 
-    def _convert(self, array: Array, target: ColorSpace) -> Array:
+    def _convert(self, array: Array, target: OcioColorSpace) -> Array:
         manager = self.manager
         config = manager.spaces if target.own else None
         if array.shape[2] < 4 or (config and config.isColorSpaceLinear(target.name, load_ocio().REFERENCE_SPACE_SCENE)):

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Struct
 
 from ..errors import GraphError, InputError
-from .management import LINEAR_REC709, ColorManager, ColorSpace
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace
 
 AUTO = ("", "auto")
 """What stands for finding out."""
@@ -42,7 +42,7 @@ class FileSpace(Struct, frozen=True):
 
     name: str
     reason: str
-    space: ColorSpace | None = None
+    space: OcioColorSpace | None = None
 
 
 def find_file_space(path: str, hints: ColorHints, managed: ColorManager, requested: str = "") -> FileSpace:
@@ -59,7 +59,7 @@ def find_file_space(path: str, hints: ColorHints, managed: ColorManager, request
         if name.casefold() in _LINEAR_TAGS and not (managed.is_chosen and managed.find(name)):
             return FileSpace(managed.working.name if not managed.is_plain else LINEAR_REC709, reason)
         if managed.is_plain and name in (LINEAR_REC709, SRGB):
-            return FileSpace(name, reason, None if name == LINEAR_REC709 else ColorSpace(SRGB, True))
+            return FileSpace(name, reason, None if name == LINEAR_REC709 else OcioColorSpace(SRGB, True))
         space = managed.find(name)
         if space is not None:
             return FileSpace(name, reason, space)
@@ -71,14 +71,14 @@ def find_file_space(path: str, hints: ColorHints, managed: ColorManager, request
     usual = hints.usual or (SRGB if hints.integer else "")
     if usual == SRGB:
         reason = "integers are sRGB unless someone says otherwise"
-        return FileSpace(SRGB, reason, ColorSpace(SRGB, True) if managed.is_plain else managed.find(SRGB))
+        return FileSpace(SRGB, reason, OcioColorSpace(SRGB, True) if managed.is_plain else managed.find(SRGB))
     if usual and not managed.is_plain:
         return FileSpace(usual, "that is what such files hold", managed.find(usual))
     working = LINEAR_REC709 if managed.is_plain else managed.working.name
     return FileSpace(working, "the working space, for nothing says otherwise")
 
 
-def find_requested_space(name: str, managed: ColorManager) -> ColorSpace | None:
+def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | None:
     """The space of that name; None for finding out. Raises GraphError for one that nobody knows."""
     if name in AUTO:
         return None

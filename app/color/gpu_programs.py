@@ -15,7 +15,7 @@ from ..glsl import parse
 from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
 from .display import make_display_processor
-from .management import DEFAULT_COLOR, ColorSpace, get_color_manager, load_ocio, mark_color_settings, ocio_errors
+from .management import DEFAULT_COLOR, OcioColorSpace, get_color_manager, load_ocio, mark_color_settings, ocio_errors
 
 
 def write_color_change(change: ColorChange) -> ColorProgram:
@@ -79,7 +79,7 @@ def _write_color_change(change: ColorChange, mark: str) -> ColorProgram:
 def _make_space_processor(change: SpaceChange) -> Any:
     manager = get_color_manager(change.color)
 
-    def find_space(name: str) -> ColorSpace:
+    def find_space(name: str) -> OcioColorSpace:
         space = manager.find(name)
         if space is None:
             raise UsageError(f"no color space is called '{name}'{manager.suggest_space(name)}")

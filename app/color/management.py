@@ -39,7 +39,7 @@ _BUILT_IN_MARK = "ocio://"
 _DATA_NAMES = ("raw", "data", "unknown", "none")
 
 
-class ColorSpace(Struct, frozen=True):
+class OcioColorSpace(Struct, frozen=True):
     """A color space of a config; `own` is False for one of the studio config. `data` are numbers without color."""
 
     name: str
@@ -57,7 +57,7 @@ class ColorManager:
         self.source, self.is_chosen = source, chosen
         """Where the config comes from, and whether anyone asked for it."""
         self._error, self._working_name = fault, working
-        self._spaces_by_name: dict[str, ColorSpace | None] = {}
+        self._spaces_by_name: dict[str, OcioColorSpace | None] = {}
 
     @property
     def is_plain(self) -> bool:
@@ -80,7 +80,7 @@ class ColorManager:
         return self.config if self.is_chosen else load_studio_config()
 
     @cached_property
-    def working(self) -> ColorSpace:
+    def working(self) -> OcioColorSpace:
         """The space between nodes. Raises GraphError for one that nobody knows."""
         if self._working_name.casefold() not in _DEFAULT_NAMES:
             space = self.find(self._working_name)
@@ -90,7 +90,7 @@ class ColorManager:
                     f"settings.color.working: '{self._working_name}' {fault}{self.suggest_space(self._working_name)}"
                 )
         else:
-            space = self.find(LINEAR_REC709) or ColorSpace(LINEAR_REC709, False)
+            space = self.find(LINEAR_REC709) or OcioColorSpace(LINEAR_REC709, False)
         if not space.own and self.is_chosen:
             self._check_bridge(space)
         config = self.spaces if space.own else load_studio_config()
@@ -106,7 +106,7 @@ class ColorManager:
         """What a header calls the working space."""
         return self.find_header_name(self.working)
 
-    def find(self, name: str) -> ColorSpace | None:
+    def find(self, name: str) -> OcioColorSpace | None:
         """A space by name, alias or role in any case, or by the name that nodes call it; None if nobody knows it."""
         if name.casefold() == WORKING_SPACE:
             return self.working
@@ -114,18 +114,20 @@ class ColorManager:
             self._spaces_by_name[name] = self._find(name)
         return self._spaces_by_name[name]
 
-    def _find(self, name: str) -> ColorSpace | None:
+    def _find(self, name: str) -> OcioColorSpace | None:
         if space := self.spaces.getColorSpace(name):
-            return ColorSpace(space.getName(), True, space.isData())
+            return OcioColorSpace(space.getName(), True, space.isData())
         if name.casefold() in _DATA_NAMES:
-            return ColorSpace(name, True, True)
+            return OcioColorSpace(name, True, True)
         studio_space = load_studio_config().getColorSpace(SPACES.get(name.casefold(), name))  # type: ignore[arg-type]
         if not studio_space:
             return None
         for alias in (studio_space.getName(), *studio_space.getAliases()):
             if space := self.spaces.getColorSpace(alias):
-                return ColorSpace(space.getName(), True, space.isData())
-        return self._find_equal_space(studio_space) or ColorSpace(studio_space.getName(), False, studio_space.isData())
+                return OcioColorSpace(space.getName(), True, space.isData())
+        return self._find_equal_space(studio_space) or OcioColorSpace(
+            studio_space.getName(), False, studio_space.isData()
+        )
 
     def list_spaces(self) -> tuple[str, ...]:
         """The color spaces of the config that pictures can be in."""
@@ -140,13 +142,13 @@ class ColorManager:
         start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
         return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
-    def make_processor(self, source: ColorSpace, target: ColorSpace) -> Any:
+    def make_processor(self, source: OcioColorSpace, target: OcioColorSpace) -> Any:
         """From one space to another. Raises GraphError or UsageError where the config cannot say how."""
         if source.data or target.data or source == target:
             return self._run(lambda: load_ocio().Config.CreateRaw().getProcessor(load_ocio().MatrixTransform()))
         return self._run(lambda: self._make_processor(source, target))
 
-    def find_header_name(self, space: ColorSpace) -> str:
+    def find_header_name(self, space: OcioColorSpace) -> str:
         """What a header calls a space: its interchange name if there is one."""
         config_space = (self.spaces if space.own else load_studio_config()).getColorSpace(space.name)
         interop_name = str(getattr(config_space, "getInteropID", str)() or "") if config_space else ""
@@ -158,7 +160,7 @@ class ColorManager:
         if space := self.config.getColorSpace(working.name) if working.own or not self.is_chosen else None:
             return group, space.getName()
         anchor = self.config.getColorSpace("scene_linear") or self.config.getColorSpace("aces_interchange")
-        inside = ColorSpace(anchor.getName(), True)
+        inside = OcioColorSpace(anchor.getName(), True)
         group.appendTransform(self.make_processor(working, inside).createGroupTransform())
         return group, inside.name
 
@@ -168,13 +170,13 @@ class ColorManager:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _make_processor(self, source: ColorSpace, target: ColorSpace) -> Any:
+    def _make_processor(self, source: OcioColorSpace, target: OcioColorSpace) -> Any:
         if source.own == target.own:
             return (self.spaces if source.own else load_studio_config()).getProcessor(source.name, target.name)
         first, second = (self.spaces if space.own else load_studio_config() for space in (source, target))
         return load_ocio().Config.GetProcessorFromConfigs(first, source.name, second, target.name)
 
-    def _find_equal_space(self, studio_space: Any) -> ColorSpace | None:
+    def _find_equal_space(self, studio_space: Any) -> OcioColorSpace | None:
         """A space of the config that computes the same under another name, where OpenColorIO finds one."""
         if not self.is_chosen or studio_space.isData():
             return None
@@ -184,12 +186,12 @@ class ColorManager:
             )
         except ocio_errors():
             return None
-        return ColorSpace(name, True) if name else None
+        return OcioColorSpace(name, True) if name else None
 
-    def _check_bridge(self, space: ColorSpace) -> None:
+    def _check_bridge(self, space: OcioColorSpace) -> None:
         names = self.list_spaces()
         try:
-            self._make_processor(space, ColorSpace(names[0], True))
+            self._make_processor(space, OcioColorSpace(names[0], True))
         except (*ocio_errors(), IndexError):
             raise self._error(
                 f"{self.where}: has neither '{space.name}' nor the role aces_interchange that would lead to it: set "

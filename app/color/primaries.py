@@ -9,7 +9,7 @@ import numpy as np
 from halation.nodes import ColorSettings
 
 from .file_space import CHROMATICITIES
-from .management import LINEAR_REC709, ColorManager, ColorSpace, get_color_manager, load_studio_config
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager, load_studio_config
 
 if TYPE_CHECKING:
     from ..resources.working_space import WorkingSpace
@@ -28,7 +28,7 @@ def find_working_space(color: ColorSettings) -> WorkingSpace | None:
     return None if manager.is_plain else _make_working_space(manager)
 
 
-def find_chromaticities(manager: ColorManager, space: ColorSpace) -> tuple[float, ...]:
+def find_chromaticities(manager: ColorManager, space: OcioColorSpace) -> tuple[float, ...]:
     """x and y of red, green, blue and white of a linear space that the world has a name for; else nothing."""
     if space.data:
         return ()
@@ -40,14 +40,14 @@ def find_chromaticities(manager: ColorManager, space: ColorSpace) -> tuple[float
 def _make_working_space(manager: ColorManager) -> WorkingSpace | None:
     from ..resources.working_space import WorkingSpace  # what reads files has no need of it
 
-    rec709 = ColorSpace("Linear Rec.709 (sRGB)", False)
+    rec709 = OcioColorSpace("Linear Rec.709 (sRGB)", False)
     to = _conversion_matrix(manager, manager.working, manager.find(LINEAR_REC709) or rec709)
     if np.allclose(to, np.eye(3), atol=_MATRIX_TOLERANCE):
         return None
     return WorkingSpace(_luminance_weights(to), tuple(to.ravel().tolist()), tuple(np.linalg.inv(to).ravel().tolist()))
 
 
-def _conversion_matrix(manager: ColorManager, source: ColorSpace, target: ColorSpace) -> np.ndarray:
+def _conversion_matrix(manager: ColorManager, source: OcioColorSpace, target: OcioColorSpace) -> np.ndarray:
     """From one linear space to another, by rows."""
     colors = np.eye(3, dtype=np.float32)
     manager.make_processor(source, target).getDefaultCPUProcessor().applyRGB(colors)

@@ -15,7 +15,7 @@ from .file_space import FileSpace
 from .management import (
     LINEAR_REC709,
     ColorManager,
-    ColorSpace,
+    OcioColorSpace,
     load_ocio,
 )
 
@@ -49,11 +49,11 @@ def to_working(rgb: Array, file_space: FileSpace, manager: ColorManager) -> Arra
         light = _make_srgb_table(rgb.dtype.str)[rgb] if has_table else decode_srgb(rgb).astype(np.float32)
         if manager.is_plain:
             return light
-        return _convert_to_working(light, rgb, manager, ColorSpace(LINEAR_REC709, True))
+        return _convert_to_working(light, rgb, manager, OcioColorSpace(LINEAR_REC709, True))
     return _convert_to_working(np.ascontiguousarray(to_float(rgb), dtype=np.float32), rgb, manager, file_space.space)
 
 
-def from_working(rgb: Array, space: ColorSpace, manager: ColorManager) -> Array:
+def from_working(rgb: Array, space: OcioColorSpace, manager: ColorManager) -> Array:
     """Working-space colors [..., 3] in another space, float32. Raises as `to_working`."""
     converted = np.array(rgb, dtype=np.float32, order="C")
     if not space.data and space != manager.working:
@@ -92,11 +92,11 @@ def quantize(pixels: Array, bits: Literal[8, 10, 12, 16]) -> Array:
     return (np.clip(pixels, 0.0, 1.0) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def _is_srgb(space: ColorSpace) -> bool:
+def _is_srgb(space: OcioColorSpace) -> bool:
     return space.name in ("srgb_rec709_scene", "sRGB Encoded Rec.709 (sRGB)")
 
 
-def _convert_to_working(light: Array, source_array: Array, manager: ColorManager, space: ColorSpace) -> Array:
+def _convert_to_working(light: Array, source_array: Array, manager: ColorManager, space: OcioColorSpace) -> Array:
     """Colors through OpenColorIO; what is not a copy of what was given yet becomes one."""
     light = light.copy() if light is source_array or np.shares_memory(light, source_array) else light
     apply_processor(_make_reading_processor(manager, space), light)
@@ -104,7 +104,7 @@ def _convert_to_working(light: Array, source_array: Array, manager: ColorManager
 
 
 @lru_cache(maxsize=256)
-def _make_reading_processor(manager: ColorManager, space: ColorSpace) -> Any:
+def _make_reading_processor(manager: ColorManager, space: OcioColorSpace) -> Any:
     """From a space to the working space."""
     source = manager.find(space.name) if space.name == LINEAR_REC709 else space
     return _make_exact(manager.make_processor(source or space, manager.working))

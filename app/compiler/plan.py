@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Literal
 
-from halation.nodes import Camera, Size, Uniform
+from halation.nodes import CameraModel, Size, Uniform
 from msgspec import Struct, field
 
 from ..graph import Port
@@ -133,7 +133,7 @@ class Plan(Struct, frozen=True):
 
     Nodes are paths such as `glow/bloom`; the inputs of a group are `glow/inputs`. What was fused away is not there.
     """
-    cameras: Mapping[Port, Camera]
+    cameras: Mapping[Port, CameraModel]
     """What inputs of nodes that take a camera were given."""
     memories: Mapping[Port, Memory]
     """What temporal nodes will want of this frame, by node and name."""

@@ -10,7 +10,7 @@ from keyword import iskeyword
 from types import new_class
 from typing import Any, Literal, cast
 
-from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
+from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Pointwise, Socket, Value, Vector
 from msgspec import Struct
 
 from ..glsl import COMMENT, GlslFunction, Text, blank_comments, parse, unify_lines
@@ -65,9 +65,9 @@ def glsl_node(code: Code) -> type[CustomNode]:
         for one in parameters
         if not one.out and one.note.default
     }
-    outputs = {one.name: Output(_socket(one)) for one in parameters if one.out}
+    outputs = {one.name: OutputSocket(_socket(one)) for one in parameters if one.out}
     if not outputs:
-        outputs = {"out": Output(_picture(entry.result, Note(), entry.line, "the result"))}
+        outputs = {"out": OutputSocket(_picture(entry.result, Note(), entry.line, "the result"))}
     looks = {name for name in inputs if text.words & {f"{name}_{way}" for way in ("at", "near", "size")}}
     return _make_class(code, source, text, entry, parameters, inputs, values, outputs, bool(looks))
 
@@ -80,7 +80,7 @@ def _make_class(
     parameters: tuple[_Parameter, ...],
     inputs: Mapping[str, Socket],
     values: Mapping[str, Value],
-    outputs: Mapping[str, Output],
+    outputs: Mapping[str, OutputSocket],
     looks: bool,
 ) -> type[CustomNode]:
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
@@ -214,7 +214,7 @@ def _entries(
     parameters: tuple[_Parameter, ...],
     inputs: Mapping[str, Socket],
     values: Mapping[str, Value],
-    outputs: Mapping[str, Output],
+    outputs: Mapping[str, OutputSocket],
 ) -> str:
     """For each output a function that is drawn: it reads its own pixel of every picture and calls the user's."""
     value_list = ", ".join(f"{values[one.name].glsl} {one.name}" for one in parameters if one.name in values)

@@ -23,8 +23,8 @@ others. `window/contexts.py` composes the contexts once. A context holds objects
 is never replaced. Where a panel needs a detail of another panel, its context names a small protocol
 (`shared/protocols.py`), such as "bring this element into view".
 
-The viewer, the timeline and the scopes show what is on the `Stage`: the document, or a flipbook in its place. Their
-contexts have a `session` that asks the stage each time.
+The viewer, the timeline and the scopes show what is on the `DocumentStage`: the document, or a flipbook in its place.
+Their contexts have a `session` that asks the stage each time.
 
 **A frame of the window.** Between two frames `window/frame_updater.py` reads changed files, keeps unsaved work, asks
 the viewer which pictures it wants, and lets the preview compute for some milliseconds. Then each visible panel draws,

@@ -14,7 +14,7 @@ from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 
-from halation.nodes import Camera, Kind
+from halation.nodes import CameraModel, Kind
 
 from ..color.transforms import Array
 from ..errors import InputError
@@ -38,7 +38,7 @@ _AGREEMENT_PIXELS = 0.5
 class RenderCamera:
     """The camera of a render, None where nothing tells it, and how it was found; `solved` says how exactly."""
 
-    camera: Camera | None
+    camera: CameraModel | None
     reason: str
     solution: CameraSolution | None = None
 
@@ -144,7 +144,7 @@ class RenderAnalysis:
         check = self._compare_with_header(header, solved.camera, position)
         return RenderCamera(solved.camera, f"solved from the positions{check}", solved)
 
-    def _compare_with_header(self, header: Camera | None, solved: Camera, position: Array) -> str:
+    def _compare_with_header(self, header: CameraModel | None, solved: CameraModel, position: Array) -> str:
         """What there is to say of a camera in the header beside one that was solved."""
         if header is None:
             return ""
@@ -155,7 +155,7 @@ class RenderAnalysis:
             return f"; that of the header agrees to {off:.1g} px"
         return f"; that of the header is {off:.3g} px off and was not used"
 
-    def _measure_by_positions(self, pixels: Mapping[Role, Array], camera: Camera | None) -> dict[Role, Convention]:
+    def _measure_by_positions(self, pixels: Mapping[Role, Array], camera: CameraModel | None) -> dict[Role, Convention]:
         """What the positions prove of themselves, of depth and of normals."""
         if camera is None:
             return {}

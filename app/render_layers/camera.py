@@ -18,7 +18,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from halation.nodes import Camera, Size
+from halation.nodes import CameraModel, Size
 
 from ..color.transforms import Array
 from ..errors import InputError
@@ -71,7 +71,7 @@ class CameraSolution:
     where the camera sees it; `share` is the part of the places that it explains.
     """
 
-    camera: Camera
+    camera: CameraModel
     residual: float
     worst: float
     share: float
@@ -115,13 +115,13 @@ def solve_camera(position: Array, depth: Array | None = None) -> CameraSolution:
     close = error < max(_INLIER_PIXELS, 6.0 * float(np.median(error)))
     if float(np.median(error)) > _WORST_MEDIAN_PIXELS or np.count_nonzero(close) < 0.5 * len(error):
         raise InputError(_NO_PINHOLE)
-    camera = Camera(tuple(float(part) for part in matrix.ravel()))
+    camera = CameraModel(tuple(float(part) for part in matrix.ravel()))
     return CameraSolution(
         camera, float(np.median(error[close])), float(np.percentile(error[close], 99)), float(close.mean())
     )
 
 
-def measure_camera(camera: Camera, position: Array) -> CameraSolution:
+def measure_camera(camera: CameraModel, position: Array) -> CameraSolution:
     """How well a camera that is known explains a picture of positions. Raises InputError where there are too few."""
     correspondences = _collect_correspondences(np.asarray(position), None)
     if len(correspondences.points) < _FEWEST_POINTS:
@@ -282,7 +282,7 @@ def _normalizing_matrix(middle: Array, spread: float) -> Array:
     )
 
 
-def read_header_camera(attributes: Mapping[str, object], size: Size) -> Camera | None:
+def read_header_camera(attributes: Mapping[str, object], size: Size) -> CameraModel | None:
     """The camera that the header names: `worldToNDC` or `worldToScreen`, else `worldToCamera` and `screenWindowWidth`.
 
     OpenEXR leaves open whether such coordinates go from 0 to 1, downward, or from -1 to 1, upward: what tells is
@@ -308,7 +308,7 @@ def _parse_matrix(value: object) -> Array | None:
     return matrix if np.isfinite(matrix).all() else None
 
 
-def _from_projection(matrix: Array) -> Camera | None:
+def _from_projection(matrix: Array) -> CameraModel | None:
     """From a projection of the world; None where it has no perspective."""
     rows = matrix[[0, 1, 3]]
     length = float(np.linalg.norm(rows[2, :3]))
@@ -321,7 +321,7 @@ def _from_projection(matrix: Array) -> Camera | None:
     return _make_camera(rows)
 
 
-def _from_placement(matrix: Array, window: float, aspect: float) -> Camera | None:
+def _from_placement(matrix: Array, window: float, aspect: float) -> CameraModel | None:
     """From the camera's place, and the width of the picture at distance 1. Left-handed cameras look along +z."""
     length = float(np.linalg.norm(matrix[2, :3]))
     if length < 1e-12:
@@ -331,8 +331,8 @@ def _from_placement(matrix: Array, window: float, aspect: float) -> Camera | Non
     return _make_camera(np.stack([axes[0] / window + 0.5 * ahead, -axes[1] * aspect / window + 0.5 * ahead, ahead]))
 
 
-def _make_camera(rows: Array) -> Camera | None:
+def _make_camera(rows: Array) -> CameraModel | None:
     """None if the rows are flat: nothing could be seen through it."""
     if abs(np.linalg.det(rows[:, :3])) < 1e-12:
         return None
-    return Camera(tuple(float(part) for part in rows.ravel()))
+    return CameraModel(tuple(float(part) for part in rows.ravel()))

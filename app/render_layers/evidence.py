@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 
 from ..color.transforms import Array
 from .camera import FARTHEST, SAMPLES, find_surface_points, sample_pixels
@@ -57,7 +57,7 @@ _LIKELY_FACTOR = 1.15
 """How many times worse the next direction must fit than the best. On four pairs of those frames it is 1.39 to 1.61."""
 
 
-def match_depth_with_positions(depth: Array, position: Array, camera: Camera) -> Convention | None:
+def match_depth_with_positions(depth: Array, position: Array, camera: CameraModel) -> Convention | None:
     """Which depth [h, w] this is, by the distances of the places [h, w, 3]; None if it is none that is known."""
     rows, columns = sample_pixels((depth.shape[1], depth.shape[0]), SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), depth[rows, columns].astype(np.float64).ravel()
@@ -165,7 +165,7 @@ def _measure_bend(field: Array) -> float:
     return float(np.quantile(np.maximum(across, down) / field[0], _FLAT_SHARE))
 
 
-def find_position_space(camera: Camera, position: Array) -> Convention:
+def find_position_space(camera: CameraModel, position: Array) -> Convention:
     """Whose axes positions refer to, by where the camera that was solved from them stands."""
     rows, columns = sample_pixels((position.shape[1], position.shape[0]), SAMPLES)
     places = position[rows, columns, :3].astype(np.float64)
@@ -180,7 +180,7 @@ def find_position_space(camera: Camera, position: Array) -> Convention:
 
 
 def match_normals_with_positions(
-    normal: Array, position: Array, camera: Camera, home: VectorSpace = VectorSpace.WORLD
+    normal: Array, position: Array, camera: CameraModel, home: VectorSpace = VectorSpace.WORLD
 ) -> Convention | None:
     """Whose axes normals refer to, by how the places around each pixel lie; `home` is what positions refer to."""
     height, width = normal.shape[:2]
@@ -247,7 +247,9 @@ def _median_angle(a: Array, b: Array) -> float:
     return float(np.degrees(np.median(np.arccos(np.clip((a * b).sum(axis=1), -1.0, 1.0)))))
 
 
-def match_velocity_with_cameras(velocity: Array, position: Array, here: Camera, before: Camera) -> Convention | None:
+def match_velocity_with_cameras(
+    velocity: Array, position: Array, here: CameraModel, before: CameraModel
+) -> Convention | None:
     """Which way motion [h, w, 2] points and in what unit, by where two cameras see the same places; most must stand
     still in the world. None if the camera hardly moves or the motion is another."""
     height, width = velocity.shape[:2]
@@ -276,7 +278,7 @@ def match_velocity_with_cameras(velocity: Array, position: Array, here: Camera, 
     return Convention(MotionDirection.FROM_PREVIOUS, reason, True, scale)
 
 
-def _project(camera: Camera, places: Array) -> Array:
+def _project(camera: CameraModel, places: Array) -> Array:
     projected = places @ np.reshape(camera.rows, (3, 4)).T
     with np.errstate(divide="ignore", invalid="ignore"):
         return projected[:, :2] / projected[:, 2:]

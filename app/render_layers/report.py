@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import cast
 
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 
 from ..media.color_spaces import describe_color_spaces
 from ..media.header import PartHeader
@@ -142,7 +142,7 @@ def list_camera(render_camera: RenderCamera) -> list[tuple[str, str]]:
     return rows
 
 
-def measure_field_of_view(camera: Camera) -> tuple[float, float]:
+def measure_field_of_view(camera: CameraModel) -> tuple[float, float]:
     """Horizontal and vertical field of view in degrees, as if the axis met the middle."""
     across, down = (math.degrees(2.0 * math.atan(0.5 / focal)) for focal in camera.focal)
     return across, down

@@ -7,7 +7,7 @@
         stops: Annotated[float, Slider(-10.0, 10.0, unit="EV")] = 0.0
 
 - *Sockets* (`Image`, `Field`, `Vector`, `Number`, `Color`) are inputs that a link fills; one with a
-  `default` may stay unlinked. `Output(...)` declares outputs; without any there is one Image, `out`.
+  `default` may stay unlinked. `OutputSocket(...)` declares outputs; without any there is one Image, `out`.
 - *Values* are annotated attributes with a default. Numbers carry a `Slider`, choices are `Literal`s.
 - `Pointwise` is one GLSL function of its own pixel; its numbers, colors and vectors can be wired too.
 - `Filter` records draws symbolically in `passes`, `Source` makes pixels, `Reader` of files, `Temporal`
@@ -20,9 +20,9 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 
 from __future__ import annotations
 
-from .camera import Camera, look_at, orbit_camera
+from .camera import CameraModel, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
-from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderText, Stage
+from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderStage, ShaderText
 from .kinds import KINDS, Kind, KindFacts
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
@@ -30,7 +30,7 @@ from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
-from .sockets import CameraSocket, Color, Edge, Field, Image, Number, Output, Size, Socket, Vector, glsl_type
+from .sockets import CameraSocket, Color, Edge, Field, Image, Number, OutputSocket, Size, Socket, Vector, glsl_type
 from .traits import ProxyNote, Trait
 from .values import (
     RGBA,
@@ -74,7 +74,7 @@ __all__ = [
     "Affine",
     "Argument",
     "BuiltInScene",
-    "Camera",
+    "CameraModel",
     "CameraSocket",
     "Color",
     "ColorChange",
@@ -110,7 +110,7 @@ __all__ = [
     "Number",
     "OfLayer",
     "OfSpace",
-    "Output",
+    "OutputSocket",
     "Overlap",
     "Picks",
     "Pixels",
@@ -126,13 +126,13 @@ __all__ = [
     "Scene",
     "SceneFile",
     "ScenePath",
+    "ShaderStage",
     "ShaderText",
     "Size",
     "Slider",
     "Socket",
     "Source",
     "SpaceChange",
-    "Stage",
     "StageName",
     "Stops",
     "Swatch",

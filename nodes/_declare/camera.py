@@ -10,7 +10,7 @@ from msgspec.structs import force_setattr
 Vector3 = tuple[float, float, float]
 
 
-class Camera(Struct, frozen=True):
+class CameraModel(Struct, frozen=True):
     """A perspective camera at one moment.
 
     `rows` are those of the 3 x 4 matrix that takes a place in the world (x, y, z, 1) to (u d, v d, d): u and v are
@@ -75,24 +75,24 @@ class Camera(Struct, frozen=True):
         u, v, depth = (_dot(self._row(index), place) + self.rows[4 * index + 3] for index in range(3))
         return u / depth, v / depth, depth
 
-    def shift(self, x: float, y: float) -> Camera:
+    def shift(self, x: float, y: float) -> CameraModel:
         """The same camera with the picture cut out that so far to the right and down, in fractions of it."""
         u, v, depth = _in_fours(self.rows)
         u = tuple(part - x * ahead for part, ahead in zip(u, depth, strict=True))
         v = tuple(part - y * ahead for part, ahead in zip(v, depth, strict=True))
-        return Camera((*u, *v, *depth))
+        return CameraModel((*u, *v, *depth))
 
     def _row(self, index: int) -> Vector3:
         x, y, z = self.rows[4 * index : 4 * index + 3]
         return x, y, z
 
 
-def read_camera(rows: tuple[float, ...]) -> Camera | None:
+def read_camera(rows: tuple[float, ...]) -> CameraModel | None:
     """The camera of twelve numbers in a graph file; None where all of them are 0."""
-    return Camera(rows) if len(rows) == 12 and any(rows) else None
+    return CameraModel(rows) if len(rows) == 12 and any(rows) else None
 
 
-def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vector3 = (0.0, 0.0, 1.0)) -> Camera:
+def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vector3 = (0.0, 0.0, 1.0)) -> CameraModel:
     """A camera at `eye` that has `target` in the middle, with the focal lengths of `Camera.focal`."""
     forward = _unit(_minus(target, eye))
     right = _cross(forward, up)
@@ -104,12 +104,12 @@ def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vecto
     for axis, length in ((right, focal[0]), (down, focal[1])):
         row = [length * part + 0.5 * ahead for part, ahead in zip(axis, forward, strict=True)]
         rows += [*row, -sum(part * place for part, place in zip(row, eye, strict=True))]
-    return Camera((*rows, *forward, -_dot(forward, eye)))
+    return CameraModel((*rows, *forward, -_dot(forward, eye)))
 
 
 def orbit_camera(
     target: Vector3, distance: float, azimuth: float, elevation: float, focal: tuple[float, float]
-) -> Camera:
+) -> CameraModel:
     """A camera so far from its target. Angles are radians; where both are 0 it is level and looks along y."""
     away = (
         math.sin(azimuth) * math.cos(elevation) * distance,

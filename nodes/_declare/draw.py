@@ -8,7 +8,7 @@ from typing import ClassVar, Literal, Protocol
 
 from msgspec import Struct
 
-from .camera import Camera
+from .camera import CameraModel
 from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
@@ -56,7 +56,7 @@ Overlap = int | tuple[int, int] | Reach
 """Pixels to every side, or across and down; in a picture of another size, of the pixel at the same part of it."""
 
 
-class Stage(Struct, frozen=True):
+class ShaderStage(Struct, frozen=True):
     """One shader of a program: GLSL 4.10 without `#version`. Messages count the lines of `text`, as those of `file`."""
 
     head: str
@@ -74,8 +74,8 @@ class ShaderText(Struct, frozen=True):
     shader is asked for the four corners of a strip: gl_VertexID is 0 to 3. Without one everything is covered.
     """
 
-    fragment: Stage
-    vertex: Stage | None = None
+    fragment: ShaderStage
+    vertex: ShaderStage | None = None
 
 
 class Draw(Protocol):
@@ -112,7 +112,7 @@ class Draw(Protocol):
         """True if something is linked to this input of the node."""
         ...
 
-    def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:
+    def camera(self, socket: CameraSocket, frame: int | None = None) -> CameraModel | None:
         """The camera that is linked to this input of the node, if any is; at another of the node's `times`."""
         ...
 
@@ -215,7 +215,11 @@ class Draw(Protocol):
         ...
 
     def raster(
-        self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
+        self,
+        scene: Scene,
+        motions: tuple[Motion, Motion, Motion],
+        cameras: tuple[CameraModel, CameraModel, CameraModel],
+        near: float,
     ) -> Mapping[str, Drawn]:
         """Draw the meshes of a scene as seen by a camera; motions and cameras are those of now, before and after.
 

@@ -7,9 +7,9 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type_hints
 
-from .camera import Camera
+from .camera import CameraModel
 from .draw import Draw, Drawn
-from .sockets import Output, Size, Socket
+from .sockets import OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value, unit_factor
 
@@ -45,7 +45,7 @@ class Node:
     shader: ClassVar[str] = ""
     """The file of the node's GLSL, such as `color/exposure`; in a plug-in `acme_glow/glow/soft_glow`."""
     inputs: ClassVar[Mapping[str, Socket]] = {}
-    outputs: ClassVar[Mapping[str, Output]] = {}
+    outputs: ClassVar[Mapping[str, OutputSocket]] = {}
     values: ClassVar[Mapping[str, Value]] = {}
     order: ClassVar[tuple[str, ...]] = ()
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
@@ -67,10 +67,10 @@ class Node:
             cls.id, cls.function = f"{namespace}.{name}", f"{namespace}_{name}"
             cls.shader, cls.title = f"{namespace}/{cls.shader}", f"{cls.title} ({namespace.replace('_', ' ')})"
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
-        outputs = {name: item for name, item in body.items() if isinstance(item, Output)}
+        outputs = {name: item for name, item in body.items() if isinstance(item, OutputSocket)}
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)
         if not outputs:
-            implied = Output()
+            implied = OutputSocket()
             implied.__set_name__(cls, "out")
             outputs = {"out": implied}
         cls.outputs = outputs
@@ -129,7 +129,7 @@ class Pointwise(Node):
 class Filter(Node):
     """Anything that looks at other pixels or takes several passes."""
 
-    def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn | Camera]:
+    def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn | CameraModel]:
         """What to draw. Several outputs come back by name; a camera is made without drawing."""
         raise NotImplementedError
 

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from msgspec import Struct, field
 
-from .camera import Camera
+from .camera import CameraModel
 
 
 class Meaning(Struct, frozen=True):
@@ -39,5 +39,5 @@ class Render(Struct, frozen=True):
     layers: Mapping[str, str]
     channels: Mapping[str, int]
     meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType[str, Meaning]({}))
-    camera: Camera | None = None
+    camera: CameraModel | None = None
     mattes: tuple[Matte, ...] = ()

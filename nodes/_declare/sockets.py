@@ -93,7 +93,7 @@ class CameraSocket(Socket):
 
 
 @dataclass(frozen=True)
-class Output:
+class OutputSocket:
     """Something a node makes. `socket` says its type."""
 
     socket: Socket = dataclasses.field(default_factory=Image)

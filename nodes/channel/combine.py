@@ -1,4 +1,4 @@
-from .._declare import Field, Image, Output, Pointwise
+from .._declare import Field, Image, OutputSocket, Pointwise
 
 
 class Combine(Pointwise):
@@ -9,4 +9,4 @@ class Combine(Pointwise):
     blue = Field(0.0)
     alpha = Field(1.0, doc="Opaque unless linked.")
 
-    out = Output(Image())
+    out = OutputSocket(Image())

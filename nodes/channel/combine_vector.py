@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class CombineVector(Pointwise):
@@ -8,4 +8,4 @@ class CombineVector(Pointwise):
     y = Field(0.0)
     z = Field(0.0)
 
-    vector = Output(Vector(width=3))
+    vector = OutputSocket(Vector(width=3))

@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class CombineVector2(Pointwise):
@@ -7,4 +7,4 @@ class CombineVector2(Pointwise):
     x = Field(0.0)
     y = Field(0.0)
 
-    vector = Output(Vector(width=2))
+    vector = OutputSocket(Vector(width=2))

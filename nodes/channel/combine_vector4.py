@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class CombineVector4(Pointwise):
@@ -9,4 +9,4 @@ class CombineVector4(Pointwise):
     z = Field(0.0)
     w = Field(0.0)
 
-    vector = Output(Vector(width=4))
+    vector = OutputSocket(Vector(width=4))

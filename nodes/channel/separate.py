@@ -1,4 +1,4 @@
-from .._declare import Field, Image, Output, Pointwise
+from .._declare import Field, Image, OutputSocket, Pointwise
 
 
 class Separate(Pointwise):
@@ -6,7 +6,7 @@ class Separate(Pointwise):
 
     image = Image()
 
-    red = Output(Field())
-    green = Output(Field())
-    blue = Output(Field())
-    alpha = Output(Field())
+    red = OutputSocket(Field())
+    green = OutputSocket(Field())
+    blue = OutputSocket(Field())
+    alpha = OutputSocket(Field())

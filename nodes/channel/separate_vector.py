@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class SeparateVector(Pointwise):
@@ -6,6 +6,6 @@ class SeparateVector(Pointwise):
 
     vector = Vector(width=3)
 
-    x = Output(Field())
-    y = Output(Field())
-    z = Output(Field())
+    x = OutputSocket(Field())
+    y = OutputSocket(Field())
+    z = OutputSocket(Field())

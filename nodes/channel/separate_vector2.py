@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class SeparateVector2(Pointwise):
@@ -6,5 +6,5 @@ class SeparateVector2(Pointwise):
 
     vector = Vector(width=2)
 
-    x = Output(Field())
-    y = Output(Field())
+    x = OutputSocket(Field())
+    y = OutputSocket(Field())

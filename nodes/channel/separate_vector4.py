@@ -1,4 +1,4 @@
-from .._declare import Field, Output, Pointwise, Vector
+from .._declare import Field, OutputSocket, Pointwise, Vector
 
 
 class SeparateVector4(Pointwise):
@@ -6,7 +6,7 @@ class SeparateVector4(Pointwise):
 
     vector = Vector(width=4)
 
-    x = Output(Field())
-    y = Output(Field())
-    z = Output(Field())
-    w = Output(Field())
+    x = OutputSocket(Field())
+    y = OutputSocket(Field())
+    z = OutputSocket(Field())
+    w = OutputSocket(Field())

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Field, Fraction, Image, Output, Pointwise, Slider, Trait
+from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwise, Slider, Trait
 
 
 class ChromaKey(Pointwise):
@@ -53,5 +53,5 @@ class ChromaKey(Pointwise):
         ),
     ] = 1.0
 
-    out = Output(Image(doc="The subject, premultiplied."))
-    matte = Output(Field(doc="How much of each pixel the subject covers, 0..1."))
+    out = OutputSocket(Image(doc="The subject, premultiplied."))
+    matte = OutputSocket(Field(doc="How much of each pixel the subject covers, 0..1."))

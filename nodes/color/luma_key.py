@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Image, Output, Pointwise, Slider
+from .._declare import Doc, Field, Image, OutputSocket, Pointwise, Slider
 
 
 class LumaKey(Pointwise):
@@ -27,5 +27,5 @@ class LumaKey(Pointwise):
     ] = 0.0
     invert: Annotated[bool, Doc("Cut away what would stay.")] = False
 
-    out = Output(Image(doc="What stays."))
-    matte = Output(Field(doc="How much of each pixel stays, 0..1."))
+    out = OutputSocket(Image(doc="What stays."))
+    matte = OutputSocket(Field(doc="How much of each pixel stays, 0..1."))

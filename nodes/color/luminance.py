@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Image, Output, Pointwise
+from .._declare import Doc, Field, Image, OutputSocket, Pointwise
 
 
 class Luminance(Pointwise):
@@ -14,4 +14,4 @@ class Luminance(Pointwise):
         ),
     ] = "luminance"
 
-    out = Output(Field(doc="In the units of the image."))
+    out = OutputSocket(Field(doc="In the units of the image."))

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, ProxyNote, Slider, Vector
 
 _STEP = 3
 """Pixels that one draw follows an edge: half the window of `canny_follow`."""
@@ -53,8 +53,8 @@ class Canny(Filter):
     ] = 60.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
-    out = Output(Image(doc="White lines on black."))
-    lines = Output(Field(doc="1 on a line, else 0."))
+    out = OutputSocket(Image(doc="White lines on black."))
+    lines = OutputSocket(Field(doc="1 on a line, else 0."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.blur(draw.point("canny_tone", self.image, result=Field()), self.sigma, self.edge)

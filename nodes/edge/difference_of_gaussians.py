@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, ProxyNote, Slider, Vector
 
 
 class DifferenceOfGaussians(Filter):
@@ -66,8 +66,8 @@ class DifferenceOfGaussians(Filter):
     ] = 3.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
-    out = Output()
-    value = Output(Field(doc="The same as one number, before it becomes a gray."))
+    out = OutputSocket()
+    value = OutputSocket(Field(doc="The same as one number, before it becomes a gray."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())

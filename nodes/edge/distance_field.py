@@ -1,6 +1,6 @@
 from math import ceil, log2
 
-from .._declare import Draw, Drawn, Field, Filter, Output, ProxyNote, Vector
+from .._declare import Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Vector
 
 
 class DistanceField(Filter):
@@ -16,7 +16,7 @@ class DistanceField(Filter):
 
     mask = Field()
 
-    distance = Output(Field(doc="In pixels at full size: 0 on the edge, below 0 inside."))
+    distance = OutputSocket(Field(doc="In pixels at full size: 0 on the edge, below 0 inside."))
 
     def passes(self, draw: Draw) -> Drawn:
         columns = draw.point("distance_field_seeds", self.mask, result=Vector(width=2))

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, ProxyNote, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, ProxyNote, Slider
 
 
 class EdgeDetect(Filter):
@@ -29,8 +29,8 @@ class EdgeDetect(Filter):
     ] = 0.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
-    out = Output()
-    magnitude = Output(Field())
+    out = OutputSocket()
+    magnitude = OutputSocket(Field())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         out = draw(

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil, log2
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Pixels, ProxyNote, Slider, Vector
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Pixels, ProxyNote, Slider, Vector
 
 
 class Outline(Filter):
@@ -28,8 +28,8 @@ class Outline(Filter):
     ] = 0.0
     color: Annotated[RGBA, Doc("The line's color; its alpha is how much it covers.")] = (1.0, 1.0, 1.0, 1.0)
 
-    out = Output()
-    line = Output(Field(doc="How much of each pixel the line covers."))
+    out = OutputSocket()
+    line = OutputSocket(Field(doc="How much of each pixel the line covers."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         mask: Pixels = (

@@ -1,6 +1,6 @@
 from collections.abc import Mapping
 
-from .._declare import Camera, CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
+from .._declare import CameraModel, CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, Vector
 
 
 class CameraVelocity(Filter):
@@ -16,7 +16,7 @@ class CameraVelocity(Filter):
     before = CameraSocket(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")
     after = CameraSocket(0.0, doc="The camera of the frame after; if only this lacks a link, it goes on evenly.")
 
-    velocity = Output(Vector(width=4))
+    velocity = OutputSocket(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         return {"camera": (frame, frame - 1, frame + 1)}
@@ -37,7 +37,7 @@ class CameraVelocity(Filter):
         )
 
 
-def _change(camera: Camera, neighbor: Camera) -> tuple[float, ...]:
+def _change(camera: CameraModel, neighbor: CameraModel) -> tuple[float, ...]:
     """What the other camera adds to (u d, v d, d) that now sees: rows of a 3 x 4 matrix for (u d, v d, d, 1).
 
     As a difference, in 64 bits, so that a still camera makes no motion at all and a slow one loses no digits.

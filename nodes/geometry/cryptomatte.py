@@ -1,7 +1,20 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Image, Output, Picks, Reader, RenderPath, Vector, matte_of, pick_ids
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Image,
+    OutputSocket,
+    Picks,
+    Reader,
+    RenderPath,
+    Vector,
+    matte_of,
+    pick_ids,
+)
 
 _AT_ONCE = 32
 """Ids that one draw looks for: two to a vector."""
@@ -26,8 +39,8 @@ class Cryptomatte(Reader):
     ] = "*"
     invert: Annotated[bool, Doc("Everything else.")] = False
 
-    matte = Output(Field(doc="How much of each pixel is covered by what was picked, 0..1."))
-    colors = Output(Image(doc="A color for every id, to find them in the picture."))
+    matte = OutputSocket(Field(doc="How much of each pixel is covered by what was picked, 0..1."))
+    colors = OutputSocket(Image(doc="A color for every id, to find them in the picture."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         matte = matte_of(draw.render(self.path).mattes, self.layer)

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Slider, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Slider, Vector
 
 
 class Curvature(Filter):
@@ -28,9 +28,9 @@ class Curvature(Filter):
         Slider(1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."),
     ] = 1.0
 
-    ridge = Output(Field(doc="How strongly it bends outwards, 0..1."))
-    cavity = Output(Field(doc="How strongly it bends inwards, 0..1."))
-    mean = Output(Field(doc="Mean curvature per unit of length: above 0 on ridges, below 0 in cavities."))
+    ridge = OutputSocket(Field(doc="How strongly it bends outwards, 0..1."))
+    cavity = OutputSocket(Field(doc="How strongly it bends inwards, 0..1."))
+    mean = OutputSocket(Field(doc="Mean curvature per unit of length: above 0 on ridges, below 0 in cavities."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera, reach, field = draw.camera(self.camera), max(round(self.reach), 1), Field()

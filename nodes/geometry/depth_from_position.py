@@ -1,4 +1,4 @@
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, Vector
 
 
 class DepthFromPosition(Filter):
@@ -11,7 +11,7 @@ class DepthFromPosition(Filter):
     position = Vector(width=3, doc="Places in the world.")
     camera = CameraSocket(doc="The camera that the positions were rendered with.")
 
-    depth = Output(Field())
+    depth = OutputSocket(Field())
 
     def passes(self, draw: Draw) -> Drawn:
         camera = draw.camera(self.camera)

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Field, Output, Pointwise, Slider
+from .._declare import Doc, Field, OutputSocket, Pointwise, Slider
 
 
 class DepthSlice(Pointwise):
@@ -21,4 +21,4 @@ class DepthSlice(Pointwise):
     ] = 1.0
     invert: Annotated[bool, Doc("Mask what lies outside of the slice.")] = False
 
-    mask = Output(Field(doc="How much of each pixel is in the slice, 0..1."))
+    mask = OutputSocket(Field(doc="How much of each pixel is in the slice, 0..1."))

@@ -1,4 +1,4 @@
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Vector
 
 
 class Facing(Filter):
@@ -13,7 +13,7 @@ class Facing(Filter):
     normal = Vector(width=3, doc="Directions of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
 
-    facing = Output(Field(doc="0..1."))
+    facing = OutputSocket(Field(doc="0..1."))
 
     def passes(self, draw: Draw) -> Drawn:
         camera = draw.camera(self.camera)

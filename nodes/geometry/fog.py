@@ -12,7 +12,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     Slider,
     Trait,
     Vector,
@@ -92,8 +92,8 @@ class Fog(Filter):
         float, Slider(1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher draws the glow closer around the sun.")
     ] = 8.0
 
-    out = Output()
-    amount = Output(Field(doc="How much of each pixel the fog hides, 0..1."))
+    out = OutputSocket()
+    amount = OutputSocket(Field(doc="How much of each pixel the fog hides, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera, placed = draw.camera(self.camera), draw.is_linked(self.position)

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from math import ceil, log2
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Output, ProxyNote, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, OutputSocket, ProxyNote, Slider, Vector
 
 _SEAM = 2.0
 """Width of a bare edge in pixels: one on either side of the seam."""
@@ -46,10 +46,10 @@ class GeometryEdges(Filter):
         ),
     ] = 0.5
 
-    edges = Output(Field(doc="How much of each pixel lines cover, 0..1."))
-    gap = Output(Field(doc="Between surfaces, as a part of the depth."))
-    crease = Output(Field(doc="Between neighboring normals, in degrees; 180 at the background."))
-    border = Output(Field(doc="1 where an id meets another one."))
+    edges = OutputSocket(Field(doc="How much of each pixel lines cover, 0..1."))
+    gap = OutputSocket(Field(doc="Between surfaces, as a part of the depth."))
+    crease = OutputSocket(Field(doc="Between neighboring normals, in degrees; 180 at the background."))
+    border = OutputSocket(Field(doc="1 where an id meets another one."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         field = Field()

@@ -2,7 +2,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, ProxyNote
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, ProxyNote
 
 _SPANS = 16
 """Spans of numbers that one draw looks at."""
@@ -25,8 +25,8 @@ class IdMask(Filter):
     pick: Annotated[str, Doc("Numbers and spans of numbers, such as 1, 4, 7-9.")] = "1"
     invert: Annotated[bool, Doc("Mask everything else.")] = False
 
-    mask = Output(Field(doc="1 or 0."))
-    colors = Output(Image(doc="A color for every number, to find them in the picture; 0 is black."))
+    mask = OutputSocket(Field(doc="1 or 0."))
+    colors = OutputSocket(Image(doc="A color for every number, to find them in the picture; 0 is black."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         mask, spans = draw.point("id_mask_none", result=Field()), _spans(self.pick)

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, ProxyNote, Slider, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Slider, Vector
 
 
 class NormalFromDepth(Filter):
@@ -24,8 +24,8 @@ class NormalFromDepth(Filter):
         ),
     ] = 2.0
 
-    normal = Output(Vector(width=3, doc="Of length 1, in the world, towards the camera."))
-    curvature = Output(Field())
+    normal = OutputSocket(Vector(width=3, doc="Of length 1, in the world, towards the camera."))
+    curvature = OutputSocket(Field())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -1,4 +1,4 @@
-from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, Vector
 
 
 class PositionFromDepth(Filter):
@@ -11,7 +11,7 @@ class PositionFromDepth(Filter):
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
 
-    position = Output(Vector(width=3))
+    position = OutputSocket(Vector(width=3))
 
     def passes(self, draw: Draw) -> Drawn:
         camera = draw.camera(self.camera)

@@ -1,6 +1,6 @@
 from collections.abc import Mapping
 
-from .._declare import Draw, Drawn, Field, Filter, Image, Number, Output, Socket, Vector
+from .._declare import Draw, Drawn, Field, Filter, Image, Number, OutputSocket, Socket, Vector
 
 
 class RebuildBeauty(Filter):
@@ -27,9 +27,11 @@ class RebuildBeauty(Filter):
     environment = Image(0.0)
     other = Image(0.0, doc="Light that has no place above: subsurface, coat, sheen.")
 
-    out = Output()
-    difference = Output(Field(doc="How far the sum is from beauty: the largest of the three channels; 0 without it."))
-    error = Output(Number(doc="The largest difference anywhere."))
+    out = OutputSocket()
+    difference = OutputSocket(
+        Field(doc="How far the sum is from beauty: the largest of the three channels; 0 without it.")
+    )
+    error = OutputSocket(Number(doc="The largest difference anywhere."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         total = draw.point("rebuild_beauty_none", result=Vector(width=4))

@@ -12,7 +12,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     ProxyNote,
     Slider,
     Vector,
@@ -42,8 +42,8 @@ class RimLight(Filter):
         45.0
     )
 
-    out = Output()
-    rim = Output(Field(doc="How much of the light every pixel takes, 0..1, whatever the mask."))
+    out = OutputSocket()
+    rim = OutputSocket(Field(doc="How much of the light every pixel takes, 0..1, whatever the mask."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -11,7 +11,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     Pixels,
     Points,
     Size,
@@ -82,8 +82,8 @@ class Bloom(Filter):
         bool, Doc("Weigh down single bright pixels, which would flicker (Karis 2013). Loses some of their light.")
     ] = False
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         light: Pixels = self.image

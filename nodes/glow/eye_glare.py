@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, ProxyNote, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait, Vector
 
 _SMOOTH = 0.2
 """Degrees over which nothing of the glare changes much, but near its middle."""
@@ -47,8 +47,8 @@ class EyeGlare(Filter):
     rays: Annotated[Fraction, Doc("How far the glare breaks up into rays, the ciliary corona.")] = 0.5
     strength: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is what the eye does.")] = 1.0
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         width, height = draw.size

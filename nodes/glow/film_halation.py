@@ -3,7 +3,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -96,8 +96,8 @@ class FilmHalation(Filter):
         ),
     ] = 200.0
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         way = self.radius / math.tan(_CRITICAL)

@@ -9,7 +9,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     Position,
     ProxyNote,
     Reach,
@@ -102,8 +102,8 @@ class Ghosts(Filter):
         ),
     ] = 200.0
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         half = (-(-draw.size[0] // 2), -(-draw.size[1] // 2))

@@ -11,7 +11,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     ProxyNote,
     Reach,
     Size,
@@ -67,8 +67,8 @@ class Star(Filter):
         Doc("What lies outside the picture. Black: no light. Clamp suits glow without threshold, which it keeps even."),
     ] = "black"
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         light = draw.point("star_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)

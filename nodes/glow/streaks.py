@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, ProxyNote, Slider, Trait
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -84,8 +84,8 @@ class Streaks(Filter):
         ),
     ] = "black"
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         factor = {"full": 1, "half": 2, "quarter": 4}[self.quality]

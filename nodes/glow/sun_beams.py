@@ -11,7 +11,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     Position,
     ProxyNote,
     Reach,
@@ -95,8 +95,8 @@ class SunBeams(Filter):
         Doc("The size at which beams are made: the smaller, the softer, and 4 or 16 times as fast."),
     ] = "full"
 
-    out = Output()
-    glow = Output()
+    out = OutputSocket()
+    glow = OutputSocket()
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         factor = {"full": 1, "half": 2, "quarter": 4}[self.quality]

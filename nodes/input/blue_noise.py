@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Field, Image, Output, Pointwise, ProxyNote, Slider, Vector
+from .._declare import Doc, Field, Image, OutputSocket, Pointwise, ProxyNote, Slider, Vector
 
 
 class BlueNoise(Pointwise):
@@ -16,6 +16,6 @@ class BlueNoise(Pointwise):
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
     animate: Annotated[bool, Doc("Another pattern for each frame.")] = False
 
-    out = Output(Image(doc="The value as an opaque gray."))
-    value = Output(Field(doc="Between 0 and 1, 0.5 on average."))
-    vector = Output(Vector(width=2, doc="Two more noises, each -1..1 with average 0."))
+    out = OutputSocket(Image(doc="The value as an opaque gray."))
+    value = OutputSocket(Field(doc="Between 0 and 1, 0.5 on average."))
+    vector = OutputSocket(Vector(width=2, doc="Two more noises, each -1..1 with average 0."))

@@ -1,8 +1,8 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Camera as Placed
-from .._declare import CameraSocket, Doc, Draw, Filter, Output, Slider, look_at
+from .._declare import CameraModel as Placed
+from .._declare import CameraSocket, Doc, Draw, Filter, OutputSocket, Slider, look_at
 
 Place = Annotated[tuple[float, float, float], Slider(-10.0, 10.0, unit="scene")]
 
@@ -31,7 +31,7 @@ class Camera(Filter):
     ] = 36.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
 
-    camera = Output(CameraSocket())
+    camera = OutputSocket(CameraSocket())
 
     def passes(self, draw: Draw) -> Mapping[str, Placed]:
         width, height = draw.size

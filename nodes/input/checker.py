@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Field, Image, Output, Pointwise, Slider
+from .._declare import RGBA, Doc, Field, Image, OutputSocket, Pointwise, Slider
 
 
 class Checker(Pointwise):
@@ -14,5 +14,5 @@ class Checker(Pointwise):
         0.0,
     )
 
-    out = Output(Image(doc="The colors."))
-    value = Output(Field(doc="0 on the first color's squares, 1 on the second's: a mask."))
+    out = OutputSocket(Image(doc="The colors."))
+    value = OutputSocket(Field(doc="0 on the first color's squares, 1 on the second's: a mask."))

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Field, Output, Pointwise, Slider, Vector
+from .._declare import Field, OutputSocket, Pointwise, Slider, Vector
 
 
 class CurlNoise(Pointwise):
@@ -37,5 +37,7 @@ class CurlNoise(Pointwise):
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another flow.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the flow smoothly.")] = 0.0
 
-    vector = Output(Vector(width=2, doc="The flow: x points right and y down."))
-    stream = Output(Field(doc="The stream function, along whose level lines the flow runs; its slope is per size."))
+    vector = OutputSocket(Vector(width=2, doc="The flow: x points right and y down."))
+    stream = OutputSocket(
+        Field(doc="The stream function, along whose level lines the flow runs; its slope is per size.")
+    )

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Image, Output, Pointwise, Slider, Vector
+from .._declare import Doc, Field, Image, OutputSocket, Pointwise, Slider, Vector
 
 
 class Noise(Pointwise):
@@ -58,9 +58,9 @@ class Noise(Pointwise):
     ] = "fbm"
     warp: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is bent, in sizes.")] = 2.0
 
-    out = Output(Image(doc="The value as an opaque gray."))
-    value = Output(Field(doc="0..1; of fbm 0.5 on average."))
-    vector = Output(
+    out = OutputSocket(Image(doc="The value as an opaque gray."))
+    value = OutputSocket(Field(doc="0..1; of fbm 0.5 on average."))
+    vector = OutputSocket(
         Vector(
             width=2,
             doc="Two more noises, each -1..1, of fbm with average 0: an offset for Displace. See also Curl Noise.",

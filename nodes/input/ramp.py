@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Field, Fraction, Image, Output, Pointwise, Position, Slider
+from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwise, Position, Slider
 
 
 class Ramp(Pointwise):
@@ -29,5 +29,5 @@ class Ramp(Pointwise):
         ),
     ] = 0.0
 
-    out = Output(Image(doc="The colors."))
-    value = Output(Field(doc="0 at the start, 1 at the end: a mask."))
+    out = OutputSocket(Image(doc="The colors."))
+    value = OutputSocket(Field(doc="0 at the start, 1 at the end: a mask."))

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, File, OfSpace, Output, Reader, Vector
+from .._declare import Doc, Draw, Drawn, Field, File, OfSpace, OutputSocket, Reader, Vector
 
 
 class ReadImage(Reader):
@@ -24,9 +24,9 @@ class ReadImage(Reader):
         ),
     ] = ""
 
-    out = Output()
-    field = Output(Field())
-    vector = Output(Vector(width=3))
+    out = OutputSocket()
+    field = OutputSocket(Field())
+    vector = OutputSocket(Vector(width=3))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         return {

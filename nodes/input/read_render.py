@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from .._declare import (
-    Camera,
+    CameraModel,
     CameraSocket,
     Doc,
     Draw,
@@ -12,7 +12,7 @@ from .._declare import (
     Meaning,
     OfLayer,
     OfSpace,
-    Output,
+    OutputSocket,
     Reader,
     Render,
     RenderPath,
@@ -78,22 +78,22 @@ class ReadRender(Reader):
         Doc("What its color is in, by a name or role of the color config, such as ACEScg; empty finds out."),
     ] = ""
 
-    color = Output(Image())
-    albedo = Output(Image())
-    emission = Output(Image())
-    depth = Output(Field(doc="Along the camera's axis."))
-    normal = Output(Vector(doc="In the world."))
-    position = Output(Vector())
-    velocity = Output(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
-    occlusion = Output(Field())
-    object_id = Output(Field())
-    material_id = Output(Field())
-    uv = Output(Vector(width=2))
-    camera = Output(CameraSocket())
+    color = OutputSocket(Image())
+    albedo = OutputSocket(Image())
+    emission = OutputSocket(Image())
+    depth = OutputSocket(Field(doc="Along the camera's axis."))
+    normal = OutputSocket(Vector(doc="In the world."))
+    position = OutputSocket(Vector())
+    velocity = OutputSocket(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
+    occlusion = OutputSocket(Field())
+    object_id = OutputSocket(Field())
+    material_id = OutputSocket(Field())
+    uv = OutputSocket(Vector(width=2))
+    camera = OutputSocket(CameraSocket())
 
-    def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
+    def passes(self, draw: Draw) -> Mapping[str, Drawn | CameraModel]:
         render = draw.render(self.path, self._list_chosen_layers())
-        outputs: dict[str, Drawn | Camera] = {}
+        outputs: dict[str, Drawn | CameraModel] = {}
         for name, role in _PLAIN.items():
             if (layer := render.layers.get(role)) is not None:
                 outputs[name] = draw.read(self.path, layer, self.outputs[name].socket, self.color_space)

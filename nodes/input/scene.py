@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from .._declare import (
     BuiltInScene,
-    Camera,
+    CameraModel,
     CameraSocket,
     Doc,
     Draw,
@@ -13,7 +13,7 @@ from .._declare import (
     Fraction,
     Image,
     Motion,
-    Output,
+    OutputSocket,
     SceneFile,
     ScenePath,
     Slider,
@@ -77,21 +77,21 @@ class Scene(Source):
         ),
     ] = 0.0
 
-    color = Output(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
-    albedo = Output(Image())
-    normal = Output(Vector(doc="Unit length, in the world, towards the camera."))
-    position = Output(Vector(doc="In the world."))
-    depth = Output(Field(doc="Along the camera's axis; 1e10 where nothing is."))
-    emission = Output(Image())
-    material = Output(Vector(width=2, doc="Metal and roughness, 0..1."))
-    velocity = Output(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
-    uv = Output(Vector(width=2))
-    object_id = Output(Field(doc="A whole number for every object, from 1."))
-    material_id = Output(Field(doc="A whole number for every material, from 1."))
-    camera = Output(CameraSocket())
-    camera_before = Output(CameraSocket(doc="Where the camera was in the frame before."))
+    color = OutputSocket(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
+    albedo = OutputSocket(Image())
+    normal = OutputSocket(Vector(doc="Unit length, in the world, towards the camera."))
+    position = OutputSocket(Vector(doc="In the world."))
+    depth = OutputSocket(Field(doc="Along the camera's axis; 1e10 where nothing is."))
+    emission = OutputSocket(Image())
+    material = OutputSocket(Vector(width=2, doc="Metal and roughness, 0..1."))
+    velocity = OutputSocket(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
+    uv = OutputSocket(Vector(width=2))
+    object_id = OutputSocket(Field(doc="A whole number for every object, from 1."))
+    material_id = OutputSocket(Field(doc="A whole number for every material, from 1."))
+    camera = OutputSocket(CameraSocket())
+    camera_before = OutputSocket(CameraSocket(doc="Where the camera was in the frame before."))
 
-    def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
+    def passes(self, draw: Draw) -> Mapping[str, Drawn | CameraModel]:
         scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)
         width, height = draw.size
         times = (draw.frame, draw.frame - 1, draw.frame + 1)
@@ -124,7 +124,7 @@ class Scene(Source):
             "camera_before": before,
         }
 
-    def _camera(self, frame: int, aspect: float) -> Camera:
+    def _camera(self, frame: int, aspect: float) -> CameraModel:
         across, turn = self.focal / 36.0, self.azimuth + self.orbit * (frame - 1)
         return orbit_camera(self.target, self.distance, turn, self.elevation, (across, across * aspect))
 

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Camera, CameraSocket, Doc, Draw, Output, Reader, RenderPath
+from .._declare import CameraModel, CameraSocket, Doc, Draw, OutputSocket, Reader, RenderPath
 
 
 class SolveCamera(Reader):
@@ -13,8 +13,8 @@ class SolveCamera(Reader):
 
     path: Annotated[RenderPath, Doc("A render with a position layer, or with a camera in its header.")] = ""
 
-    camera = Output(CameraSocket())
+    camera = OutputSocket(CameraSocket())
 
-    def passes(self, draw: Draw) -> Mapping[str, Camera]:
+    def passes(self, draw: Draw) -> Mapping[str, CameraModel]:
         camera = draw.render(self.path).camera
         return {"camera": camera} if camera else {}

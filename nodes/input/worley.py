@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Fraction, Image, Output, Pointwise, ProxyNote, Slider, Vector
+from .._declare import Doc, Field, Fraction, Image, OutputSocket, Pointwise, ProxyNote, Slider, Vector
 
 
 class Worley(Pointwise):
@@ -31,6 +31,6 @@ class Worley(Pointwise):
         0.0
     )
 
-    out = Output(Image(doc="The distance as an opaque gray."))
-    value = Output(Field(doc="The distance, in cells."))
-    cell = Output(Vector(doc="Three random numbers 0..1, the same all over a cell."))
+    out = OutputSocket(Image(doc="The distance as an opaque gray."))
+    value = OutputSocket(Field(doc="The distance, in cells."))
+    cell = OutputSocket(Vector(doc="Three random numbers 0..1, the same all over a cell."))

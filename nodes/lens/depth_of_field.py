@@ -12,7 +12,7 @@ from .._declare import (
     Fraction,
     Image,
     Number,
-    Output,
+    OutputSocket,
     Overlap,
     Position,
     Reach,
@@ -115,8 +115,8 @@ class DepthOfField(Filter):
         ),
     ] = "normal"
 
-    out = Output()
-    coc = Output(Field())
+    out = OutputSocket()
+    coc = OutputSocket(Field())
 
     def identity(self) -> str | None:
         return "image" if self.max_blur == 0.0 else None

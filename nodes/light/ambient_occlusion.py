@@ -1,7 +1,20 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, ProxyNote, Slider, Vector
+from .._declare import (
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
 
@@ -69,9 +82,9 @@ class AmbientOcclusion(Filter):
         bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
     ] = True
 
-    out = Output(Image(doc="The color that ambient light is multiplied with."))
-    occlusion = Output(Field(doc="1 where all is open, 0 where nothing is."))
-    bent_normal = Output(Vector(width=3, doc="Where most light comes from: unit, in the world."))
+    out = OutputSocket(Image(doc="The color that ambient light is multiplied with."))
+    occlusion = OutputSocket(Field(doc="1 where all is open, 0 where nothing is."))
+    bent_normal = OutputSocket(Vector(width=3, doc="Where most light comes from: unit, in the world."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

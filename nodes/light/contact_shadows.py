@@ -2,7 +2,20 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, ProxyNote, Slider, Vector
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}
@@ -69,8 +82,8 @@ class ContactShadows(Filter):
     )
     quality: Annotated[Literal["preview", "quality", "reference"], Doc("1, 4 or 32 rays to a pixel.")] = "quality"
 
-    out = Output(Image(doc="The picture with the shadows."))
-    shadow = Output(Field(doc="1 where light arrives, 0 where none does."))
+    out = OutputSocket(Image(doc="The picture with the shadows."))
+    shadow = OutputSocket(Field(doc="1 where light arrives, 0 where none does."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -16,7 +16,7 @@ from .._declare import (
     Light,
     LightKind,
     LightList,
-    Output,
+    OutputSocket,
     Slider,
     Stops,
     Trait,
@@ -130,9 +130,9 @@ class DeferredLighting(Filter):
     ] = 3.0
     swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number strews them otherwise.")] = 0
 
-    out = Output()
-    diffuse = Output(Image(doc="The light that surfaces scatter."))
-    specular_light = Output(Image(doc="The light that they mirror."))
+    out = OutputSocket()
+    diffuse = OutputSocket(Image(doc="The light that surfaces scatter."))
+    specular_light = OutputSocket(Image(doc="The light that they mirror."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera, placed = draw.camera(self.camera), draw.is_linked(self.position)

@@ -1,7 +1,20 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, ProxyNote, Slider, Vector
+from .._declare import (
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
@@ -67,8 +80,8 @@ class DirectionalOcclusion(Filter):
         bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
     ] = True
 
-    out = Output()
-    light = Output(Image(doc="The light that is added, opaque."))
+    out = OutputSocket()
+    light = OutputSocket(Image(doc="The light that is added, opaque."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -11,7 +11,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     Overlap,
     Slider,
     Trait,
@@ -65,9 +65,9 @@ class ImageBasedLight(Filter):
         Fraction, Doc("How much non-metals reflect: 0.5 is 4 percent head on, as for most materials.")
     ] = 0.5
 
-    out = Output(Image(doc="All of it, opaque where there is a surface."))
-    diffuse = Output(Image(doc="The matte part."))
-    reflection = Output(Image(doc="The reflected part."))
+    out = OutputSocket(Image(doc="All of it, opaque where there is a surface."))
+    diffuse = OutputSocket(Image(doc="The matte part."))
+    reflection = OutputSocket(Image(doc="The reflected part."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, Position, Slider, Trait
+from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Position, Slider, Trait
 from ._march import surfaces
 
 _SAMPLES = {"preview": 4, "quality": 12, "reference": 64}
@@ -74,8 +74,8 @@ class LightShafts(Filter):
         Literal["preview", "quality", "reference"], Doc("4, 12 or 64 places on the way to every pixel.")
     ] = "quality"
 
-    out = Output(Image(doc="The picture with the light of the haze."))
-    shafts = Output(Image(doc="The light of the haze alone; it covers nothing."))
+    out = OutputSocket(Image(doc="The picture with the light of the haze."))
+    shafts = OutputSocket(Image(doc="The light of the haze alone; it covers nothing."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

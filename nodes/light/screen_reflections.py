@@ -10,7 +10,7 @@ from .._declare import (
     Filter,
     Fraction,
     Image,
-    Output,
+    OutputSocket,
     ProxyNote,
     Slider,
     Trait,
@@ -98,9 +98,9 @@ class ScreenReflections(Filter):
         ),
     ] = 256
 
-    out = Output(Image(doc="The picture with its reflections, instead of the part that is mirrored."))
-    reflection = Output(Image(doc="What was added to it; its alpha is how much was taken away."))
-    confidence = Output(Field(doc="How surely what is mirrored was found, 0..1."))
+    out = OutputSocket(Image(doc="The picture with its reflections, instead of the part that is mirrored."))
+    reflection = OutputSocket(Image(doc="What was added to it; its alpha is how much was taken away."))
+    confidence = OutputSocket(Field(doc="How surely what is mirrored was found, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Number, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Image, Number, OutputSocket, Slider, Vector
 
 
 class LuminanceStatistics(Filter):
@@ -20,10 +20,10 @@ class LuminanceStatistics(Filter):
         bool, Doc("Count each pixel by its alpha, with its color unpremultiplied, so that empty areas do not darken.")
     ] = False
 
-    average = Output(Number())
-    log_average = Output(Number())
-    maximum = Output(Number())
-    minimum = Output(Number())
+    average = OutputSocket(Number())
+    log_average = OutputSocket(Number())
+    maximum = OutputSocket(Number())
+    minimum = OutputSocket(Number())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         terms = draw.point(

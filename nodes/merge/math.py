@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Output, Pointwise, Slider
+from .._declare import Doc, Field, OutputSocket, Pointwise, Slider
 
 Operation = Literal[
     "add",
@@ -51,7 +51,7 @@ class Math(Pointwise):
     b: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The second number.")] = 0.0
     c: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The third number, where there is one.")] = 1.0
 
-    out = Output(Field())
+    out = OutputSocket(Field())
 
     def identity(self) -> str | None:
         neutral = {"add": 0.0, "subtract": 0.0, "multiply": 1.0, "divide": 1.0}

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Image, Number, Output, ProxyNote, Slider, Temporal, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Image, Number, OutputSocket, ProxyNote, Slider, Temporal, Trait, Vector
 
 
 class EyeAdaptation(Temporal):
@@ -56,9 +56,9 @@ class EyeAdaptation(Temporal):
     ] = 8.0
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than the eye makes it.")] = 0.0
 
-    out = Output()
-    exposure = Output(Number(doc="In stops."))
-    adapted = Output(Number(doc="The luminance that the eye is used to."))
+    out = OutputSocket()
+    exposure = OutputSocket(Number(doc="In stops."))
+    adapted = OutputSocket(Number(doc="The luminance that the eye is used to."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         number, natural = Number(), self.model == "natural"

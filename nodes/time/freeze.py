@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Trait, Vector
+from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, Trait, Vector
 
 
 class Freeze(Filter):
@@ -27,9 +27,9 @@ class Freeze(Filter):
         ),
     ] = 0
 
-    out = Output(Image())
-    field_out = Output(Field())
-    vector_out = Output(Vector(width=4))
+    out = OutputSocket(Image())
+    field_out = OutputSocket(Field())
+    vector_out = OutputSocket(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         return dict.fromkeys(self.inputs, (self._find_held_frame(frame),))

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Fraction, Image, Output, Slider, Temporal, Vector
+from .._declare import Doc, Draw, Drawn, Fraction, Image, OutputSocket, Slider, Temporal, Vector
 
 
 class LightTrails(Temporal):
@@ -32,8 +32,8 @@ class LightTrails(Temporal):
     knee: Annotated[Fraction, Doc("The part of the threshold over which light fades in.")] = 0.5
     intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright the trails are.")] = 1.0
 
-    out = Output(Image(doc="The picture with its trails."))
-    trail = Output(Image(doc="The trails alone."))
+    out = OutputSocket(Image(doc="The picture with its trails."))
+    trail = OutputSocket(Image(doc="The trails alone."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         decay = 1.0

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Trait, Vector
+from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, Trait, Vector
 
 
 class TimeOffset(Filter):
@@ -17,9 +17,9 @@ class TimeOffset(Filter):
     vector = Vector(0.0, width=4)
     frames: Annotated[int, Slider(-24, 24, unit="count", doc="How many frames later.")] = 0
 
-    out = Output(Image())
-    field_out = Output(Field())
-    vector_out = Output(Vector(width=4))
+    out = OutputSocket(Image())
+    field_out = OutputSocket(Field())
+    vector_out = OutputSocket(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         return dict.fromkeys(self.inputs, (frame + self.frames,))

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Trait, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, Trait, Vector
 
 
 class TimeSpeed(Filter):
@@ -41,9 +41,9 @@ class TimeSpeed(Filter):
         Doc("Between two frames of an image, show the nearest one or dissolve. Fields and vectors are never mixed."),
     ] = "nearest"
 
-    out = Output(Image())
-    field_out = Output(Field())
-    vector_out = Output(Vector(width=4))
+    out = OutputSocket(Image())
+    field_out = OutputSocket(Field())
+    vector_out = OutputSocket(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         source_frame = self._source(frame)

@@ -11,7 +11,7 @@ from .._declare import (
     Fraction,
     Image,
     Number,
-    Output,
+    OutputSocket,
     Position,
     Reach,
     Slider,
@@ -79,9 +79,9 @@ class AutoExposure(Filter):
         Slider(0.02, 0.5, unit="height", minimum=1e-3, doc="Standard deviation of what counts around the center."),
     ] = 0.2
 
-    out = Output()
-    exposure = Output(Number(doc="In stops."))
-    average = Output(Number(doc="The luminance that was metered."))
+    out = OutputSocket()
+    exposure = OutputSocket(Number(doc="In stops."))
+    average = OutputSocket(Number(doc="The luminance that was metered."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         light = draw.point(

@@ -8,12 +8,12 @@ from halation.compiler.library import Library, parse
 from halation.compiler.lowering.lower import lower
 from halation.errors import GraphError
 from halation.graph import Graph, Group, Input, Output, Port
-from halation.nodes import Camera, CameraSocket, Draw, Drawn, Field, Filter, Image, Kind, look_at
+from halation.nodes import CameraModel, CameraSocket, Draw, Drawn, Field, Filter, Image, Kind, look_at
 from halation.nodes.input.camera import Camera as CameraNode
 from halation.resources.picture import Picture
 from headers import Headers
 
-SEEN: list[Camera | None] = []
+SEEN: list[CameraModel | None] = []
 
 
 class Watcher(Filter):
@@ -27,7 +27,7 @@ class Watcher(Filter):
         return draw.blur(self.image, 1.0)
 
 
-def seen(graph: Graph) -> Camera | None:
+def seen(graph: Graph) -> CameraModel | None:
     """The camera that the watcher of a graph is given."""
     SEEN.clear()
     library = Library({"primitive/convert": parse("primitive/convert", "")})

@@ -37,7 +37,7 @@ from halation.compiler.ir import (
 )
 from halation.compiler.scheduling.fingerprints import PassFingerprints, find_keys
 from halation.glsl import parse
-from halation.nodes import Kind, ShaderText, Stage
+from halation.nodes import Kind, ShaderStage, ShaderText
 from halation.resources.color_program import ColorProgram, LookupTable
 from halation.resources.mesh import Mesh
 from halation.resources.picture import Picture
@@ -58,7 +58,7 @@ ACCESSORS = (Accessor("image", "vec4", Ref(0), AROUND), Accessor("mask", "float"
 PROGRAM = ColorProgram(
     "color_change", parse("color", "vec4 color_change(vec4 c) { return c; }"), (LookupTable("t", True, 0),)
 )
-TEXT = ShaderText(Stage("head", "text", "tail", "a.fs"), Stage("head", "text", "tail", "a.vs"))
+TEXT = ShaderText(ShaderStage("head", "text", "tail", "a.fs"), ShaderStage("head", "text", "tail", "a.vs"))
 
 SPECIMENS: dict[type[Op], Op] = {
     type(op): op
@@ -150,7 +150,7 @@ def test_a_key_changes_with_every_field_that_matters(kind):
     assert tops == set(op.__struct_fields__)
 
 
-@pytest.mark.parametrize("kind", [*SPECIMENS, PictureShape, Accessor, Stage], ids=lambda kind: kind.__name__)
+@pytest.mark.parametrize("kind", [*SPECIMENS, PictureShape, Accessor, ShaderStage], ids=lambda kind: kind.__name__)
 def test_what_does_not_matter_says_why(kind):
     for name, reason in kind.identity_exclude.items():
         assert name in kind.__struct_fields__ and reason

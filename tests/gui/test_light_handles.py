@@ -11,7 +11,7 @@ from halation.editor.viewer.dome import flat
 from halation.editor.viewer.ground import depth_at
 from halation.editor.viewer.perspective import project
 from halation.graph import Graph, Output, Port, Settings
-from halation.nodes import Camera, Light, LightKind, catalogue, lights_of, numbers_of
+from halation.nodes import CameraModel, Light, LightKind, catalogue, lights_of, numbers_of
 
 LIGHTS = (
     Light(LightKind.POINT, (-1.0, -1.0, 1.6), color=(1.0, 0.6, 0.2), intensity=8.0, reach=2.5),
@@ -45,7 +45,7 @@ def seen(ui, light: Light) -> tuple[float, float, float]:
     return found
 
 
-def camera(ui) -> Camera:
+def camera(ui) -> CameraModel:
     found = ui.editor.preview.camera(Port("lit", "camera"))
     assert found is not None
     return found

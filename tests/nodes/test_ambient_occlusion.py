@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import Camera, look_at
+from halation.nodes import CameraModel, look_at
 from halation.nodes.light.ambient_occlusion import AmbientOcclusion
 from lens import blender
 
@@ -337,7 +337,7 @@ def test_cycles_where_the_picture_shows_all_that_matters(run, mode, mean, scatte
     """A box and a ball before a wall. `known`: the share of directions of which rays through the scene and through the
     picture say the same. Modes that do not go by the cosine are another measure, but not far from it."""
     data = blender("occlusion")
-    camera, depth, normal = Camera(tuple(data["open_rows"].ravel())), data["open_depth"], data["open_normal"]
+    camera, depth, normal = CameraModel(tuple(data["open_rows"].ravel())), data["open_depth"], data["open_normal"]
     found = render(run, camera, depth, normal, mode=mode, quality="reference", radius=0.6, denoise=False)
     error, known = found - data["open_share"].astype(float), data["open_known"] / 255.0
     assert (known > 0.99).mean() > 0.4 and data["open_share"][known > 0.99].min() < 0.6

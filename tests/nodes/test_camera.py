@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import Camera, look_at
+from halation.nodes import CameraModel, look_at
 
 
 def matrix(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -20,7 +20,7 @@ def matrix(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def test_its_parts_come_out_of_its_matrix(seed):
     lens, rotation, eye = matrix(seed)
     whole = lens @ np.column_stack([rotation, -rotation @ eye])
-    camera = Camera(tuple(whole.ravel()))
+    camera = CameraModel(tuple(whole.ravel()))
     assert np.allclose(camera.eye, eye, atol=1e-9)
     assert np.allclose([camera.right, camera.down, camera.forward], rotation, atol=1e-12)
     assert np.allclose([camera.focal, camera.center], [lens.diagonal()[:2], lens[:2, 2]], atol=1e-12)

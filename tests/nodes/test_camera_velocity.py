@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from geometry import CAMERA, places, rays, sample_camera, sample_layer
-from halation.nodes import Camera, look_at
+from halation.nodes import CameraModel, look_at
 from halation.nodes.geometry.camera_velocity import CameraVelocity
 from lens import blender
 
@@ -13,7 +13,7 @@ BEFORE = look_at((2.9, -7.1, 2.5), (0.2, 0.3, 1.0), (1.3, 2.2))
 AFTER = look_at((3.2, -6.8, 2.6), (0.7, 0.2, 1.1), (1.35, 2.3))
 
 
-def seen_by(camera: Camera, places: np.ndarray, weight: float, width: int, height: int) -> np.ndarray:
+def seen_by(camera: CameraModel, places: np.ndarray, weight: float, width: int, height: int) -> np.ndarray:
     """Pixel positions of places (weight 1) or directions (weight 0)."""
     found = np.concatenate([places, np.full((*places.shape[:2], 1), weight)], -1) @ np.reshape(camera.rows, (3, 4)).T
     return found[..., :2] / found[..., 2:] * (width, height)
@@ -40,7 +40,7 @@ def test_the_sky_only_turns(run):
     expected = np.concatenate([here - seen_by(BEFORE, ray, 0.0, 5, 4), seen_by(AFTER, ray, 0.0, 5, 4) - here], -1)
     assert np.abs(found - expected).max() < 1e-5
     shift = np.array([[1.0, 0.0, 0.0, 4.0], [0.0, 1.0, 0.0, -2.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
-    moved = Camera(tuple((np.reshape(CAMERA.rows, (3, 4)) @ shift).ravel()))
+    moved = CameraModel(tuple((np.reshape(CAMERA.rows, (3, 4)) @ shift).ravel()))
     assert np.abs(run(CameraVelocity(), {"depth": depth, "camera": CAMERA, "before": moved})).max() < 1e-5
 
 
@@ -58,7 +58,7 @@ def test_blender_s_vector_pass(run):
     for stand in data["camera_stands"].astype(float):
         rotation, eye = stand[:3, :3].T * [[1.0], [-1.0], [-1.0]], stand[:3, 3]  # right, down, forward
         lens = np.array([[1.0, 0.0, 0.5], [0.0, 64.0 / 36.0, 0.5], [0.0, 0.0, 1.0]])
-        cameras.append(Camera(tuple((lens @ np.column_stack([rotation, -rotation @ eye])).ravel())))
+        cameras.append(CameraModel(tuple((lens @ np.column_stack([rotation, -rotation @ eye])).ravel())))
     depth = data["camera_depth"]
     inputs = {"depth": depth, "camera": cameras[1], "before": cameras[0], "after": cameras[2]}
     found = run(CameraVelocity(), inputs)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import Camera, look_at
+from halation.nodes import CameraModel, look_at
 from halation.nodes.light.ambient_occlusion import AmbientOcclusion
 from halation.nodes.light.directional_occlusion import DirectionalOcclusion
 from lens import blender
@@ -251,7 +251,7 @@ def test_wedges_under_a_sky(run, degrees):
 def test_cycles_bounces_light_once_off_colored_walls(run):
     """Three sides of a box in the sun, all of which the picture shows: what it hands on, in red, green and white."""
     data = blender("occlusion")
-    camera, depth = Camera(tuple(data["bounced_rows"].ravel())), data["bounced_depth"]
+    camera, depth = CameraModel(tuple(data["bounced_rows"].ravel())), data["bounced_depth"]
     image = np.dstack([data["bounced_image"], np.ones(depth.shape)])
     scene, expected = (camera, depth, data["bounced_normal"]), data["bounced_light"].astype(float)
     inside = binary_erosion(depth < 1e9, iterations=2)

@@ -7,7 +7,7 @@ from halation.document.records import type_names
 from halation.editor.theme.palette import DARK, LIGHT
 from halation.graph import Input
 from halation.graph.conversion import conversion, make_socket
-from halation.nodes import KINDS, Camera, CameraSocket, Kind, Socket, look_at
+from halation.nodes import KINDS, CameraModel, CameraSocket, Kind, Socket, look_at
 from halation.nodes._declare.camera import read_camera
 
 CAMERA = look_at((0.0, -5.0, 1.5), (0.0, 0.0, 1.0), (1.4, 2.5))
@@ -41,4 +41,4 @@ def test_planned_kinds_fit_nothing_else() -> None:
 def test_numbers_in_a_file_are_a_camera() -> None:
     assert read_camera(CAMERA.rows) == CAMERA
     assert read_camera((0.0,) * 12) is None and read_camera((0.0,)) is None
-    assert str(Camera((-0.0,) * 12).rows[0]) == "0.0"
+    assert str(CameraModel((-0.0,) * 12).rows[0]) == "0.0"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from geometry import ball, rays
-from halation.nodes import Camera, look_at
+from halation.nodes import CameraModel, look_at
 from halation.nodes.light.screen_reflections import ScreenReflections
 
 Array = np.ndarray
@@ -24,7 +24,7 @@ def meet(eye: Array, way: Array, planes) -> tuple[Array, Array]:
     return np.min(found, 0), np.argmin(found, 0)
 
 
-def taken(camera: Camera, planes, size=SIZE) -> tuple[Array, Array, Array, Array]:
+def taken(camera: CameraModel, planes, size=SIZE) -> tuple[Array, Array, Array, Array]:
     """Depth, normals, places and views of planes in double precision; 1e10 where nothing is."""
     way, eye = rays(camera, *size), np.array(camera.eye)
     depth, first = meet(eye, way, planes)
@@ -34,7 +34,7 @@ def taken(camera: Camera, planes, size=SIZE) -> tuple[Array, Array, Array, Array
     return np.where(there, depth, 1e10), normal, place, way / np.linalg.norm(way, axis=-1, keepdims=True)
 
 
-def projected(camera: Camera, place: Array, size=SIZE) -> tuple[Array, Array]:
+def projected(camera: CameraModel, place: Array, size=SIZE) -> tuple[Array, Array]:
     """Pixel positions and depth."""
     rows = np.reshape(camera.rows, (3, 4))
     seen = place @ rows[:, :3].T + rows[:, 3]

@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.errors import InputError
 from halation.media import LayerRequest, read_layers
-from halation.nodes import Camera, Kind
+from halation.nodes import CameraModel, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.analysis import RenderAnalysis, analyze_render
 from halation.render_layers.naming import RenderProgram, Role
@@ -48,13 +48,13 @@ def written(
     return path
 
 
-def ndc(camera: Camera) -> tuple[float, ...]:
+def ndc(camera: CameraModel) -> tuple[float, ...]:
     """The header's matrix for row vectors, from -1 to 1 upward."""
     rows = np.array([[2.0, 0.0, -1.0], [0.0, -2.0, 1.0], [0.0, 0.0, 1.0]]) @ np.reshape(camera.rows, (3, 4))
     return tuple(map(float, np.stack([rows[0], rows[1], rows[2], rows[2]]).T.ravel()))
 
 
-def motion(view: RaycastImage = SEEN, before: Camera = BEFORE) -> np.ndarray:
+def motion(view: RaycastImage = SEEN, before: CameraModel = BEFORE) -> np.ndarray:
     """Previous minus current in pixels, y up."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
     rows = np.reshape(before.rows, (3, 4))

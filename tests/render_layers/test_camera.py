@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from halation.errors import InputError
 from halation.media import LayerRequest, read_layers
-from halation.nodes import Camera, Kind
+from halation.nodes import CameraModel, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import measure_camera, read_header_camera, solve_camera
 from raycast import cast_rays
@@ -23,13 +23,13 @@ SEEN = cast_rays(CAMERA, WIDTH, HEIGHT)
 PIXELS = np.array([WIDTH, HEIGHT])
 
 
-def off_center(camera: Camera) -> Camera:
+def off_center(camera: CameraModel) -> CameraModel:
     """The same with its axis at 0.3, 0.8 of the picture, as in a crop."""
     rows = np.reshape(camera.rows, (3, 4)) + np.outer((-0.2, 0.3, 0.0), camera.rows[8:12])
-    return Camera(tuple(rows.ravel()))
+    return CameraModel(tuple(rows.ravel()))
 
 
-def rolled(camera: Camera) -> Camera:
+def rolled(camera: CameraModel) -> CameraModel:
     """The same turned by 30 degrees about its axis; pixels are square."""
     rows = np.reshape(camera.rows, (3, 4)).copy()
     rows[:2] -= 0.5 * rows[2]
@@ -37,7 +37,7 @@ def rolled(camera: Camera) -> Camera:
     c, s = math.cos(math.radians(30.0)), math.sin(math.radians(30.0))
     rows[0], rows[1] = (c * across - s * down) / WIDTH, (s * across + c * down) / HEIGHT
     rows[:2] += 0.5 * rows[2]
-    return Camera(tuple(rows.ravel()))
+    return CameraModel(tuple(rows.ravel()))
 
 
 def layers(path: Path) -> list[np.ndarray]:
@@ -47,7 +47,7 @@ def layers(path: Path) -> list[np.ndarray]:
 
 @pytest.mark.parametrize("camera", [CAMERA, off_center(CAMERA), rolled(CAMERA)], ids=["plain", "crop", "rolled"])
 @pytest.mark.parametrize("with_depth", [False, True])
-def test_exact_positions_give_the_exact_camera(camera: Camera, with_depth: bool) -> None:
+def test_exact_positions_give_the_exact_camera(camera: CameraModel, with_depth: bool) -> None:
     view = cast_rays(camera, WIDTH, HEIGHT)
     solved = solve_camera(view.position, view.depth if with_depth else None)
     assert np.allclose(solved.camera.rows, camera.rows, rtol=0.0, atol=1e-10)
@@ -147,14 +147,14 @@ def row_vectors(matrix: np.ndarray) -> tuple[float, ...]:
     return tuple(map(float, matrix.T.ravel()))
 
 
-def ndc(camera: Camera, unit: bool) -> tuple[float, ...]:
+def ndc(camera: CameraModel, unit: bool) -> tuple[float, ...]:
     """The world in coordinates from 0 to 1 downward, or from -1 to 1 upward, with OpenGL's third row."""
     rows = np.reshape(camera.rows, (3, 4))
     signed = rows if unit else np.array([[2.0, 0.0, -1.0], [0.0, -2.0, 1.0], [0.0, 0.0, 1.0]]) @ rows
     return row_vectors(3.0 * np.stack([signed[0], signed[1], 1.01 * rows[2] - (0.0, 0.0, 0.0, 0.2), rows[2]]))
 
 
-def to_camera(camera: Camera, ahead: float) -> np.ndarray:
+def to_camera(camera: CameraModel, ahead: float) -> np.ndarray:
     """The world in the axes right, up and ahead (1) or back (-1)."""
     axes = np.stack([camera.right, -np.array(camera.down), ahead * np.array(camera.forward)])
     matrix = np.eye(4)

@@ -7,7 +7,7 @@ import contextlib
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 from halation.nodes._declare.camera import look_at
 from halation.render_layers import evidence
 from halation.render_layers.camera import solve_camera
@@ -38,7 +38,7 @@ def depth_of(view: RaycastImage, kind: str) -> np.ndarray:
     return made.astype(np.float32)
 
 
-def axes_of(camera: Camera, ahead: float) -> np.ndarray:
+def axes_of(camera: CameraModel, ahead: float) -> np.ndarray:
     return np.stack([camera.right, -np.array(camera.down), ahead * np.array(camera.forward)])
 
 

@@ -16,7 +16,7 @@ from halation.compiler.tiling import tiling
 from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port
 from halation.inputs.provider import MediaProvider
-from halation.nodes import Camera, Filter, Kind, Reader, Temporal, catalogue, look_at
+from halation.nodes import CameraModel, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
 from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
 from msgspec.structs import replace
@@ -134,7 +134,7 @@ FAR_LOOKING = {
 """Nodes whose values say how far they look, which is not as far as the picture goes."""
 
 
-def cameras(node) -> dict[str, Camera]:
+def cameras(node) -> dict[str, CameraModel]:
     """One for every input that takes one."""
     view = look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.0), (1.2, 2.0))
     return {name: view for name, item in type(node).inputs.items() if item.kind is Kind.CAMERA}

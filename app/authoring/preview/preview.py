@@ -8,7 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from halation.nodes import Camera, Size
+from halation.nodes import CameraModel, Size
 
 from ...compiler import Library, Plan
 from ...errors import HalationError
@@ -51,7 +51,7 @@ class Preview:
         """The last graph that was wanted: it may differ from the wish in its layout."""
         self._stopwatch = PassTimes()
         self._timings: dict[str, NodeTiming] = {}
-        self._cameras: dict[Port, Camera] = {}
+        self._cameras: dict[Port, CameraModel] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
         self.errors: Mapping[str, HalationError] = MappingProxyType({})
@@ -158,7 +158,7 @@ class Preview:
         """The last small picture of a node, and whether it is what the node shows now."""
         return self._thumbnails.find(path, self._wish.node_mark) if self._wish else None
 
-    def camera(self, port: Port) -> Camera | None:
+    def camera(self, port: Port) -> CameraModel | None:
         """The camera that an input of a node was given when pictures were computed last, by the node's path."""
         return self._cameras.get(port)
 

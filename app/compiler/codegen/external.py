@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from halation.nodes import Stage, Uniform
+from halation.nodes import ShaderStage, Uniform
 
 from ..fusion.fuse import PassGroup
 from ..ir import ExternalProgram
@@ -38,7 +38,7 @@ def write_external(
     return shader, (*values, *((name, units[ref]) for name, ref in root.pictures))
 
 
-def _write_stage(stage: Stage, file: int) -> str:
+def _write_stage(stage: ShaderStage, file: int) -> str:
     # The second extension lets functions return whole numbers as floats, which older GLSL did everywhere.
     top = (
         "#version 410 core",

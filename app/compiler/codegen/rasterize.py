@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from halation.nodes import Camera, Uniform
+from halation.nodes import CameraModel, Uniform
 
 from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Raster
@@ -23,7 +23,7 @@ def write_raster(
         ("cameras", root.cameras),
         ("motions", root.motions),
         ("near", root.near),
-        ("eye", Camera(root.cameras[:12]).eye),
+        ("eye", CameraModel(root.cameras[:12]).eye),
         ("grid", root.size),
         ("proxy", program.scale),
     )

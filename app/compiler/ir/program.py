@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from halation.nodes import Camera, Size
+from halation.nodes import CameraModel, Size
 from msgspec import Struct, field
 
 from ...graph import Port
@@ -55,7 +55,7 @@ class LoweredProgram(Struct, frozen=True):
     """What to remember for the next frame, by node and name."""
     results: Mapping[Port, Ref]
     """What outputs of nodes and groups, and inputs of graphs, stand for, in the order in which they were lowered."""
-    cameras: Mapping[Port, Camera]
+    cameras: Mapping[Port, CameraModel]
     """The cameras that inputs of nodes were given."""
     scale: float
     frame: int

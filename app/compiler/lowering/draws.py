@@ -11,7 +11,7 @@ from typing import Literal
 from halation.nodes import (
     Affine,
     Argument,
-    Camera,
+    CameraModel,
     CameraSocket,
     ColorChange,
     Drawn,
@@ -106,10 +106,10 @@ class Recorder:
     def is_linked(self, socket: Socket) -> bool:
         return socket.name in self._inputs.linked
 
-    def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:
+    def camera(self, socket: CameraSocket, frame: int | None = None) -> CameraModel | None:
         operand = self._operand(socket) if frame is None else self._at(socket, frame)
         content = operand.content if isinstance(operand, PlannedObject) else None
-        return content if isinstance(content, Camera) else None
+        return content if isinstance(content, CameraModel) else None
 
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._at(socket, frame)
@@ -254,7 +254,11 @@ class Recorder:
         return self._picture_of(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
 
     def raster(
-        self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
+        self,
+        scene: Scene,
+        motions: tuple[Motion, Motion, Motion],
+        cameras: tuple[CameraModel, CameraModel, CameraModel],
+        near: float,
     ) -> Mapping[str, Drawn]:
         shapes = tuple(PictureShape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
         rows = tuple(part for camera in cameras for part in camera.rows)

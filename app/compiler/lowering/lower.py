@@ -10,7 +10,7 @@ from collections import Counter
 from itertools import chain
 from types import MappingProxyType
 
-from halation.nodes import Camera, Image, Socket
+from halation.nodes import CameraModel, Image, Socket
 
 from ...errors import GraphError, HalationError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
@@ -61,7 +61,7 @@ class Lowering:
         )
         self.results: dict[PortAtOffset, Operand] = {}
         self.memories: dict[Port, Ref] = {}
-        self.cameras: dict[Port, Camera] = {}
+        self.cameras: dict[Port, CameraModel] = {}
         self.outputs: dict[str, Ref] = {}
 
     def run(self) -> LoweringRecord:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from halation.nodes import (
-    Camera,
+    CameraModel,
     Filter,
     Kind,
     Missing,
@@ -276,11 +276,11 @@ class NodeLowering:
         return "hold" if policy == "error" and frame != self._context.frame else policy
 
 
-def _find_cameras(inputs: NodeInputs) -> dict[Port, Camera]:
+def _find_cameras(inputs: NodeInputs) -> dict[Port, CameraModel]:
     """The cameras that are linked to the inputs of a node."""
     operands = {name: inputs.inputs[name] for name in inputs.linked}
     return {
         Port(inputs.path, name): camera
         for name, operand in operands.items()
-        if isinstance(operand, PlannedObject) and isinstance(camera := operand.content, Camera)
+        if isinstance(operand, PlannedObject) and isinstance(camera := operand.content, CameraModel)
     }

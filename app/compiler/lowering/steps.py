@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from halation.nodes import Camera, ColorChange, ColorSettings, Missing, Render, Scene, Size
+from halation.nodes import CameraModel, ColorChange, ColorSettings, Missing, Render, Scene, Size
 from msgspec import Struct, field
 
 from ...graph import Port
@@ -33,7 +33,7 @@ class LoweringStep(Struct):
     inspected: list[int]
     """Operations of other nodes that it did not only read: these decided what it added."""
     results: dict[PortAtOffset, Operand] = field(default_factory=dict[PortAtOffset, Operand])
-    cameras: dict[Port, Camera] = field(default_factory=dict[Port, Camera])
+    cameras: dict[Port, CameraModel] = field(default_factory=dict[Port, CameraModel])
     memories: dict[Port, Ref] = field(default_factory=dict[Port, Ref])
     reads_outside: bool = False
     """True if something beyond the graph decided, which may be another thing the next time."""

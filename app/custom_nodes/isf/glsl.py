@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
-from halation.nodes import ShaderText, Stage
+from halation.nodes import ShaderStage, ShaderText
 
 from ...glsl import blank_comments, words
 from ...glsl.loops import COUNTER, MOST_ROUNDS, guard_loops
@@ -186,13 +186,13 @@ def shader_text(code: Code, header: Header) -> ShaderText:
         where,
         _READING + (_DERIVATIVES if "isf_dFdy" in used else ""),
     ]
-    painted = Stage(
+    painted = ShaderStage(
         "\n".join(top), fragment, _FRAGMENT_END % (_SPOILT if COUNTER in used else ""), code.file or "its code"
     )
     if not vertex.strip():
         return ShaderText(painted)
     file = code.file.rpartition(".")[0] + ".vs"
-    return ShaderText(painted, Stage("\n".join([*declared, _VERTEX_START, _READING]), vertex, _VERTEX_END, file))
+    return ShaderText(painted, ShaderStage("\n".join([*declared, _VERTEX_START, _READING]), vertex, _VERTEX_END, file))
 
 
 def samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:

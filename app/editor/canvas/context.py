@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import PixelPicker
-    from ..workflows.code_files import CodeFiles
+    from ..workflows.code_files import CodeFileWorkflow
     from ..workflows.documents import DocumentWorkflow
     from .view import CanvasView
 
@@ -33,4 +33,4 @@ class CanvasContext(PanelContext):
     shaders: ShaderFiles
     viewer: PixelPicker
     documents: DocumentWorkflow
-    code_files: CodeFiles
+    code_files: CodeFileWorkflow

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
-    from ..workflows.code_files import CodeFiles
+    from ..workflows.code_files import CodeFileWorkflow
     from .state import CodeState
 
 
@@ -23,4 +23,4 @@ class CodeContext(PanelContext):
     code: CodeState
     preview: Preview
     actions: Actions
-    code_files: CodeFiles
+    code_files: CodeFileWorkflow

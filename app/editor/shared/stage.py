@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Stage:
+class DocumentStage:
     """The document, and the flipbook that is played in its place while one is open."""
 
     document: Session

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
-    from ..shared.stage import Stage
+    from ..shared.stage import DocumentStage
     from .state import TimelineState
 
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class TimelineContext(PanelContext):
     """The collaborators of the timeline."""
 
-    stage: Stage
+    stage: DocumentStage
     timeline: TimelineState
     preview: Preview
     actions: Actions

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 from imgui_bundle import imgui
 
 from ..theme.palette import RGB
@@ -22,7 +22,7 @@ _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5
 """Lengths at UI scale 1."""
 
 
-def axes(camera: Camera) -> tuple[tuple[str, Point, float], ...]:
+def axes(camera: CameraModel) -> tuple[tuple[str, Point, float], ...]:
     """x, y and z as the camera sees them, the farthest first: right and down, and how far ahead."""
     found = [(name, (camera.right[at], camera.down[at]), camera.forward[at]) for at, name in enumerate("xyz")]
     return tuple(sorted(found, key=lambda axis: -axis[2]))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, PlayState, ReportedFault, SystemText
-    from ..shared.stage import Stage
+    from ..shared.stage import DocumentStage
     from .state import ViewerState
 
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class ViewerContext(PanelContext):
     """The collaborators of the viewer and the scopes."""
 
-    stage: Stage
+    stage: DocumentStage
     viewer: ViewerState
     preview: Preview
     display: Display

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 
 from .geometry import Point, Sight
 from .perspective import Place, dot, moved, unit
@@ -22,20 +22,20 @@ def middle_of(sight: Sight, scale: float) -> Point:
     return right - (RADIUS + MARGIN) * scale, bottom - (RADIUS + MARGIN) * scale
 
 
-def knob_of(sight: Sight, scale: float, camera: Camera, direction: Place) -> Point:
+def knob_of(sight: Sight, scale: float, camera: CameraModel, direction: Place) -> Point:
     """The point on the screen that stands for sunlight in a direction."""
     x, y = flat(camera, direction)
     middle = middle_of(sight, scale)
     return middle[0] + x * RADIUS * scale, middle[1] + y * RADIUS * scale
 
 
-def direction_at(sight: Sight, scale: float, camera: Camera, at: Point) -> Place:
+def direction_at(sight: Sight, scale: float, camera: CameraModel, at: Point) -> Place:
     """The direction of sunlight that a point on the screen stands for."""
     middle = middle_of(sight, scale)
     return direction_of(camera, ((at[0] - middle[0]) / (RADIUS * scale), (at[1] - middle[1]) / (RADIUS * scale)))
 
 
-def flat(camera: Camera, direction: Place) -> Point:
+def flat(camera: CameraModel, direction: Place) -> Point:
     """Where on a disk of radius 1: equal steps out are equal angles away from the camera."""
     way = unit(direction)
     x, y = -dot(camera.right, way), -dot(camera.down, way)
@@ -43,7 +43,7 @@ def flat(camera: Camera, direction: Place) -> Point:
     return (x / out * away, y / out * away) if out > 1e-9 else (away, 0.0)
 
 
-def direction_of(camera: Camera, flat: Point) -> Place:
+def direction_of(camera: CameraModel, flat: Point) -> Place:
     """The unit vector along which the sun shines for a point of that disk."""
     out = math.hypot(*flat)
     angle = min(out, 1.0) * math.pi

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from halation.nodes import Camera, Node
+from halation.nodes import CameraModel, Node
 
 from ...graph import Port
 from .focus import focuses
@@ -48,7 +48,7 @@ def depth_at(context: ViewerContext, at: Point, name: str = DEPTH) -> float | No
     return values[0] if values[0] < FAR else 1e10
 
 
-def surface_at(context: ViewerContext, camera: Camera, at: Point) -> tuple[Place, float] | None:
+def surface_at(context: ViewerContext, camera: CameraModel, at: Point) -> tuple[Place, float] | None:
     """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
     values = _read(context, PLACE, at)
     if values is not None:

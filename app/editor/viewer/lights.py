@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from halation.nodes import Camera, Kind, Light, LightKind, lights_of
+from halation.nodes import CameraModel, Kind, Light, LightKind, lights_of
 from msgspec import structs
 
 from ...authoring.commands import ReplaceGraph, SetValue
@@ -44,7 +44,7 @@ class Lamp:
     port: Port
     index: int
     light: Light
-    camera: Camera
+    camera: CameraModel
     at: Point
     depth: float
     chosen: bool
@@ -113,7 +113,7 @@ def _chosen(context: ViewerContext, port: Port) -> int:
     return min(max(context.lights.get(str(port), 0), 0), count_of(_numbers(context, port)) - 1)
 
 
-def _camera(context: ViewerContext) -> Camera | None:
+def _camera(context: ViewerContext) -> CameraModel | None:
     """The one that is linked to the active node."""
     session = context.session
     item = session.graph.nodes.get(session.active)
@@ -210,7 +210,7 @@ def remove(context: ViewerContext) -> None:
         )
 
 
-def _over(context: ViewerContext, camera: Camera, to: Point, light: Light) -> Place | None:
+def _over(context: ViewerContext, camera: CameraModel, to: Point, light: Light) -> Place | None:
     """A place before the surface that is seen at a point of the picture, on the way to it."""
     found = surface_at(context, camera, to)
     if found is None:

@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
-from halation.nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
+from halation.nodes import BuiltInScene, CameraModel, Node, SceneFile, orbit_camera
 
 from ...authoring.commands import ReplaceGraph
 from ...graph import Graph, Item, Port
@@ -55,7 +55,7 @@ class Orbit:
         """The one that a node's values say."""
         return cls(*(getattr(node, name) for name in VALUES))
 
-    def camera(self, aspect: float) -> Camera:
+    def camera(self, aspect: float) -> CameraModel:
         """As effects see it; `aspect` is the picture's width over its height."""
         across = self.focal / SENSOR
         angles = math.radians(self.azimuth), math.radians(self.elevation)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 
-from halation.nodes import Camera
+from halation.nodes import CameraModel
 
 Place = tuple[float, float, float]
 Seen = tuple[float, float, float]
 """A fraction of the picture, and the depth."""
 
 
-def project(camera: Camera, place: Place) -> Seen | None:
+def project(camera: CameraModel, place: Place) -> Seen | None:
     """Where a place is on the picture, and its depth; None for what is not in front of the camera."""
     try:
         u, v, depth = camera.project(place)
@@ -20,7 +20,7 @@ def project(camera: Camera, place: Place) -> Seen | None:
     return (u, v, depth) if depth > 0.0 and math.isfinite(u) and math.isfinite(v) else None
 
 
-def unproject(camera: Camera, u: float, v: float, depth: float) -> Place:
+def unproject(camera: CameraModel, u: float, v: float, depth: float) -> Place:
     """The place in the world of a point of the picture at a depth."""
     rows, seen = camera.inverse, (u * depth, v * depth, depth, 1.0)
     x, y, z = (

@@ -20,7 +20,7 @@ from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
 from ..actions import table
 from ..shared.action import Actions
-from ..shared.stage import Stage
+from ..shared.stage import DocumentStage
 from ..toolkit.context import Interface
 from .editor import Editor
 
@@ -45,7 +45,7 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     renderer.pictures.look = renders.render
     display = Display(device)
     return Editor(
-        Stage(session),
+        DocumentStage(session),
         Preview(renderer, display),
         store,
         Actions(table(), lambda: store.current.shortcuts, log),

@@ -21,7 +21,7 @@ from ..renders.context import RendersContext
 from ..start.context import StartContext
 from ..timeline.context import TimelineContext
 from ..viewer.context import ViewerContext
-from ..workflows.code_files import CodeFiles
+from ..workflows.code_files import CodeFileWorkflow
 from ..workflows.documents import DocumentWorkflow
 from ..workflows.flipbook import FlipbookPlayer
 from .editor import Editor
@@ -32,7 +32,7 @@ class Contexts:
     """One context for each panel, and the workflows that several of them share."""
 
     documents: DocumentWorkflow
-    code_files: CodeFiles
+    code_files: CodeFileWorkflow
     flipbooks: FlipbookPlayer
     browser: BrowserContext
     canvas: CanvasContext
@@ -53,7 +53,9 @@ class Contexts:
 
 def compose_contexts(editor: Editor) -> Contexts:
     """Give each panel its collaborators, and bind the actions to theirs."""
-    code_files = CodeFiles(editor.session, editor.watcher, editor.dialogs, editor.log, editor.code, editor.commands)
+    code_files = CodeFileWorkflow(
+        editor.session, editor.watcher, editor.dialogs, editor.log, editor.code, editor.commands
+    )
     documents = DocumentWorkflow(
         editor.session,
         editor.store,

@@ -15,7 +15,7 @@ from ..canvas.view import CanvasView
 from ..code.state import CodeState
 from ..curves.state import CurvesState
 from ..shared.dialogs import Dialogs
-from ..shared.stage import Stage
+from ..shared.stage import DocumentStage
 from ..shared.window_commands import WindowCommands
 from ..theme.palette import Palette
 from ..timeline.state import TimelineState
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 class Editor:
     """One window: the document, its pictures, the user's preferences, the state of each panel, and what goes on."""
 
-    stage: Stage
+    stage: DocumentStage
     preview: Preview
     store: PreferenceStore
     actions: Actions

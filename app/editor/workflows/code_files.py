@@ -31,7 +31,7 @@ class CodeEditor(Protocol):
 
 
 @dataclass(frozen=True)
-class CodeFiles:
+class CodeFileWorkflow:
     """Reads and writes files with the code of nodes, and asks where both sides have changed."""
 
     session: Session
@@ -112,7 +112,7 @@ CODE: tuple[Action, ...] = (
     Action(
         "code.edit",
         "Edit Code",
-        CodeFiles.show,
+        CodeFileWorkflow.show,
         "Graph/Code",
         "Enter",
         "graph",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
     from ..shared.window_commands import WindowCommands
-    from .code_files import CodeFiles
+    from .code_files import CodeFileWorkflow
 
 
 def _do_nothing() -> None:
@@ -40,7 +40,7 @@ class DocumentWorkflow:
     dialogs: Dialogs
     log: Log
     commands: WindowCommands
-    code_files: CodeFiles
+    code_files: CodeFileWorkflow
 
     # --- opening -----------------------------------------------------------------------------------------------------
 

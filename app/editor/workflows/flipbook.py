@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Player
-    from ..shared.stage import Stage
+    from ..shared.stage import DocumentStage
     from ..shared.window_commands import WindowCommands
 
 
@@ -34,7 +34,7 @@ class FlipbookScreen(Protocol):
 class FlipbookPlayer:
     """Puts flipbooks on the stage, and the document back."""
 
-    stage: Stage
+    stage: DocumentStage
     viewer: FlipbookScreen
     timeline: Player
     preview: Preview

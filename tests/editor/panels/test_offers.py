@@ -17,7 +17,7 @@ from halation.editor.preferences.shortcut_changes import assign_shortcut, reset_
 from halation.editor.problems.findings import list_problems, show_element
 from halation.editor.shared.action import Action, Actions
 from halation.editor.shared.shortcut_groups import balance_columns, condense_rows, group_actions
-from halation.editor.shared.stage import Stage
+from halation.editor.shared.stage import DocumentStage
 from halation.editor.toolkit.context import Interface
 from halation.editor.toolkit.keys import chord, text
 from halation.editor.window.contexts import Contexts, compose_contexts
@@ -37,7 +37,17 @@ def desk(tmp_path: Path) -> Editor:
     log = Log()
     actions = Actions(table(), lambda: store.current.shortcuts, log)
     return Editor(
-        Stage(Session()), preview, store, actions, recovery, none, none, none, Interface(store), log, watcher=watcher
+        DocumentStage(Session()),
+        preview,
+        store,
+        actions,
+        recovery,
+        none,
+        none,
+        none,
+        Interface(store),
+        log,
+        watcher=watcher,
     )
 
 
