@@ -132,3 +132,10 @@ def apply_processor(processor: Any, rgb: Array) -> None:
     bands = [band for band in np.array_split(rgb, cores) if band.size]
     with ThreadPoolExecutor(cores) as pool:
         list(pool.map(processor.applyRGB, bands))
+
+
+def to_three_channels(array: Array) -> Array:
+    """[h, w, c] as three channels: one is gray, two are red and green, of more the first three."""
+    if array.shape[2] == 1:
+        return np.repeat(array, 3, axis=2)
+    return np.pad(array, ((0, 0), (0, 0), (0, max(0, 3 - array.shape[2]))))[..., :3]

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ..color.transforms import to_three_channels
 from ..errors import OutputError
-from ..media.comparison.metrics import amplify_difference, to_three_channels
+from ..media.comparison.metrics import amplify_difference
 from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing, encode_png, write_difference
 from .cases import Case
 from .comparison import Parts

@@ -243,3 +243,16 @@ def test_commands_without_windows_know_no_editor(command: str) -> None:
             reached.add(target)
             waiting.append(target)
     assert not [module for module in reached if floor_of(module) in ("authoring", "editor")]
+
+
+def test_no_folder_is_part_of_a_cycle() -> None:
+    """What only type checkers see counts too. A folder and those inside of it are one house, whatever its doors."""
+    folders: dict[str, set[str]] = {}
+    for name, target in links():
+        here, there = name.rpartition(".")[0], target.rpartition(".")[0]
+        if target in MODULES and not f"{here}.".startswith(f"{there}.") and not f"{there}.".startswith(f"{here}."):
+            folders.setdefault(here, set()).add(there)
+    try:
+        TopologicalSorter(folders).prepare()
+    except CycleError as cycle:
+        pytest.fail(" -> ".join(cycle.args[1]))

@@ -8,7 +8,7 @@ from math import inf, log10, nan
 import numpy as np
 import OpenImageIO as oiio
 
-from ...color.transforms import Array, decode_srgb, to_float
+from ...color.transforms import Array, decode_srgb, to_float, to_three_channels
 from ...errors import UsageError
 
 EIGHT_BIT_STEP = 1.0 / 255.0
@@ -188,13 +188,6 @@ def amplify_difference(actual: Array, expected: Array, gain: float | None = None
     light = np.clip(light * factor, 0.0, 1.0)
     light[broken] = _BROKEN_COLOR
     return light.astype(np.float32)
-
-
-def to_three_channels(array: Array) -> Array:
-    """[h, w, c] as three channels: one is gray, two are red and green, of more the first three."""
-    if array.shape[2] == 1:
-        return np.repeat(array, 3, axis=2)
-    return np.pad(array, ((0, 0), (0, 0), (0, max(0, 3 - array.shape[2]))))[..., :3]
 
 
 def _check_picture(array: Array, name: str) -> Array:

@@ -13,10 +13,9 @@ import OpenImageIO as oiio
 from halation.nodes import Kind
 
 from ...color.display import to_display
-from ...color.transforms import Array
+from ...color.transforms import Array, to_three_channels
 from ...errors import InputError, OutputError
 from ...resources.atomic_write import write_atomically
-from ..comparison.metrics import to_three_channels
 from ..metadata import read_metadata
 from .open import describe_fault, open_picture
 from .writer import write_picture
