@@ -235,7 +235,7 @@ def _leftovers(graph: Graph) -> Iterator[Problem]:
             hint = "" if item is None else did_you_mean(key, signature(item).values)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""
-            if key == "package" and len(parts) == 2 and getattr(graph.nodes.get(parts[1]), "package", ""):
+            if key == "package" and len(parts) == 2 and getattr(graph.nodes.get(parts[1]), "required_package", ""):
                 continue
             sentence = f"{where} means nothing to this version and is only kept{hint}"
             yield Problem(node, "", sentence, rules.UNKNOWN_KEY, where)

@@ -189,16 +189,17 @@ def limited() -> None:
 EDITED = """
 import sys
 from time import monotonic
-from halation.editor.window import heartbeat
+from halation.editor.window.frame_updater import FrameUpdater
 from halation.authoring.commands import SetValue
 from halation.graph import Port
 
-beat, heard = heartbeat.Heartbeat.beat, []
+update, heard = FrameUpdater.update, []
 
-def edited(self, editor):
+def edited(self):
+    editor = self._editor
     if not editor.session.dirty:
         editor.session.apply(SetValue(Port("tone", "exposure"), 2.5))
-    beat(self, editor)
+    update(self)
     said = [entry.sentence for entry in editor.log.entries]
     if any("unsaved work" in one for one in said):
         heard.append(monotonic())
@@ -206,7 +207,7 @@ def edited(self, editor):
         print(*said, sep=chr(10), file=sys.stderr)
         editor.commands.closing = True
 
-heartbeat.Heartbeat.beat = edited
+FrameUpdater.update = edited
 from halation.cli.program import run
 sys.exit(run(["edit", *sys.argv[1:]]))
 """

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 from gui_driver import drive
 from halation import document
+from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, Node, catalogue
@@ -46,8 +47,10 @@ def script(tmp_path: Path) -> Callable[[str], None]:
     """`script(code)` drives the editor with `body(ui)` of the code; what is installed is not seen."""
     for top in ("nodes", "shaders"):
         shutil.copytree(ROOT / top, tmp_path / "halation" / top, ignore=shutil.ignore_patterns("__pycache__"))
-    for top in ("app", "presets"):
-        (tmp_path / "halation" / top).symlink_to(ROOT / top)
+    (tmp_path / "halation" / "presets").symlink_to(ROOT / "presets")
+    for part in (ROOT / "app").iterdir():
+        if part.name != "__pycache__":
+            (tmp_path / "halation" / part.name).symlink_to(part)
 
     def run(code: str) -> None:
         path = os.pathsep.join(
@@ -103,12 +106,12 @@ def test_a_node_file_is_changed_broken_and_removed(script) -> None:
 def body(ui):
     ui.settled()
     good, text = file.read_text(), path.read_text()
-    ui.session.set(Port("light", "stops"), 2.0)
+    ui.session.apply(SetValue(Port("light", "stops"), 2.0))
     ui.session.select(["light"])
     file.write_text(good.replace("stops:", "gain: Annotated[float, Slider(0.0, 9.0, unit='ratio')] = 7.0\\n    stops:"))
     ui.until(lambda: "field light.gain" in ui.editor.places)
     assert ui.session.value(Port("light", "gain")) == 7.0 and ui.session.value(Port("light", "stops")) == 2.0
-    ui.session.set(Port("light", "gain"), 3.0)
+    ui.session.apply(SetValue(Port("light", "gain"), 3.0))
     ui.session.undo()
     assert ui.session.value(Port("light", "gain")) == 7.0
 

@@ -171,8 +171,8 @@ def make_node(document: OpenDocument, type_id: str) -> Node:
 
 
 def type_stem(type_id: str) -> str:
-    """What a new node of a type is called."""
-    return "code" if type_id == coding.CODE else type_id
+    """What a new node of a type is called: without the namespace of a plug-in."""
+    return "code" if type_id == coding.CODE else type_id.rpartition(".")[2]
 
 
 def add_item(document: OpenDocument, stem: str, item: Item, at: Place, link: Port | None, output: bool) -> Edited[str]:

@@ -153,6 +153,7 @@ def _item(entry: os.DirEntry[str]) -> Item | None:
 
 
 def extension_of(name: str) -> str:
+    """The ending of a file's name in lower case, with its dot."""
     return os.path.splitext(name)[1].lower()  # noqa: PTH122 - ten thousand times, so without a Path each
 
 

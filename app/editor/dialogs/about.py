@@ -57,6 +57,7 @@ class AboutDialog:
 
 
 def list_versions() -> list[tuple[str, str]]:
+    """Names and versions of Halation, of the system and of the libraries that it stands on."""
     return [
         ("Halation", metadata.version("halation")),
         ("Python", platform.python_version()),

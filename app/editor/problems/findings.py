@@ -45,6 +45,7 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
 
 
 def service_faults(context: ProblemsContext) -> Iterable[str]:
+    """What recovery, file watching and preferences cannot do at present."""
     return filter(None, (context.recovery.fault, context.watcher.fault, *context.store.faults))
 
 

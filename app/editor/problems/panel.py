@@ -96,5 +96,6 @@ def _draw_detail(context: ProblemsContext, detail: str, name: str) -> None:
 
 
 def problem_text(finding: ListedProblem) -> str:
+    """A problem as text for the clipboard."""
     head = f"{finding.where}: " if finding.where else ""
     return f"{head}{finding.sentence}" + (f"\n{finding.detail}" if finding.detail else "")

@@ -202,6 +202,7 @@ def _add_number(path: str) -> str:
 
 
 def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> RenderTargets:
+    """The files that a render would write, and how many of them are there already."""
     if fault or not paths:
         return RenderTargets(fault=fault or "Choose an output to render.")
     try:

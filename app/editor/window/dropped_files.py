@@ -41,6 +41,7 @@ def _has_graph(path: Path) -> bool:
 
 
 def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
+    """Ask what a dropped picture of ours is wanted for: its graph, or its pixels."""
     editor.dialogs.question = Question(
         "Rendered by Halation",
         f"{path.name} holds the graph that made it.",

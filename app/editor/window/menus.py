@@ -33,6 +33,7 @@ def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
 
 
 def arrange_menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
+    """The menus of the menu bar by title, with what each holds in order."""
     menus = {name: _Menu() for name in MENUS}
     for action in actions:
         top, *inner = action.menu.split("/") if action.menu else [""]
@@ -48,6 +49,7 @@ def arrange_menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
 
 
 def draw_menu(context: ActionSurface, menu: _Menu) -> None:
+    """Draw the entries of an open menu, and the menus inside of it."""
     for name, item in menu.entries.items():
         if isinstance(item, _Menu):
             first = next(iter(item.entries.values()), None)
