@@ -11,6 +11,11 @@ from halation.compiler import Precision
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import CameraModel, Kind, Node
 from halation.renderer import Renderer, RenderRequest
+from hypothesis import HealthCheck, settings
+
+# A busy machine is no fault of what is tested: examples may take as long as they take.
+settings.register_profile("halation", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("halation")
 
 Array = np.ndarray
 Run = Callable[..., Array]

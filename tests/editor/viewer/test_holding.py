@@ -176,7 +176,7 @@ def test_a_region_is_drawn_and_its_corner_dragged(editor: Any) -> None:
 def test_ctrl_measures_rectangles_and_sets_markers(editor: Any) -> None:
     viewer = editor.viewer
     assert drag(editor, (80.0, 40.0), (400.0, 200.0), ctrl=True) == "measure"
-    assert viewer.is_measured == pytest.approx((0.1, 0.1, 0.5, 0.5)) and viewer.table and not viewer.markers
+    assert viewer.measured == pytest.approx((0.1, 0.1, 0.5, 0.5)) and viewer.table and not viewer.markers
     drag(editor, (100.0, 100.0), (100.0, 100.0), ctrl=True)
     assert viewer.markers == (((50 + 0.5) / 400, (50 + 0.5) / 200),)
     drag(editor, (101.0, 101.0), (101.0, 101.0), ctrl=True)
