@@ -63,7 +63,7 @@ def check(
 
 def _reports(checker: GraphChecker, graphs: Sequence[Path], quiet: bool) -> list[CheckReport]:
     """Check one after the other; say at once what is found."""
-    from ..lint.files import find_graphs as find_graphs
+    from ..lint.files import find_graphs
 
     reports: list[CheckReport] = []
     for path in find_graphs(graphs):

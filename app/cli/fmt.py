@@ -28,7 +28,7 @@ def fmt(
     """Rewrite graphs in the canonical format; - writes to standard output."""
     from .. import document
     from ..errors import UsageError
-    from ..lint.files import find_graphs as find_graphs
+    from ..lint.files import find_graphs
     from ..resources.atomic_write import write_text_atomically
 
     if any(str(path) == "-" for path in graphs):
