@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import ast
-from collections.abc import Iterator
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
+from import_graph import links
 
 ROOT = Path(__file__).parents[2] / "app" / "editor"
 
@@ -21,40 +20,20 @@ WITHOUT_WINDOW = ("shared", "workflows", "actions")
 """Rooms that draw nothing: they import no window library."""
 
 
-def imports_at_run_time(tree: ast.AST) -> Iterator[ast.Import | ast.ImportFrom]:
-    """Every import that runs, those inside of functions included; what only type checkers see does not count."""
-    for statement in ast.iter_child_nodes(tree):
-        if isinstance(statement, ast.If) and "TYPE_CHECKING" in ast.unparse(statement.test):
-            for other in statement.orelse:
-                yield from imports_at_run_time(other)
-        elif isinstance(statement, ast.Import | ast.ImportFrom):
-            yield statement
-        else:
-            yield from imports_at_run_time(statement)
-
-
-def room_of(module: tuple[str, ...]) -> str:
+def room_of(module: str) -> str:
     """The folder of the editor that a module lies in; `__init__` is the editor's own."""
-    return module[0] if len(module) > 1 or (ROOT / module[0]).is_dir() else "__init__"
+    _, _, room, *rest = module.split(".")
+    return room if rest else "__init__"
 
 
-def links() -> list[tuple[str, str, str]]:
-    """(room, room that it imports, the import in words)."""
-    pairs: list[tuple[str, str, str]] = []
-    for path in sorted(ROOT.rglob("*.py")):
-        module = path.relative_to(ROOT).with_suffix("").parts
-        for statement in imports_at_run_time(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(statement, ast.ImportFrom) and statement.level and statement.level <= len(module):
-                above = module[: len(module) - statement.level]
-                names = [[*filter(None, (statement.module or "").split("."))]] if statement.module else []
-                for parts in names or [[alias.name] for alias in statement.names]:
-                    here, there = room_of(module), room_of((*above, *parts))
-                    if here != there:
-                        pairs.append((here, there, f"{'.'.join(module)} imports {'.'.join((*above, *parts))}"))
-    return pairs
-
-
-LINKS = links()
+LINKS = [
+    (room_of(module), room_of(target), f"{module} imports {target}")
+    for module, target in links()
+    if module.startswith("halation.editor.")
+    and target.startswith("halation.editor.")
+    and room_of(module) != room_of(target)
+]
+"""(room, room that it imports, the import in words); what only type checkers see counts too."""
 
 
 def level(room: str) -> int:
@@ -83,10 +62,7 @@ def test_no_room_is_part_of_a_cycle() -> None:
 
 @pytest.mark.parametrize("room", WITHOUT_WINDOW)
 def test_what_draws_nothing_imports_no_window_library(room: str) -> None:
-    users: list[str] = []
-    for path in (ROOT / room).rglob("*.py"):
-        for statement in imports_at_run_time(ast.parse(path.read_text(encoding="utf-8"))):
-            is_from = isinstance(statement, ast.ImportFrom)
-            modules = [statement.module or ""] if is_from else [alias.name for alias in statement.names]
-            users += [path.name for module in modules if module.split(".")[0] in ("imgui_bundle", "glfw")]
-    assert not users
+    libraries = {"imgui_bundle", "glfw"}
+    inside = [(module, target) for module, target in links() if module.startswith(f"halation.editor.{room}.")]
+    assert inside
+    assert not [module for module, target in inside if target.split(".")[0] in libraries]

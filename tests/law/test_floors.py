@@ -7,17 +7,11 @@ import re
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
-from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from importlib.metadata import packages_distributions
-from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
-FOLDERS = {"app": "halation", "nodes": "halation.nodes", "shaders": "halation.shaders", "presets": "halation.presets"}
-"""Top-level folder -> the package that it is."""
+from import_graph import FOLDERS, MODULES, ROOT, imports, links, targets
 
 DATA = ("nodes", "shaders", "presets")
 """What the machine is fed with: every floor may import these packages, and they import none of the floors."""
@@ -49,50 +43,9 @@ HOMES = {
 """Library -> the only part of the machine that may import it."""
 
 
-def name_of(path: Path) -> str:
-    """The import name of a file of the tree; a package's own name ends in `__init__`."""
-    top, *rest = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join([FOLDERS[top], *rest])
-
-
 def floor_of(name: str) -> str:
     """The part of the machine, or of the data, that a module of the tree belongs to."""
     return name.split(".")[1]
-
-
-MODULES = {name_of(path): path for top in FOLDERS for path in (ROOT / top).rglob("*.py")}
-
-
-def resolve(name: str) -> str:
-    """The module of the tree that importing `name` loads, or `name` itself if it is from outside."""
-    if f"{name}.__init__" in MODULES:
-        return f"{name}.__init__"
-    return name
-
-
-def targets(tree: ast.AST, package: str) -> Iterator[str]:
-    """Every module that code inside `package` imports, wherever in the file it does so."""
-    for statement in ast.walk(tree):
-        if isinstance(statement, ast.Import):
-            yield from (resolve(alias.name) for alias in statement.names)
-        elif isinstance(statement, ast.ImportFrom):
-            parts = package.split(".")
-            above = parts[: len(parts) - statement.level + 1] if statement.level else []
-            base = ".".join([*above, *filter(None, [statement.module])])
-            for alias in statement.names:
-                inner = resolve(f"{base}.{alias.name}".lstrip("."))
-                yield inner if inner in MODULES else resolve(base)
-
-
-def imports(name: str) -> set[str]:
-    """What a module of the tree imports: names of the tree, and names of libraries."""
-    return set(targets(ast.parse(MODULES[name].read_text(encoding="utf-8"), name), name.rpartition(".")[0]))
-
-
-@cache
-def links() -> tuple[tuple[str, str], ...]:
-    """(module, what it imports) for the whole tree."""
-    return tuple(sorted((name, target) for name in MODULES for target in imports(name)))
 
 
 def test_the_reading_of_imports() -> None:
