@@ -142,8 +142,14 @@ class Ui:
         io.key_repeat_delay = usual
 
     def type(self, text: str, enter: bool = True) -> None:
-        """Replace the text of the field that is being edited."""
-        (self.ctx.key_chars_replace_enter if enter else self.ctx.key_chars_replace)(text)
+        """Replace the text of the field that is being edited: key by key, as a hand does, a frame for each."""
+        self.ctx.key_press(chord("Ctrl+A"))
+        self.ctx.key_press(chord("Delete"))
+        for character in text:
+            self.ctx.key_chars(character)
+            self.wait(1)
+        if enter:
+            self.ctx.key_press(chord("Enter"))
         self.wait(3)
 
     def shot(self, name: str) -> Path:

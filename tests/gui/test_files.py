@@ -160,3 +160,21 @@ def test_ten_thousand_files_are_listed(gui, tmp_path: Path) -> None:
         assert "file shot9999.json" in ui.editor.places
 
     gui(body, presets.paths()[0])
+
+
+def test_an_absolute_path_is_typed_to_save_and_to_open(gui, shelf: Path) -> None:
+    def body(ui) -> None:
+        at(ui, shelf)
+        target = shelf / "inner" / "my look.json"
+        ui.keys("Ctrl+Shift+S")
+        ui.type(str(target))
+        assert target.is_file() and ui.session.path == target
+        assert not ui.editor.dialogs.any and not ui.session.history.steps
+        ui.keys("Ctrl+O")
+        ui.type(str(shelf / "inner" / "soft_bloom.json"))
+        assert ui.session.path == shelf / "inner" / "soft_bloom.json"
+        ui.keys("Ctrl+O")
+        ui.type(f"{shelf}/")
+        ui.until(lambda: "file inner" in ui.editor.places)
+
+    gui(body, presets.paths()[0])

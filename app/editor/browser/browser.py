@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -213,20 +214,24 @@ class FileBrowser:
             self._context.dialogs.browse = None
         record(self._context, "cancel file")
         imgui.same_line()
-        can = target is not None or (browsing.item is not None and browsing.item.is_folder)
+        is_folder = browsing.item is not None and browsing.item.is_folder
+        can = target is not None or is_folder or bool(browsing.name.strip() or browsing.query.strip())
         if main_button(self._context, f"    {verb}    ", "choose file", enabled=can):
             self._open_chosen(browsing)
 
     def _open_chosen(self, browsing: Browsing) -> None:
-        """Open the folder that is chosen, or answer with the file."""
-        item, target = browsing.item, browsing.target
+        """Go to the folder that was typed or chosen, or answer with the file."""
+        if (folder := browsing.typed_folder) is not None:
+            self._go_to(browsing, folder)
+            return
+        item, target = browsing.item, browsing.typed_file or browsing.target
         if item and item.is_folder:
             self._go_to(browsing, browsing.folder / item.name)
             return
         if target is None or self._context.dialogs.question is not None:
             return
         answer = partial(_answer, self._context, browsing, target)
-        if not browsing.browse.saving or not target.exists():
+        if not browsing.browse.saving or not os.path.exists(target):  # noqa: PTH110 - False for an invalid path
             answer()
             return
         self._context.dialogs.question = Question(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
@@ -13,7 +14,7 @@ from ...media.meshes.load import MESH_ENDINGS
 from ...media.pictures.thumbnail import list_readable_endings
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
-from .places import Place, places
+from .places import Place, complete_path, is_path, names_folder, places
 
 if TYPE_CHECKING:
     from .context import BrowserContext
@@ -42,6 +43,8 @@ class Browsing:
         self._back = self.folder.name if self.folder.parent == folder else ""
         self.folder, self.query, self.chosen = folder, "", self.first
         self.listing.show(folder)
+        if is_path(self.name):
+            self.name = Path(self.browse.name).name
 
     def up(self) -> None:
         """Show the folder around this one."""
@@ -84,14 +87,33 @@ class Browsing:
 
     @property
     def target(self) -> Path | None:
-        """The file that would be the answer now, with the ending that is asked for."""
-        if self.browse.saving:
-            name = self.name.strip()
-            if not name or name in (".", ".."):
-                return None
-            path = self.folder / name
-            return path if path.suffix else path.with_name(path.name + (Path(self.browse.name).suffix or ".json"))
-        return self.folder / self.item.name if self.item and not self.item.is_folder else None
+        """The file that would be the answer now, with the ending that is asked for.
+
+        While a file is saved, the user may type a path instead of a name; a path that ends with a folder is no answer.
+        """
+        if not self.browse.saving:
+            return self.folder / self.item.name if self.item and not self.item.is_folder else None
+        if names_folder(self.name):
+            return None
+        path = complete_path(self.name, self.folder)
+        return path if path.suffix else path.with_name(path.name + (Path(self.browse.name).suffix or ".json"))
+
+    @property
+    def typed_folder(self) -> Path | None:
+        """The folder that the name field names, None for anything else: Enter shows it."""
+        text = self.name if self.browse.saving else self.query
+        if not text.strip() or not (self.browse.saving or is_path(text)):
+            return None
+        path = complete_path(text, self.folder)
+        return path if names_folder(text) or os.path.isdir(path) else None  # noqa: PTH112 - False for an invalid path
+
+    @property
+    def typed_file(self) -> Path | None:
+        """The existing file whose path, not only its name, stands in the field of a dialog that opens files."""
+        if self.browse.saving or not is_path(self.query):
+            return None
+        path = complete_path(self.query, self.folder)
+        return path if os.path.isfile(path) else None  # noqa: PTH113 - False for an invalid path
 
 
 def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:

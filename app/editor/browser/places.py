@@ -68,3 +68,16 @@ def complete_path(text: str, folder: Path) -> Path:
     except RuntimeError:
         return folder / path
     return Path(os.path.normpath(folder / path))
+
+
+def is_path(text: str) -> bool:
+    """Whether a text that was typed as a name is a path: it has a separator or starts at home."""
+    text = text.strip().strip('"')
+    return text.startswith("~") or any(separator in text for separator in (os.sep, os.altsep) if separator)
+
+
+def names_folder(text: str) -> bool:
+    """Whether a typed path can only be a folder: nothing at all, `.`, `..`, `~`, or a separator at its end."""
+    text = text.strip().strip('"')
+    last = text.replace(os.altsep or os.sep, os.sep).rpartition(os.sep)[2]
+    return last in ("", ".", "..", "~")

@@ -145,3 +145,48 @@ def test_folders_are_shown_by_the_system_or_not_at_all(tmp_path: Path, monkeypat
     monkeypatch.setattr("shutil.which", lambda name: None)
     assert command(tmp_path) is None
     assert not show_folder(tmp_path)
+
+
+@pytest.mark.parametrize("typed", ["", " ", "/", "~", "~/", ".", "..", "inner/", "./", "inner/..", '"/"', "//", "a" * 5000])
+def test_every_prefix_of_a_typed_path_is_a_folder_or_a_file(desk: Desk, folder: Path, typed: str) -> None:
+    desk.store.note_folder("graph", folder / "a.json")
+    now = browsing(desk, saving=True, name="look.json")
+    for length in range(min(len(typed), 20) + 1):
+        now.name = typed[:length]
+        assert now.target is None or now.target.suffix == ".json"
+        assert now.target is None or now.target.name.strip(".")
+    now.name = typed
+    assert (now.target is None) == (len(typed) < 5000)
+
+
+def test_a_typed_path_is_taken_as_a_path(desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(folder))
+    desk.store.note_folder("graph", folder / "a.json")
+    now = browsing(desk, saving=True, name="look.json")
+    for typed, target in (
+        (f"{folder}/inner/mine", folder / "inner" / "mine.json"),
+        ("inner/mine.json", folder / "inner" / "mine.json"),
+        ("~/mine.json", folder / "mine.json"),
+        ("../mine.json", folder.parent / "mine.json"),
+        (f'"{folder}/my look.json"', folder / "my look.json"),
+    ):
+        now.name = typed
+        assert (now.target, now.typed_folder) == (target, None)
+    for typed, shown in (("/", Path("/")), ("..", folder.parent), ("inner", folder / "inner"), ("inner/", folder / "inner")):
+        now.name = typed
+        assert now.typed_folder == shown
+    now.go(folder / "inner")
+    assert now.name == "look.json"
+
+
+def test_opening_takes_a_typed_path_too(desk: Desk, folder: Path) -> None:
+    now = browsing(desk)
+    for typed, file, shown in (
+        (f"{folder}/b.json", folder / "b.json", None),
+        (f"{folder}", None, folder),
+        (f"{folder}/", None, folder),
+        ("b.json", None, None),
+        (f"{folder}/missing.json", None, None),
+    ):
+        now.search(typed)
+        assert (now.typed_file, now.typed_folder) == (file, shown)
