@@ -147,7 +147,9 @@ def test_folders_are_shown_by_the_system_or_not_at_all(tmp_path: Path, monkeypat
     assert not show_folder(tmp_path)
 
 
-@pytest.mark.parametrize("typed", ["", " ", "/", "~", "~/", ".", "..", "inner/", "./", "inner/..", '"/"', "//", "a" * 5000])
+@pytest.mark.parametrize(
+    "typed", ["", " ", "/", "~", "~/", ".", "..", "inner/", "./", "inner/..", '"/"', "//", "a" * 5000]
+)
 def test_every_prefix_of_a_typed_path_is_a_folder_or_a_file(desk: Desk, folder: Path, typed: str) -> None:
     desk.store.note_folder("graph", folder / "a.json")
     now = browsing(desk, saving=True, name="look.json")
@@ -172,7 +174,12 @@ def test_a_typed_path_is_taken_as_a_path(desk: Desk, folder: Path, monkeypatch: 
     ):
         now.name = typed
         assert (now.target, now.typed_folder) == (target, None)
-    for typed, shown in (("/", Path("/")), ("..", folder.parent), ("inner", folder / "inner"), ("inner/", folder / "inner")):
+    for typed, shown in (
+        ("/", Path("/")),
+        ("..", folder.parent),
+        ("inner", folder / "inner"),
+        ("inner/", folder / "inner"),
+    ):
         now.name = typed
         assert now.typed_folder == shown
     now.go(folder / "inner")
