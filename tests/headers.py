@@ -15,8 +15,8 @@ class Headers(MediaProvider):
         super().__init__()
         self.size = size
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         return FrameFile(path)
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         return PictureProbe(self.size, False, picture.path)

@@ -12,19 +12,7 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import show_progress
-from .options import (
-    AsJson,
-    Form,
-    GraphFile,
-    Inputs,
-    Node,
-    Scale,
-    Sets,
-    SizeText,
-    open_graph,
-    report_problems,
-    resolve_inputs,
-)
+from .options import AsJson, Form, GraphFile, Inputs, Node, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
 from .outcome import print_json
 from .watchdog import Timeout, rerun_watched
 
@@ -80,7 +68,7 @@ def bench(
     if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
     bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
-    at = chosen or (LazyResourceProvider().frames(whole, bindings)[0],)
+    at = chosen or (LazyResourceProvider().find_frames(whole, bindings)[0],)
     renderer = Renderer(open_device(way), budget=0)
     request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     with show_progress(renderer, len(at)) as work:
@@ -114,7 +102,7 @@ def _limit(text: str | None) -> float | None:
 
 
 def _print(timings: Benchmark, by_pass: bool, software: bool, repeats: int) -> None:
-    from ..compiler.explain import size_text
+    from ..compiler.explain import format_bytes
     from ..renderer.bench import group_by_nodes
 
     if by_pass:
@@ -131,7 +119,7 @@ def _print(timings: Benchmark, by_pass: bool, software: bool, repeats: int) -> N
         text = label if len(label) <= wide else f"{label[: wide - 3]}..."
         print(
             f"{text:<{wide}}  {seconds * 1e3:9.3f} ms  {seconds / timings.median:6.1%}  {bar:<{_BAR}}  "
-            f"reads {size_text(read):>9}, writes {size_text(written):>9}"
+            f"reads {format_bytes(read):>9}, writes {format_bytes(written):>9}"
         )
     how = "the clock around each pass" if software else "timer queries of the GPU"
     width, height = timings.size
@@ -143,7 +131,7 @@ def _print(timings: Benchmark, by_pass: bool, software: bool, repeats: int) -> N
     print(
         f"{'once':<{wide}}  plan {timings.planning * 1e3:.1f} ms, {timings.programs} programs "
         f"{timings.compiling * 1e3:.1f} ms, first run with files {timings.loading * 1e3:.1f} ms; "
-        f"{size_text(timings.peak_bytes)} of textures at the peak"
+        f"{format_bytes(timings.peak_bytes)} of textures at the peak"
     )
 
 

@@ -67,7 +67,7 @@ def _default_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
     from ..inputs.lazy_provider import LazyResourceProvider
 
     provider = LazyResourceProvider()
-    first, last = provider.frames(graph, job.inputs)
+    first, last = provider.find_frames(graph, job.inputs)
     return tuple(range(first, last + 1)) if parsing.holds_frames(job.files) else (first,)
 
 
@@ -158,9 +158,9 @@ def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> Non
     if as_json:
         print_json(report)
         return
-    from ..compiler.explain import size_text
+    from ..compiler.explain import format_bytes
 
-    peak, passes, kept = size_text(report["peak_bytes"]), report["passes"], len(report["kept"])
+    peak, passes, kept = format_bytes(report["peak_bytes"]), report["passes"], len(report["kept"])
     spent = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
     written: Sequence[str] = report["written"]
     if len(report["frames"]) > 1:

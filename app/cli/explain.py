@@ -7,19 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from . import parsing
-from .options import (
-    AsJson,
-    GraphFile,
-    Inputs,
-    Memory,
-    Node,
-    Scale,
-    Sets,
-    SizeText,
-    open_graph,
-    report_problems,
-    resolve_inputs,
-)
+from .options import AsJson, GraphFile, Inputs, Memory, Node, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
 from .outcome import print_json
 
 if TYPE_CHECKING:
@@ -71,14 +59,14 @@ def explain(
         lazy.bind(opened_graph, bindings),
         parsing.size(size),
         parsing.scale(scale),
-        frame if frame is not None else lazy.frames(opened_graph, bindings)[0],
+        frame if frame is not None else lazy.find_frames(opened_graph, bindings)[0],
     )
     target = replace(_target(way), memory=most)
     # As if each went into an EXR of its own.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
     if as_json:
-        print_json(compiler.as_json(plan))
+        print_json(compiler.plan_as_json(plan))
     else:
         print(compiler.write_dot(plan) if dot else compiler.explain(plan))
     return 0

@@ -89,7 +89,7 @@ def passes_of(node: type[Node]) -> dict[str, Any]:
 
     if not drawable_outputs(node):
         return {"size": list(FULL_HD), "passes": [], "peak_bytes": 0}
-    plan: dict[str, Any] = compiler.as_json(plan_node(node, FULL_HD))
+    plan: dict[str, Any] = compiler.plan_as_json(plan_node(node, FULL_HD))
     surfaces = plan["surfaces"]
     passes = [
         {

@@ -103,7 +103,7 @@ def _page(node: type[Node]) -> None:
 
 
 def _print_passes(node: type[Node]) -> None:
-    from ..compiler.explain import size_text
+    from ..compiler.explain import format_bytes
 
     facts = passes_of(node)
     width, height = facts["size"]
@@ -114,7 +114,7 @@ def _print_passes(node: type[Node]) -> None:
         print(f"  {index:<4} {item['label']:<{widest}}  {surfaces}")
     if not facts["passes"]:
         print(f"  none: {'the picture goes through as it is' if node.inputs else 'nothing has to be drawn'}")
-    print(f"  {size_text(facts['peak_bytes'])} of textures at the peak")
+    print(f"  {format_bytes(facts['peak_bytes'])} of textures at the peak")
 
 
 def _range(value: Value) -> str:

@@ -51,15 +51,15 @@ class _SameSize(LazyResourceProvider):
     def __init__(self, size: Size) -> None:
         self._size = size
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """There is one picture."""
         return FrameFile(path)
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         """Nothing is read."""
         return PictureProbe(self._size, True, picture.path)
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """Every layer that a node may ask for is there."""
         mattes = tuple(f"CryptoObject{rank:02}" for rank in range(3))
         return Render({role: role for role in _ROLES}, dict.fromkeys(_ROLES, 4), mattes=(Matte("object", mattes, {}),))

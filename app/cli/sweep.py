@@ -11,18 +11,7 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import open_batch
-from .options import (
-    AsJson,
-    GraphFile,
-    Inputs,
-    Node,
-    Precision,
-    Scale,
-    SizeText,
-    open_graph,
-    report_problems,
-    resolve_inputs,
-)
+from .options import AsJson, GraphFile, Inputs, Node, Precision, Scale, SizeText, open_graph, report_problems, resolve_inputs
 from .outcome import note, print_json
 from .sweeping import axes
 from .watchdog import Timeout, rerun_watched
@@ -87,7 +76,7 @@ def sweep(
     if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
     bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
-    at = chosen[0] if chosen else LazyResourceProvider().frames(whole, bindings)[0]
+    at = chosen[0] if chosen else LazyResourceProvider().find_frames(whole, bindings)[0]
     name = _output(whole, show, node)
     look = view or ("" if node else whole.outputs[name].view)
     count = len(sweeping.list_cells(whole, swept, at))

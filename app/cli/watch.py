@@ -11,20 +11,7 @@ import typer
 
 from ..errors import HalationError, UsageError
 from . import parsing
-from .options import (
-    Frames,
-    GraphFile,
-    Inputs,
-    Node,
-    OneFrame,
-    Precision,
-    Scale,
-    Sets,
-    SizeText,
-    open_graph,
-    report_problems,
-    resolve_inputs,
-)
+from .options import Frames, GraphFile, Inputs, Node, OneFrame, Precision, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
 from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
@@ -76,7 +63,7 @@ def watch(
 
     def render(graph_now: Graph, progress: JobProgress) -> JobReport:
         bindings, targets = resolve_inputs(graph_now, parsing.inputs(inputs)), parsing.targets(graph_now, node)
-        first, last = (0, 0) if chosen else LazyResourceProvider().frames(graph_now, bindings)
+        first, last = (0, 0) if chosen else LazyResourceProvider().find_frames(graph_now, bindings)
         every = chosen or (tuple(range(first, last + 1)) if parsing.holds_frames(files) else (first,))
         request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
         return run_job(

@@ -12,12 +12,7 @@ import numpy as np
 
 from ..resources.machine import available_cores
 from .file_space import FileSpace
-from .management import (
-    LINEAR_REC709,
-    ColorManager,
-    OcioColorSpace,
-    load_ocio,
-)
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_ocio
 
 _LARGEST = 65504.0
 

@@ -12,11 +12,11 @@ data, of which the renderer needs nothing else. `isf` writes a graph as one shad
 from __future__ import annotations
 
 from .areas import Region, scale_size
-from .explain import as_json, explain, write_dot
+from .explain import plan_as_json, explain, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
 from .library import Library, installed_library
-from .lowering.named import find_named_files
-from .lowering.upstream import Upstream
+from .lowering.references import find_named_files
+from .lowering.upstream import UpstreamHashes
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
 from .request import Request
@@ -46,8 +46,8 @@ __all__ = [
     "TileStage",
     "Tiling",
     "Upload",
-    "Upstream",
-    "as_json",
+    "UpstreamHashes",
+    "plan_as_json",
     "compile_graph",
     "examine",
     "explain",

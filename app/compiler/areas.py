@@ -11,11 +11,11 @@ Span = tuple[int, int]
 """Pixels along an axis: the first, and the one after the last."""
 
 _FAR = 2**30
-"""Outside of every picture."""
+"""Beyond every picture, and small enough that shaders can hold it as an int."""
 
 
 class Region(Struct, frozen=True):
-    """Pixels of a picture: from (x, y), the top left one, on."""
+    """A rectangle of pixels, of which (x, y) is the top left one."""
 
     x: int
     y: int
@@ -24,12 +24,12 @@ class Region(Struct, frozen=True):
 
     @staticmethod
     def whole(size: Size) -> Region:
-        """All of a picture."""
+        """The region that is a whole picture."""
         return Region(0, 0, *size)
 
     @staticmethod
     def of(across: Span, down: Span) -> Region:
-        """By what it covers along both axes."""
+        """The region that covers these spans along both axes."""
         return Region(across[0], down[0], across[1] - across[0], down[1] - down[0])
 
     @property
@@ -38,7 +38,7 @@ class Region(Struct, frozen=True):
 
     @property
     def start(self) -> tuple[int, int]:
-        """Its top left pixel."""
+        """The top left pixel."""
         return (self.x, self.y)
 
     @property
@@ -50,14 +50,14 @@ class Region(Struct, frozen=True):
         return (self.y, self.y + self.height)
 
     def union(self, other: Region) -> Region:
-        """The smallest one that holds both."""
+        """The smallest region that holds both."""
         spans = zip((self.across, self.down), (other.across, other.down), strict=True)
-        across, down = ((min(one[0], two[0]), max(one[1], two[1])) for one, two in spans)
+        across, down = ((min(own[0], their[0]), max(own[1], their[1])) for own, their in spans)
         return Region.of(across, down)
 
 
 class Neighborhood(Struct, frozen=True):
-    """Where a function reads a picture: `matrix` leads from the middle of its own pixel to a place, and it looks at
+    """Where a function reads a picture: `matrix` maps the center of its own pixel to a position, and the function reads
     pixels up to `radius` away from the one there, along each axis."""
 
     matrix: Affine
@@ -65,11 +65,11 @@ class Neighborhood(Struct, frozen=True):
 
     @staticmethod
     def pixel(own: Size, read: Size, radius: tuple[float, float]) -> Neighborhood:
-        """Around the same pixel; in a picture of another size, around the one at the same part of it."""
+        """A neighborhood of the same pixel; in a picture of another size, of the one at the same relative position."""
         return Neighborhood((read[0] / own[0], 0.0, 0.0, 0.0, read[1] / own[1], 0.0), radius)
 
     def find_spans(self, region: Region) -> tuple[Span, Span]:
-        """What is read for a region, beyond the edges of the picture too."""
+        """The pixels that are read for a region, which may lie beyond the edges of the picture."""
         a, b, x, c, d, y = self.matrix
         corners = [
             (i, j)
@@ -88,7 +88,7 @@ def scale_size(size: Size, scale: float) -> Size:
 
 
 def clip_span(span: Span, length: int, edge: Edge) -> Span:
-    """The pixels of a row of `length` that are read where a span beyond its ends is asked for."""
+    """The pixels of a row of `length` that an edge mode reads for a span that goes beyond its ends."""
     first, end = span
     if first >= 0 and end <= length:
         return span

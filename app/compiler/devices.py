@@ -1,6 +1,6 @@
-"""Which form of passes suits a device: the one asked for, the one in a table, or the one that was faster on it.
+"""Which form of passes suits a device: the requested one, that of a table, or the one that was measured to be faster.
 
-Pure: what is to be known of a device comes as text and numbers, so every choice can be tested without one.
+Pure: the facts of a device come as text and numbers, so every choice can be tested without one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..errors import DeviceError
 from .target import Form
 
 COMPUTE = 430
-"""The OpenGL that has compute shaders."""
+"""The version of OpenGL that introduced compute shaders, 4.3, as GLSL writes it."""
 
 _SOFTWARE = re.compile("llvmpipe|softpipe|swiftshader|swrast|lavapipe|software|basic render", re.IGNORECASE)
 
@@ -27,14 +27,14 @@ _TABLE: tuple[tuple[re.Pattern[str], Form, str], ...] = (
         "few units of this chip can draw, and all of them compute",
     ),
 )
-"""Renderers by name, the form that suits them, and why. What is not here is measured: chips of one maker differ.
+"""Renderers by name, the form that suits them, and why. All others are measured: chips of one maker differ.
 
 Of a Hopper chip's processing clusters two can draw (NVIDIA H100 Tensor Core GPU Architecture, 2022).
 """
 
 
 class FormChoice(Struct, frozen=True):
-    """A form, and in a few words who chose it and why."""
+    """A form, and in a few words what decided it."""
 
     form: Form
     why: str
@@ -53,14 +53,14 @@ class FormTimings(Struct, frozen=True):
 
 
 def is_software(renderer: str) -> bool:
-    """True if that is no GPU."""
+    """True for the name of a renderer that is no GPU."""
     return _SOFTWARE.search(renderer) is not None
 
 
 def choose_form(
     renderer: str, version: int, requested: Form | None, measure: Callable[[], FormTimings | None]
 ) -> FormChoice:
-    """The form of passes on a device. `measure` is called only where neither a person nor the table says.
+    """The form of passes on a device. `measure` is called only if neither the user nor the table decides.
 
     Raises DeviceError for compute passes on an OpenGL without them.
     """

@@ -1,4 +1,4 @@
-"""A plan as a person reads it: a table of passes, or Graphviz."""
+"""Describes a plan for people and machines: a table of passes, JSON, or Graphviz."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from .plan import Pass, Plan, Surface
 
 
-def size_text(count: int) -> str:
+def format_bytes(count: int) -> str:
     """Bytes in the largest unit that keeps one digit before the point."""
     amount = float(count)
     for unit in ("B", "KiB", "MiB"):
@@ -24,23 +24,23 @@ def explain(plan: Plan) -> str:
     for upload in plan.uploads:
         picture, surface = upload.picture, plan.surfaces[upload.surface]
         layer = f":{picture.layer}" if picture.layer else ""
-        lines.append(f"upload    {_surface(upload.surface, surface)}  {upload.node} <- {picture.path}{layer}")
-    for index, one in enumerate(plan.passes):
-        written = ", ".join(_surface(number, plan.surfaces[number]) for number in one.targets)
-        read = " ".join(f"#{number}" for number in one.textures) or "-"
-        lines.append(f"pass {index:<4} {written}  {_label(one)}  reads {read}")
+        lines.append(f"upload    {_describe_surface(upload.surface, surface)}  {upload.node} <- {picture.path}{layer}")
+    for index, pass_ in enumerate(plan.passes):
+        written = ", ".join(_describe_surface(number, plan.surfaces[number]) for number in pass_.targets)
+        read = " ".join(f"#{number}" for number in pass_.textures) or "-"
+        lines.append(f"pass {index:<4} {written}  {_describe_pass(pass_)}  reads {read}")
     for name, number in plan.outputs.items():
         lines.append(f"output    #{number}  {name}")
-    lines.append(f"frames    {frames_text(plan)}")
+    lines.append(f"frames    {describe_frames(plan)}")
     shaders = len({one.shader for one in plan.passes})
     lines.append(
         f"total     {len(plan.passes)} passes, {shaders} programs, {len(plan.surfaces)} surfaces in "
-        f"{len(plan.slots)} textures, peak {size_text(plan.peak_bytes)}"
+        f"{len(plan.slots)} textures, peak {format_bytes(plan.peak_bytes)}"
     )
-    return "\n".join([*lines, *_tiles(plan)])
+    return "\n".join([*lines, *_describe_tiles(plan)])
 
 
-def _tiles(plan: Plan) -> Iterator[str]:
+def _describe_tiles(plan: Plan) -> Iterator[str]:
     """How a plan that does not fit is run: what is made whole first, and then the outputs."""
     if plan.tiling is None:
         return
@@ -53,19 +53,19 @@ def _tiles(plan: Plan) -> Iterator[str]:
             f"stage     {whole[0]}x{whole[1]} of {owner} in {len(stage.tiles)} tiles of {width}x{height}, "
             f"{len(stage.passes)} passes each"
         )
-    yield f"held      at most {size_text(plan.tiling.nbytes)} of textures and pictures at once"
+    yield f"held      at most {format_bytes(plan.tiling.nbytes)} of textures and pictures at once"
 
 
-def frames_text(plan: Plan) -> str:
+def describe_frames(plan: Plan) -> str:
     """Whether a frame can be made without the ones before it, and why not."""
     if not plan.memories:
         return "independent: each can be rendered alone, and several at a time"
     nodes = " and ".join(f"'{node}'" for node in plan.remembering)
-    size = size_text(sum(plan.surfaces[number].nbytes for number in plan.remembered))
+    size = format_bytes(sum(plan.surfaces[number].nbytes for number in plan.remembered))
     return f"each is made of the one before, of which {size} are kept for {nodes}"
 
 
-def as_json(plan: Plan) -> dict[str, object]:
+def plan_as_json(plan: Plan) -> dict[str, object]:
     """The same facts for machines."""
     return {
         "target": plan.target.renderer,
@@ -78,13 +78,13 @@ def as_json(plan: Plan) -> dict[str, object]:
         ],
         "passes": [
             {
-                "nodes": list(one.nodes),
-                "functions": list(one.functions),
-                "form": one.shader.form,
-                "reads": list(one.textures),
-                "writes": list(one.targets),
+                "nodes": list(pass_.nodes),
+                "functions": list(pass_.functions),
+                "form": pass_.shader.form,
+                "reads": list(pass_.textures),
+                "writes": list(pass_.targets),
             }
-            for one in plan.passes
+            for pass_ in plan.passes
         ],
         "surfaces": [
             {
@@ -122,13 +122,13 @@ def write_dot(plan: Plan) -> str:
     for upload in plan.uploads:
         makers[upload.surface] = f"upload{upload.surface}"
         lines.append(f'  upload{upload.surface} [shape=folder, label="{_escape(upload.picture.path)}"];')
-    for index, one in enumerate(plan.passes):
-        lines.append(f'  pass{index} [label="{index}: {_escape(_label(one))}"];')
-        for number in one.targets:
+    for index, pass_ in enumerate(plan.passes):
+        lines.append(f'  pass{index} [label="{index}: {_escape(_describe_pass(pass_))}"];')
+        for number in pass_.targets:
             makers[number] = f"pass{index}"
         lines += [
-            f'  {makers[number]} -> pass{index} [label="{_escape(_surface(number, plan.surfaces[number]))}"];'
-            for number in one.textures
+            f'  {makers[number]} -> pass{index} [label="{_escape(_describe_surface(number, plan.surfaces[number]))}"];'
+            for number in pass_.textures
         ]
     for name, number in plan.outputs.items():
         lines.append(f'  "out_{_escape(name)}" [shape=ellipse, label="{_escape(name)}"];')
@@ -136,14 +136,14 @@ def write_dot(plan: Plan) -> str:
     return "\n".join([*lines, "}"])
 
 
-def _label(pass_: Pass) -> str:
+def _describe_pass(pass_: Pass) -> str:
     """What a pass does: one function, or all that were fused, with the nodes they came from."""
     return f"{' + '.join(pass_.functions)}  [{', '.join(pass_.nodes)}]"
 
 
-def _surface(number: int, surface: Surface) -> str:
+def _describe_surface(number: int, surface: Surface) -> str:
     width, height = surface.size
-    return f"#{number} {width}x{height} {surface.texel} slot {surface.slot} ({size_text(surface.nbytes)})"
+    return f"#{number} {width}x{height} {surface.texel} slot {surface.slot} ({format_bytes(surface.nbytes)})"
 
 
 def _escape(text: str) -> str:

@@ -20,10 +20,10 @@ from ..resources.record import Record
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 
-_LOOPS = frozenset({"for", "while", "do"})
-_DEAR = _LOOPS | frozenset({"pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
+_LOOP_WORDS = frozenset({"for", "while", "do"})
+_EXPENSIVE_WORDS = _LOOP_WORDS | frozenset({"pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
 
-ASKED = frozenset({"proxy", "frame"})
+PASS_UNIFORMS = frozenset({"proxy", "frame"})
 """The uniforms that functions may ask for."""
 
 Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
@@ -42,11 +42,11 @@ class Library(Record, frozen=True):
     texts: Mapping[str, Text]
     _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(default_factory=dict[tuple[str, ...], tuple[Text, ...]])
     _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool])
-    _used: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
+    _words: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
     _uniforms: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
     _digests: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
     _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines])
-    _larger: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
+    _derived: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset(
         {"_closures", "_light", "_used", "_uniforms", "_digests", "_lines", "_larger"}
@@ -57,19 +57,19 @@ class Library(Record, frozen=True):
         added = {text.name: text for text in texts}
         if not added:
             return self
-        return self._with(added, frozenset(added))
+        return self._derive(added, frozenset(added))
 
     def with_replacement(self, text: Text, mark: str) -> Library:
         """This library with another file in place of the one of that name; `mark` says what it holds."""
-        return self._with({text.name: text}, frozenset({text.name, mark}))
+        return self._derive({text.name: text}, frozenset({text.name, mark}))
 
-    def file(self, shader: str) -> str:
+    def file_name(self, shader: str) -> str:
         """What messages call a file."""
         return self.texts[shader].file if shader in self.texts else f"shaders/{shader}.glsl"
 
     def function(self, shader: str, name: str, asker: str) -> GlslFunction:
         """A function of a file, or a ShaderError that names who asked."""
-        text = self._text(shader, asker)
+        text = self._find_text(shader, asker)
         if name not in text.functions:
             raise ShaderError(asker, text.file, 1, f"there is no function '{name}' in it")
         return text.functions[name]
@@ -110,7 +110,7 @@ class Library(Record, frozen=True):
             needed = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):
                 needed |= text.only(needed).words
-            self._uniforms[shader, function] = needed & ASKED
+            self._uniforms[shader, function] = needed & PASS_UNIFORMS
         return self._uniforms[shader, function]
 
     def digest(self, names: tuple[str, ...], asker: str) -> str:
@@ -122,41 +122,41 @@ class Library(Record, frozen=True):
 
     def is_cheap(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
-        return self._words(shader, function, asker).isdisjoint(_DEAR)
+        return self._find_words(shader, function, asker).isdisjoint(_EXPENSIVE_WORDS)
 
     def is_straight(self, shader: str, function: str, asker: str) -> bool:
         """True for a function without loops."""
-        return self._words(shader, function, asker).isdisjoint(_LOOPS)
+        return self._find_words(shader, function, asker).isdisjoint(_LOOP_WORDS)
 
-    def _words(self, shader: str, function: str, asker: str) -> frozenset[str]:
+    def _find_words(self, shader: str, function: str, asker: str) -> frozenset[str]:
         """All words of a function and of those that it calls."""
-        if (shader, function) not in self._used:
-            self._used[shader, function] = frozenset[str]().union(*dict(self._uses(shader, function, asker)).values())
-        return self._used[shader, function]
+        if (shader, function) not in self._words:
+            self._words[shader, function] = frozenset[str]().union(*dict(self._find_words_by_file(shader, function, asker)).values())
+        return self._words[shader, function]
 
-    def _uses(self, shader: str, function: str, asker: str) -> Iterator[tuple[str, frozenset[str]]]:
+    def _find_words_by_file(self, shader: str, function: str, asker: str) -> Iterator[tuple[str, frozenset[str]]]:
         """The files that a function may need, its own first, and the words of what it needs of each."""
         needed = frozenset({function})
         for text in reversed(self.closure((shader,), asker)):
-            called = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
-            needed |= called
-            yield text.name, called
+            words = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
+            needed |= words
+            yield text.name, words
 
     def _is_light(self, shader: str, function: str, asker: str) -> bool:
-        if self._text(shader, asker).outside or not self.is_straight(shader, function, asker):
+        if self._find_text(shader, asker).outside or not self.is_straight(shader, function, asker):
             return False
-        lent = (words for name, words in self._uses(shader, function, asker) if name != shader)
-        return not any(_ACCESSOR.fullmatch(word) for words in lent for word in words)
+        included_words = (words for name, words in self._find_words_by_file(shader, function, asker) if name != shader)
+        return not any(_ACCESSOR.fullmatch(word) for words in included_words for word in words)
 
-    def _with(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
+    def _derive(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
         """This library with other files over its own, known by what `key` says of them."""
-        if key not in self._larger:
-            if len(self._larger) >= MAX_DERIVED_LIBRARIES:
-                self._larger.pop(next(iter(self._larger)))
-            self._larger[key] = Library(OverlaidTexts(added, self.texts))
-        return self._larger[key]
+        if key not in self._derived:
+            if len(self._derived) >= MAX_DERIVED_LIBRARIES:
+                self._derived.pop(next(iter(self._derived)))
+            self._derived[key] = Library(OverlaidTexts(added, self.texts))
+        return self._derived[key]
 
-    def _text(self, name: str, asker: str) -> Text:
+    def _find_text(self, name: str, asker: str) -> Text:
         if name not in self.texts:
             raise ShaderError(asker, f"shaders/{name}.glsl", 1, "there is no such shader file")
         return self.texts[name]
@@ -165,7 +165,7 @@ class Library(Record, frozen=True):
         """Add a file to `done`, after all that it includes. `trail` are the files that led to it."""
         if name in texts:
             return
-        text = self._text(name, asker)
+        text = self._find_text(name, asker)
         for include, line in text.includes.items():
             circle = include in (*trail, name)
             if circle or include not in self.texts:
@@ -206,7 +206,7 @@ class ShaderFolder(Mapping[str, Text]):
 
     @cached_property
     def _files(self) -> dict[str, Path]:
-        return dict(_walk(self._folder, f"{self._namespace}/" if self._namespace else ""))
+        return dict(_find_files(self._folder, f"{self._namespace}/" if self._namespace else ""))
 
     def __getitem__(self, name: str) -> Text:
         if name not in self._read:
@@ -242,7 +242,7 @@ class InstalledTexts(Mapping[str, Text]):
         self._own = ShaderFolder(folder())
 
     @cached_property
-    def _added(self) -> Mapping[str, ShaderFolder]:
+    def _plugins(self) -> Mapping[str, ShaderFolder]:
         """The shader files of every plug-in by its namespace."""
         return {
             plugin.namespace: ShaderFolder(plugin.folder / "shaders", plugin.namespace)
@@ -251,24 +251,24 @@ class InstalledTexts(Mapping[str, Text]):
         }
 
     def __getitem__(self, name: str) -> Text:
-        return self._own[name] if name in self._own else self._added[name.partition("/")[0]][name]
+        return self._own[name] if name in self._own else self._plugins[name.partition("/")[0]][name]
 
     def __iter__(self) -> Iterator[str]:
-        return chain(self._own, *self._added.values())
+        return chain(self._own, *self._plugins.values())
 
     def __len__(self) -> int:
-        return len(self._own) + sum(map(len, self._added.values()))
+        return len(self._own) + sum(map(len, self._plugins.values()))
 
     def __contains__(self, name: object) -> bool:
         if name in self._own:
             return True
-        return isinstance(name, str) and name in self._added.get(name.partition("/")[0], ())
+        return isinstance(name, str) and name in self._plugins.get(name.partition("/")[0], ())
 
 
-def _walk(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
+def _find_files(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
     for item in folder.iterdir():
         if "." not in item.name:
-            yield from _walk(item, f"{prefix}{item.name}/")
+            yield from _find_files(item, f"{prefix}{item.name}/")
         elif item.name.endswith(".glsl"):
             yield prefix + item.name.removesuffix(".glsl"), item
 

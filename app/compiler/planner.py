@@ -78,20 +78,20 @@ class Planner:
     """
 
     def __init__(self) -> None:
-        self._known: list[PlanRecord] = []
+        self._records: list[PlanRecord] = []
 
     @_pause_collection()
     def plan(
         self,
         graph: Graph,
         request: Request,
-        outside: ResourceProvider,
+        provider: ResourceProvider,
         *,
         target: Target = NULL,
         precision: Precision | None = None,
         library: Library | None = None,
         fusion: bool = True,
-        there: Container[str] = (),
+        cached_keys: Container[str] = (),
     ) -> Plan:
         """Compile what `request` asks of `graph` for `target`: see `compile_graph`.
 
@@ -100,7 +100,7 @@ class Planner:
         Each stage first tries to follow the plan before, and is done from the start where that fails. Whether a plan
         needs tiles depends on sizes and formats alone, so what fitted before still fits if only numbers changed.
         """
-        library, precision = graph_library(graph, outside, library), precision or target.precision
+        library, precision = graph_library(graph, provider, library), precision or target.precision
         options = PlanOptions(
             dict(request.targets),
             request.size,
@@ -111,34 +111,34 @@ class Planner:
             precision,
             fusion,
         )
-        before, lowered = self._lower(options, graph, request, outside, library)
+        before, lowered = self._lower(options, graph, request, provider, library)
         scheduled = reschedule(before.scheduled, lowered.program, library) if before else None
         may_need_tiles = before.may_need_tiles if before and scheduled else True
         scheduled = scheduled or _schedule(options, lowered.program, library)
         region = before.region if before else None
         chosen = scheduled
         if request.region is not None:
-            region = chosen = _schedule_region(options, region, scheduled, request.region, there, library)
+            region = chosen = _schedule_region(options, region, scheduled, request.region, cached_keys, library)
         tiling = None
         if may_need_tiles or chosen is not scheduled:
             tiling = _plan_tiling(options, chosen, library)
         if chosen is scheduled:
             may_need_tiles = tiling is not None
         record = PlanRecord(options, lowered, scheduled, may_need_tiles, region)
-        self._known = [record, *self._known][:MAX_REMEMBERED_PLANS]
-        return _with_pixels(replace(chosen.plan, tiling=tiling), request.bindings)
+        self._records = [record, *self._records][:MAX_REMEMBERED_PLANS]
+        return _fill_pixels(replace(chosen.plan, tiling=tiling), request.bindings)
 
     def _lower(
-        self, options: PlanOptions, graph: Graph, request: Request, outside: ResourceProvider, library: Library
+        self, options: PlanOptions, graph: Graph, request: Request, provider: ResourceProvider, library: Library
     ) -> tuple[PlanRecord | None, LoweringRecord]:
         """The plan that this one follows, which is forgotten, and the lowered graph; no plan if it follows none."""
-        for record in self._known:
+        for record in self._records:
             if record.options == options and record.lowered.library is library:
-                lowered = lower_again(record.lowered, graph, request, outside)
+                lowered = lower_again(record.lowered, graph, request, provider)
                 if lowered is not None:
-                    self._known.remove(record)
+                    self._records.remove(record)
                     return record, lowered
-        return None, lower(graph, request, library, outside)
+        return None, lower(graph, request, library, provider)
 
 
 def _schedule(options: PlanOptions, program: LoweredProgram, library: Library) -> ScheduleRecord:
@@ -153,15 +153,15 @@ def _schedule_region(
     before: ScheduleRecord | None,
     whole: ScheduleRecord,
     region: Region,
-    there: Container[str],
+    cached_keys: Container[str],
     library: Library,
 ) -> ScheduleRecord:
     """The passes of a plan for a region. Which part of a picture is read may depend on numbers, so it is found anew."""
-    known_refs = {ref for ref, key in whole.keys.items() if key in there}
-    program = focus_program(whole.program, whole.passes, region, known_refs)
-    follows = before and before.passes is whole.passes and before.program.windows == program.windows
-    followed = reschedule(before, program, library) if before and follows else None
-    return followed or schedule(program, whole.passes, library, options.target, options.precision, options.halves)
+    cached_refs = {ref for ref, key in whole.keys.items() if key in cached_keys}
+    program = focus_program(whole.program, whole.passes, region, cached_refs)
+    has_same_windows = before and before.passes is whole.passes and before.program.windows == program.windows
+    rescheduled = reschedule(before, program, library) if before and has_same_windows else None
+    return rescheduled or schedule(program, whole.passes, library, options.target, options.precision, options.halves)
 
 
 def _plan_tiling(options: PlanOptions, scheduled: ScheduleRecord, library: Library) -> Tiling | None:
@@ -181,7 +181,7 @@ def _plan_tiling(options: PlanOptions, scheduled: ScheduleRecord, library: Libra
 def compile_graph(
     graph: Graph,
     request: Request,
-    outside: ResourceProvider,
+    provider: ResourceProvider,
     *,
     target: Target = NULL,
     precision: Precision | None = None,
@@ -193,36 +193,36 @@ def compile_graph(
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    return Planner().plan(graph, request, outside, target=target, precision=precision, library=library, fusion=fusion)
+    return Planner().plan(graph, request, provider, target=target, precision=precision, library=library, fusion=fusion)
 
 
-def examine(graph: Graph, request: Request, outside: ResourceProvider, target: Target = NULL) -> None:
+def examine(graph: Graph, request: Request, provider: ResourceProvider, target: Target = NULL) -> None:
     """Raise what `compile_graph` would raise, in half of the time: no program is written."""
-    library = graph_library(graph, outside)
-    program = lower(graph, request, library, outside).program
+    library = graph_library(graph, provider)
+    program = lower(graph, request, library, provider).program
     passes, precision = fuse(program, target), target.precision
     texels = choose_formats(program, passes, target, precision, request.halves)
     plan_tiling(program, passes, texels, library, target, precision, request.halves)
 
 
-def graph_library(graph: Graph, outside: ResourceProvider, library: Library | None = None) -> Library:
+def graph_library(graph: Graph, provider: ResourceProvider, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and its own."""
-    working = outside.working(color_settings(graph)) if graph.settings.color.working else None
+    working = provider.find_working_space(color_settings(graph)) if graph.settings.color.working else None
     return library_for(library or installed_library(), working).with_texts(find_custom_texts(graph))
 
 
-def _with_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
+def _fill_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
     """A plan that has the pixels that are bound to inputs."""
     pixels = {item.path: item.pixels for item in bindings.values() if item.in_memory}
 
-    def fill_pixels(picture: Picture) -> Picture:
+    def fill_picture(picture: Picture) -> Picture:
         there = not picture.in_memory or picture.pixels is not None
         return picture if there else replace(picture, pixels=pixels.get(picture.path))
 
-    uploads = tuple(replace(item, picture=fill_pixels(item.picture)) for item in plan.uploads)
+    uploads = tuple(replace(item, picture=fill_picture(item.picture)) for item in plan.uploads)
     if plan.tiling is None:
         return replace(plan, uploads=uploads)
     program = plan.tiling.program
-    ops = tuple(op.with_pictures(fill_pixels) for op in program.ops)
+    ops = tuple(op.with_pictures(fill_picture) for op in program.ops)
     tiling = replace(plan.tiling, program=replace(program, ops=ops))
     return replace(plan, uploads=uploads, tiling=tiling)

@@ -1,4 +1,4 @@
-"""The pass that draws meshes: seven channels of what the camera sees, in one go."""
+"""The GLSL of the pass that draws meshes: seven channels of what the camera sees, in one pass."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ CHANNELS: Mapping[str, tuple[int, bool, str]] = {
     "velocity": (4, True, "raster_velocity(v_now, v_before, v_after, vec2(grid) / proxy)"),
     "surface": (4, True, "vec4(v_uv, v_object_material)"),
 }
-"""What is drawn: channels, whether it is data, and the GLSL that computes it. Where nothing is, all is 0."""
+"""The pictures that a mesh is drawn into: channels, whether it is data, and its GLSL. The background is 0."""
 
 
 def write_vertex_text(library: str) -> str:
-    """The vertex shader: where every vertex is now, was and will be, in the world and in the picture."""
-    inputs = "\n".join(f"in {_glsl(count)} {name};" for name, count in ATTRIBUTES.items())
+    """The vertex shader: where every vertex is now, before and after, in the world and in the picture."""
+    inputs = "\n".join(f"in {_name_type(count)} {name};" for name, count in ATTRIBUTES.items())
     return f"""#version 410 core
 {library}
 uniform vec4[9] cameras;
 uniform vec4[9] motions;
 uniform float near;
 {inputs}
-{_varyings("out")}
+{_declare_varyings("out")}
 void main() {{
     bool moving = object_material_moving.z > 0.5;
     vec3 before = moving ? raster_moved(motions, 3, place) : place;
@@ -45,9 +45,9 @@ void main() {{
 
 
 def write_fragment_lines(library: str, channels_written: list[str]) -> Iterator[str]:
-    """The fragment shader, which writes the channels that are wanted, in order."""
+    """The fragment shader, which writes these channels in order."""
     yield from ("#version 410 core", library, "uniform vec3 eye;", "uniform ivec2 grid;", "uniform float proxy;")
-    yield _varyings("in")
+    yield _declare_varyings("in")
     for number, _ in enumerate(channels_written):
         yield f"layout(location = {number}) out vec4 o{number};"
     yield "void main() {"
@@ -58,8 +58,8 @@ def write_fragment_lines(library: str, channels_written: list[str]) -> Iterator[
     yield "}"
 
 
-def _varyings(way: str) -> str:
-    smooth = {
+def _declare_varyings(way: str) -> str:
+    channels_by_name = {
         "v_place": 3,
         "v_normal": 3,
         "v_now": 3,
@@ -70,9 +70,9 @@ def _varyings(way: str) -> str:
         "v_emission": 3,
         "v_metal_rough": 2,
     }
-    lines = [f"{way} {_glsl(count)} {name};" for name, count in smooth.items()]
+    lines = [f"{way} {_name_type(count)} {name};" for name, count in channels_by_name.items()]
     return "\n".join([*lines, f"flat {way} vec2 v_object_material;"])
 
 
-def _glsl(count: int) -> str:
+def _name_type(count: int) -> str:
     return ("float", "vec2", "vec3", "vec4")[count - 1]

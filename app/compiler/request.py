@@ -1,4 +1,4 @@
-"""What a compilation is asked for."""
+"""What the compiler is asked for: outputs, bindings, size, frame and region."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from .ir import Memory
 
 
 class Request(Struct, frozen=True):
-    """What is wanted of a graph.
+    """Which outputs of a graph to compile, at which size and frame, and with which pictures.
 
-    `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
+    `targets` are outputs of nodes or of the graph, each by the name of its result; empty means every graph output.
     `bindings` fill graph inputs by name. `size` replaces the canvas and every picture's size; `scale` below one is a
     proxy: everything, lengths in pixels too, shrinks by it. Raises UsageError for a size or scale of nothing.
     """
@@ -30,14 +30,14 @@ class Request(Struct, frozen=True):
     scale: float = 1.0
     frame: int = 1
     memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
-    """What temporal nodes remembered of the frame before, by node and name; none for a frame that follows no other."""
+    """What temporal nodes stored in the frame before, by node and name; empty for the first frame of a sequence."""
     halves: frozenset[str] = frozenset()
-    """Targets, or outputs, that will be rounded to half floats: they are that already where nothing else wants them."""
+    """Targets, or outputs, that will be rounded to half floats: if nothing else reads them, the device rounds them."""
 
     region: Region | None = None
     """The part of every output to make, in pixels as they are rendered; None for all: see `focus_program`."""
     by_rows: frozenset[str] = frozenset()
-    """Targets, or outputs, that are taken by rows, from the top down, where they are made by tiles."""
+    """Targets, or outputs, that are handed over by rows, from the top down, if they are rendered in tiles."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.scale < math.inf:

@@ -1,4 +1,4 @@
-"""What the compiler needs to know of the machine that will run a plan."""
+"""What the compiler needs to know of the device that runs a plan."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ __all__ = ["NULL", "Form", "Precision", "Target"]
 class Target(Record, frozen=True):
     """A GL implementation: its name, version (410, 430, ...), limits, and what suits it.
 
-    `form` is how passes are emitted, and `why` who chose that: see `devices`. `precision` is how color intermediates
-    are kept: the software rasterizer truncates half-float stores and gains nothing from them, so its own is float.
+    `form` is how passes are emitted, and `why` says what decided it: see `devices`. `precision` is that of color
+    between passes: the software rasterizer truncates half-float stores and gains nothing from them, so it takes float.
     """
 
     renderer: str
@@ -39,7 +39,7 @@ class Target(Record, frozen=True):
 
     @property
     def rounds_halves(self) -> bool:
-        """True if passes round to half floats as the processor does: to nearest even, and NaN stays."""
+        """True if passes round to half floats in GLSL, as the processor does: to nearest even, and NaN stays."""
         return self.software and self.version >= 430
 
     @property
@@ -49,4 +49,4 @@ class Target(Record, frozen=True):
 
 
 NULL = Target("none", 430, software=True, why="planned without a device")
-"""A target for plans that are only looked at."""
+"""A target for plans that nothing runs."""

@@ -32,7 +32,7 @@ class LazyResourceProvider:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
         return self.pictures.bind(graph, inputs) if inputs else {}
 
-    def frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
+    def find_frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
         """The first and last frame of a graph, without reading any file where it says so itself."""
         from ..compiler import find_named_files
         from ..graph import find_key_range
@@ -41,7 +41,7 @@ class LazyResourceProvider:
             return graph.settings.frames
         if not inputs and not find_named_files(graph, {}):
             return find_key_range(graph)
-        return self.pictures.frames(graph, self.bind(graph, inputs))
+        return self.pictures.find_frames(graph, self.bind(graph, inputs))
 
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for a file that is missing in a sequence."""
@@ -50,26 +50,26 @@ class LazyResourceProvider:
         if find_named_files(graph, {}):
             self.pictures.check_frames(graph, frames)
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
-        return self.pictures.at(path, frame, missing)
+        return self.pictures.find_frame_file(path, frame, missing)
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture."""
-        return self.pictures.probe(picture)
+        return self.pictures.probe_picture(picture)
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
-        return self.pictures.recolor(change)
+        return self.pictures.write_color_program(change)
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space."""
-        return self.pictures.working(color)
+        return self.pictures.find_working_space(color)
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds."""
-        return self.pictures.render(path, named)
+        return self.pictures.describe_render(path, named)
 
-    def mesh(self, scene: Scene) -> Mesh:
+    def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""
-        return self.pictures.mesh(scene)
+        return self.pictures.load_mesh(scene)

@@ -16,11 +16,11 @@ from ..media.layers import split_layer
 from ..media.pixels import read_layers
 from .layer_choice import choose_layer
 
-MOST = 4
+MAX_WAITING = 4
 """Pictures that may wait in memory to be taken: a render has a few large ones, and more would not be decoded before
 the graph is compiled."""
 
-Request = tuple[str, LayerRequest]
+PixelRequest = tuple[str, LayerRequest]
 """A path, and the layer that is read from it."""
 
 
@@ -33,13 +33,13 @@ class Prefetcher:
 
     def __init__(self, graph: Graph, inputs: Mapping[str, str]) -> None:
         threads = ThreadPoolExecutor(1, thread_name_prefix="ahead")
-        self._pending: dict[Request, Future[Pixels]] = {
+        self._pending: dict[PixelRequest, Future[Pixels]] = {
             request: threads.submit(_read, *request)
-            for request in islice(dict.fromkeys(_predict_requests(graph, inputs)), MOST)
+            for request in islice(dict.fromkeys(_predict_requests(graph, inputs)), MAX_WAITING)
         }
         threads.shutdown(wait=False)
 
-    def take(self, request: Request) -> Pixels | None:
+    def take(self, request: PixelRequest) -> Pixels | None:
         """The pixels of a request, once; None if it is not being read. Raises what reading it raised."""
         pending = self._pending.pop(request, None)
         return pending.result() if pending else None
@@ -49,7 +49,7 @@ def _read(path: str, request: LayerRequest) -> Pixels:
     return read_layers(path, [request])[0]
 
 
-def _predict_requests(graph: Graph, inputs: Mapping[str, str]) -> Iterator[Request]:
+def _predict_requests(graph: Graph, inputs: Mapping[str, str]) -> Iterator[PixelRequest]:
     """The requests that rendering will make, as far as that is certain before the graph is compiled.
 
     Sequences and videos are left out, as their frame is not known yet, and so are inputs whose file follows another

@@ -38,11 +38,11 @@ if TYPE_CHECKING:
 class MediaProvider:
     """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` reads some files already."""
 
-    def __init__(self, ahead: Prefetcher | None = None) -> None:
-        self.ahead = ahead
-        self.repaired: dict[str, int] = {}
+    def __init__(self, prefetcher: Prefetcher | None = None) -> None:
+        self.prefetcher = prefetcher
+        self.repaired_pixels: dict[str, int] = {}
         """How many pixels were repaired, by path."""
-        self.look: Callable[[str, Mapping[str, str]], Render] | None = None
+        self.describer: Callable[[str, Mapping[str, str]], Render] | None = None
         """Reads what a render holds in place of `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
         self._fingerprints: dict[str, str] = {}
@@ -54,7 +54,7 @@ class MediaProvider:
         bound = {name: self._bind_input(_find_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._bind_siblings(graph, bound)
 
-    def frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
+    def find_frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys.
 
         Raises InputError, UsageError for a sequence that cannot be looked at.
@@ -68,7 +68,7 @@ class MediaProvider:
                 return sequence.frames[0], sequence.frames[-1]
         return find_key_range(graph)
 
-    def rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
+    def find_rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
         """Frames per second: as the graph says, else those of the first video it reads, else the usual ones."""
         from ..media.sequences import find_sequence
 
@@ -84,15 +84,15 @@ class MediaProvider:
         for path, owner, missing in find_named_files(graph, {}):
             used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
             for frame in frames if used and missing == "error" else ():
-                self.at(path, frame, missing)
+                self.find_frame_file(path, frame, missing)
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame. Raises InputError for a frame that has none."""
         from ..media.sequences import find_frame_file
 
         return find_frame_file(path, frame, missing)
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
         if picture.in_memory:
             array = cast("Array", picture.pixels)
@@ -102,14 +102,14 @@ class MediaProvider:
 
         if picture.within:
             _check_within(picture.path, picture.within)
-        header = self.info(picture.path)
+        header = self.find_info(picture.path)
         layer = find_layer(header, picture.layer)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
         mark = _conversion_mark(picture) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
-    def load(self, picture: Picture) -> Array:
+    def load_pixels(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
         if picture.in_memory:
             import numpy as np
@@ -125,42 +125,42 @@ class MediaProvider:
             from ..media.pictures.row_reader import read_rows
 
             pixels = read_rows(path, request, *picture.rows)
-            repaired = self.repaired.get(path, 0) + pixels.repaired  # rows of one picture come one after the other
+            repaired = self.repaired_pixels.get(path, 0) + pixels.repaired  # rows of one picture come one after the other
         else:
             from ..media.pixels import read_layers
 
-            pixels = self.ahead and self.ahead.take((path, request))
+            pixels = self.prefetcher and self.prefetcher.take((path, request))
             pixels = pixels or read_layers(path, [request], picture.frame)[0]
             repaired = pixels.repaired
         if pixels.repaired:
-            self.repaired[path] = repaired
+            self.repaired_pixels[path] = repaired
         return pixels.array
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color. Raises InputError for a file that cannot be read."""
         from ..color.gpu_programs import write_color_change
 
         return write_color_change(change)
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space. Raises GraphError for one that nobody knows."""
         from ..color.primaries import find_working_space
 
         return find_working_space(color)
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds. Raises InputError for one that cannot be read."""
         from ..render_layers.render import read_render
 
-        return (self.look or read_render)(path, named)
+        return (self.describer or read_render)(path, named)
 
-    def mesh(self, scene: Scene) -> Mesh:
+    def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""
         from ..media.meshes.load import load_mesh
 
         return load_mesh(scene)
 
-    def info(self, path: str) -> ImageInfo:
+    def find_info(self, path: str) -> ImageInfo:
         """A file's header, read once."""
         if path not in self._infos:
             from ..media.info import read_info
@@ -213,7 +213,7 @@ class MediaProvider:
         from .layer_choice import choose_layer
 
         if socket.layer and socket.kind is Kind.IMAGE:
-            return choose_layer(self.info(self.at(path, 1, "nearest").path), socket)
+            return choose_layer(self.find_info(self.find_frame_file(path, 1, "nearest").path), socket)
         return socket.layer
 
 

@@ -85,7 +85,7 @@ class NotingProvider:
         if not any(self._is_sequence(path) for path, _, _ in find_named_files(graph, {})):
             return (graph.settings.frames or find_key_range(graph))[0]
         try:
-            first, last = self.pictures.frames(graph, {})
+            first, last = self.pictures.find_frames(graph, {})
             self.pictures.check_frames(graph, range(first, last + 1))
         except InputError as fault:
             self.faults[str(fault)] = ""
@@ -105,35 +105,35 @@ class NotingProvider:
         except HalationError:
             return True
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
-        file = self._answer_or_note(path, ("at", path, frame, missing), lambda: self.pictures.at(path, frame, missing))
+        file = self._answer_or_note(path, ("at", path, frame, missing), lambda: self.pictures.find_frame_file(path, frame, missing))
         shown_file = file or FrameFile(path)
         self._asked[shown_file.path] = path
         return shown_file
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture, or something instead."""
         how = (picture.kind, picture.width, picture.space, picture.color)
         key, path = (picture.path, picture.layer, *how), picture.path
-        probe = None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe(picture))
+        probe = None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe_picture(picture))
         return probe or PictureProbe(self.size, False, path)
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
-        return self._answer("recolor", change, lambda: self.pictures.recolor(change))
+        return self._answer("recolor", change, lambda: self.pictures.write_color_program(change))
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space."""
-        return self._answer("working", color, lambda: self.pictures.working(color))
+        return self._answer("working", color, lambda: self.pictures.find_working_space(color))
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds."""
-        return self._answer(path, tuple(sorted(named.items())), lambda: self.pictures.render(path, named))
+        return self._answer(path, tuple(sorted(named.items())), lambda: self.pictures.describe_render(path, named))
 
-    def mesh(self, scene: Scene) -> Mesh:
+    def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""
-        return self._answer("mesh", scene, lambda: self.pictures.mesh(scene))
+        return self._answer("mesh", scene, lambda: self.pictures.load_mesh(scene))
 
     def _answer_or_note(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
         """An answer, or None after noting why there is none."""

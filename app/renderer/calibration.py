@@ -68,7 +68,7 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
     request, pictures = Request({"out": Port("blur", "out")}), MediaProvider()
     fastest, spent = dict.fromkeys(get_args(Form), math.inf), 0.0
     runners = {
-        form: Runner(device.with_target(replace(device.target, form=form)), pictures.load, 0) for form in fastest
+        form: Runner(device.with_target(replace(device.target, form=form)), pictures.load_pixels, 0) for form in fastest
     }
     try:
         for turn in range(turns + 1):

@@ -75,8 +75,8 @@ class Renderer:
     ) -> None:
         self._owns_device = device is None
         self.device = device or open_device()
-        self.pictures = MediaProvider(ahead=ahead)
-        self.runner = Runner(self.device, self.pictures.load, budget)
+        self.pictures = MediaProvider(prefetcher=ahead)
+        self.runner = Runner(self.device, self.pictures.load_pixels, budget)
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""
         self._fusion = fusion
@@ -104,13 +104,13 @@ class Renderer:
             precision=request.precision,
             library=self.library,
             fusion=fusion and self._fusion,
-            there=self.runner.textures,
+            cached_keys=self.runner.textures,
         )
 
     def frames(self, graph: Graph, request: RenderRequest = _ALL) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
         named = {name: item for name, item in request.inputs.items() if not callable(item)}
-        return self.pictures.frames(graph, self.pictures.bind(graph, named))
+        return self.pictures.find_frames(graph, self.pictures.bind(graph, named))
 
     def render(self, graph: Graph, request: RenderRequest = _ALL) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.

@@ -38,29 +38,29 @@ class FrameFile(Struct, frozen=True):
 class ResourceProvider(Protocol):
     """Files, color libraries and meshes. Every method raises InputError for a file that cannot be read."""
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """Find the file of a frame, where a path stands for a sequence."""
         ...
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         """Look at a picture's header."""
         ...
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
         """Write the program of a change of color. Raises UsageError for a space that nobody knows."""
         ...
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
         """Look up the working space; None is linear Rec.709. Raises GraphError for one that nobody knows."""
         ...
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """Find out which layer of a file is what, how its numbers are meant, and where the camera was.
 
         `named` are layers that are to have a role, by that.
         """
         ...
 
-    def mesh(self, scene: Scene) -> Mesh:
+    def load_mesh(self, scene: Scene) -> Mesh:
         """Get the triangles of a scene."""
         ...

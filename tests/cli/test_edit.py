@@ -13,7 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from halation import document, presets
+from halation import document
+from halation import presets
 
 HALATION = [sys.executable, "-m", "halation.cli", "edit"]
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")

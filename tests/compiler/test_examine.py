@@ -21,7 +21,7 @@ class Outside(MediaProvider):
         super().__init__()
         self.lost = lost
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         if self.lost:
             raise InputError(f"{picture.path}: there is no such file")
         return PictureProbe(SIZE, False, picture.path)

@@ -199,7 +199,7 @@ class World(Headers):
         super().__init__(SIZE)
         self.version = 1
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         return PictureProbe(self.size, False, f"{picture.path} {self.version}")
 
 
@@ -241,7 +241,7 @@ def test_only_a_few_plans_are_known():
     planner, graphs = Planner(), [chain(*[Exposure(stops=1.0)] * count) for count in range(1, 8)]
     for graph in graphs:
         planner.plan(graph, asked(graph), Headers(SIZE))
-    assert len(planner._known) == MAX_REMEMBERED_PLANS
+    assert len(planner._records) == MAX_REMEMBERED_PLANS
 
 
 def test_what_a_plan_followed_is_forgotten():
@@ -249,8 +249,8 @@ def test_what_a_plan_followed_is_forgotten():
     seen = []
     for stops in range(6):
         planner.plan(graph.put(Port("a", "stops"), stops + 1.0), asked(graph), Headers(SIZE))
-        (known,) = planner._known
-        seen += [weakref.ref(part) for part in (known.lowered, known.lowered.moments, known.lowered.builder)]
+        (known,) = planner._records
+        seen += [weakref.ref(part) for part in (known.lowered, known.lowered.frames, known.lowered.builder)]
     del known
     gc.collect()
     assert [one() is not None for one in seen] == [False] * 15 + [True] * 3

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.compiler.lowering.named import find_path_texts
+from halation.compiler.lowering.references import find_path_texts
 from halation.graph.paths import inlined, rebased, repointed
 
 INNER = {

@@ -10,7 +10,8 @@ import random
 import shutil
 
 import pytest
-from halation import document, presets
+from halation import document
+from halation import presets
 from halation.editor.toolkit.keys import chord
 from imgui_bundle import ImVec2
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.graph import Graph, Input, Output, Port
-from halation.inputs.prefetch import MOST, Prefetcher
+from halation.inputs.prefetch import MAX_WAITING, Prefetcher
 from halation.inputs.provider import MediaProvider
 from halation.media import LayerRequest, read_layer, write_picture
 from halation.nodes import Kind
@@ -32,11 +32,11 @@ def picture(tmp_path: Path) -> str:
 
 def test_it_is_what_would_be_read(picture: str) -> None:
     ahead = Prefetcher(graph(a=Input(), z=Input(Kind.FIELD)), {"a": picture, "z": f"{picture}:depth"})
-    pictures = MediaProvider(ahead=ahead)
+    pictures = MediaProvider(prefetcher=ahead)
     for what in (Picture(picture, "", Kind.IMAGE, 4), Picture(picture, "depth", Kind.FIELD, 1)):
         alone = read_layer(what.path, what.layer, what.kind, what.width).array
         for _ in range(2):  # read ahead, and read again
-            np.testing.assert_array_equal(pictures.load(what), alone, strict=True)
+            np.testing.assert_array_equal(pictures.load_pixels(what), alone, strict=True)
 
 
 def test_it_is_there_once(picture: str) -> None:
@@ -76,12 +76,12 @@ def test_what_nobody_is_sure_to_want_is_not_read(picture: str, tmp_path: Path) -
 
 
 def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
-    names = [f"a{number}" for number in range(MOST + 2)]
+    names = [f"a{number}" for number in range(MAX_WAITING + 2)]
     files = {name: str(tmp_path / f"{name}.exr") for name in names}
     for file in files.values():
         Path(file).write_bytes(Path(picture).read_bytes())
     ahead = Prefetcher(graph(**{name: Input() for name in names}), files)
-    assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MOST + [True] * 2
+    assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MAX_WAITING + [True] * 2
 
 
 def test_a_damaged_file_is_found_out_by_who_wants_it(tmp_path: Path) -> None:

@@ -31,14 +31,14 @@ def test_a_layer_follows_its_file(tmp_path):
     pictures = MediaProvider()
     bound = pictures.bind(GRAPH, {"beauty": path})
     assert set(bound) == {"beauty", "depth"}
-    np.testing.assert_array_equal(pictures.load(bound["depth"]), np.full((4, 6, 1), 7.0, np.float32))
+    np.testing.assert_array_equal(pictures.load_pixels(bound["depth"]), np.full((4, 6, 1), 7.0, np.float32))
 
 
 def test_a_missing_layer_is_an_error_instead_of_the_sample(tmp_path):
     pictures = MediaProvider()
     bound = pictures.bind(GRAPH, {"beauty": written(tmp_path, Combined=np.ones((4, 6, 4), np.float32))})
     with pytest.raises(InputError, match="Depth"):
-        pictures.probe(bound["depth"])
+        pictures.probe_picture(bound["depth"])
 
 
 def test_an_array_has_no_layers_to_follow():

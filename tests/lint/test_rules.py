@@ -76,7 +76,7 @@ def test_a_picture_that_others_read_as_well_is_needed_as_it_is() -> None:
 class Nowhere:
     """Every picture is half as large as HD."""
 
-    def probe(self, picture: Picture) -> PictureProbe:
+    def probe_picture(self, picture: Picture) -> PictureProbe:
         return PictureProbe((960, 540), False, picture.path)
 
 

@@ -69,7 +69,7 @@ class RenderOverviews:
         overview = self._overviews.get(_key(str(path), version, named))
         return overview and overview[0]
 
-    def render(self, path: str, named: ChosenLayers) -> Render:
+    def describe_render(self, path: str, named: ChosenLayers) -> Render:
         """The same for the compiler. Raises Pending, and InputError for a file that cannot be read."""
         key = _key(path, fingerprint(path), named)
         entry = self._overviews.get(key)

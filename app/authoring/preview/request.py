@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from halation.nodes import Kind, Size
 
-from ...compiler import Region, Upstream
+from ...compiler import Region, UpstreamHashes
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
 from ...renderer import RenderRequest
@@ -30,7 +30,7 @@ class PreviewRequest:
     frame: int
     size: Size | None
     outside_version: int = 0
-    upstream: Upstream | None = None
+    upstream: UpstreamHashes | None = None
     """What each node depends on, in this graph or in an earlier one."""
     frame_cache: FrameCache = field(default_factory=FrameCache)
     """What is known of all frames of it."""
@@ -63,7 +63,7 @@ class PreviewRequest:
     def node_mark(self, path: str) -> object:
         """Something that changes when anything upstream of a node does."""
         if self.upstream is None or self.upstream.graph is not self.graph:
-            self.upstream = Upstream(self.graph, before=self.upstream)
+            self.upstream = UpstreamHashes(self.graph, before=self.upstream)
         return self.upstream.hashes.get(path), self.outside_version
 
 

@@ -65,15 +65,15 @@ def write_main(
         "pixel = first; extent = grid;",
     ]
     at, start = (f"{name} - {names.start}" if names.start else name for name in ("pixel", "first"))
-    there = f"if (all(lessThan({start}, {names.room}))) {{"
+    condition = f"if (all(lessThan({start}, {names.room}))) {{"
     if count == 1:
         stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
-        return [*lines, *body, there, *stores, "}", "}"]
+        return [*lines, *body, condition, *stores, "}", "}"]
     results = [f"texel{number}" for number in range(len(texels))]
     step = "pixel += along;" if convolve else "++pixel.y;"
-    of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
+    arguments = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
     pixel_function = [
-        f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{",
+        f"void made({', '.join([*arguments, *(f'out vec4 {name}' for name in results)])}) {{",
         *body,
         *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)),
         "}",
@@ -81,10 +81,10 @@ def write_main(
     if convolve:
         lines += bodies.write_strip(names, convolve, count)
     for k in range(count):
-        own = [f"{name}_{k}" for name in results]
+        texel_names = [f"{name}_{k}" for name in results]
         convolved_argument = [f"s{k}"] if convolve else []
-        lines.append(f"vec4 {', '.join(own)}; made({', '.join([*convolved_argument, *own])}); {step}")
-    lines += ["pixel = first;", there]
+        lines.append(f"vec4 {', '.join(texel_names)}; made({', '.join([*convolved_argument, *texel_names])}); {step}")
+    lines += ["pixel = first;", condition]
     # All reads before all writes: only then are they known to read the same.
     for k in range(count):
         stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))

@@ -11,7 +11,7 @@ each, with macros that give its functions and accessors a prefix.
 from __future__ import annotations
 
 from ...glsl import Text, words
-from ..library import ASKED, Lines
+from ..library import PASS_UNIFORMS, Lines
 from ..plan import LINES_PER_FILE
 from .pass_parts import InlinedGather, PassContext, PassParts
 
@@ -39,16 +39,16 @@ def select_texts(context: PassContext, parts: PassParts) -> tuple[Text, ...]:
     """The shader files of a pass, includes first, with only the functions that it needs."""
     selected: list[Text] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
-    lent = frozenset[str]().union(*(gather.text.words for gather in parts.inlined))
+    inlined_words = frozenset[str]().union(*(gather.text.words for gather in parts.inlined))
     inlined_files = {gather.text.name for gather in parts.inlined}
     included = (name for gather in parts.inlined for name in gather.text.includes)
     files = context.library.closure(tuple(dict.fromkeys((*parts.shaders, *included))), context.root.owner)
     programs = dict.fromkeys(program for op in context.members for program in op.color_programs)
     for text in reversed((*files, *(program.text for program in programs))):
         # What an inlined gather needs of its own file comes with it.
-        used = text.only(needed if text.name in inlined_files else needed | lent)
-        needed |= used.words
-        selected.append(used)
+        cut_text = text.only(needed if text.name in inlined_files else needed | inlined_words)
+        needed |= cut_text.words
+        selected.append(cut_text)
     return tuple(reversed(selected))
 
 
@@ -79,7 +79,7 @@ def _find_lines(context: PassContext, parts: PassParts) -> Lines:
         [line for text in side for line in _include(text, files, context)] for side in split_by_accessors(texts, parts)
     )
     late += [line for gather in parts.inlined for line in _include_inlined(gather, files, context)]
-    uniforms = frozenset[str]().union(*(text.words for text in texts)) & ASKED
+    uniforms = frozenset[str]().union(*(text.words for text in texts)) & PASS_UNIFORMS
     return (*early,), (*late,), (*files,), uniforms
 
 

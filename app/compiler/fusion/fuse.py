@@ -44,7 +44,7 @@ def fuse(
     live = _find_live(program)
     readers = _find_readers(ops, live)
     kept_refs = set(program.kept_refs)
-    home: dict[int, int] = {}
+    roots_by_op: dict[int, int] = {}
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
     uniforms: dict[int, int] = {}
@@ -53,7 +53,7 @@ def fuse(
         if index not in live or op.is_source:
             continue
         outputs = [Ref(index, number) for number in range(op.outputs)]
-        roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
+        roots = {roots_by_op[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
         joins = op.is_pointwise or (gathers and op.is_inlinable)
         joins = (
@@ -64,15 +64,15 @@ def fuse(
         )
         if enabled and joins:
             joined = _join_reads(reads[root], outputs, op)
-            together = uniforms[root] + op.uniform_floats
+            floats = uniforms[root] + op.uniform_floats
             inputs = len(joined) + count_tables(ops, [*members[root], index])
-            if together <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
-                home[index] = root
-                uniforms[root] = together
+            if floats <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
+                roots_by_op[index] = root
+                uniforms[root] = floats
                 members[root].append(index)
                 reads[root] = joined
                 continue
-        home[index], members[index], uniforms[index] = index, [index], op.uniform_floats
+        roots_by_op[index], members[index], uniforms[index] = index, [index], op.uniform_floats
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
         PassGroup(

@@ -25,8 +25,8 @@ def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
 
 def order_members(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
     """The operations of several passes as those of one. What looks around reads textures only, so it comes first."""
-    both = {index for some in members for index in some}
-    return tuple(sorted(both, key=lambda index: (ops[index].is_pointwise, index)))
+    indices = {index for group in members for index in group}
+    return tuple(sorted(indices, key=lambda index: (ops[index].is_pointwise, index)))
 
 
 def looks_around(ops: tuple[Op, ...], group: PassGroup, ref: Ref) -> bool:

@@ -72,22 +72,22 @@ class _PassMerger:
 
     def __init__(self, program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target) -> None:
         self.program, self.ops, self.target = program, program.ops, target
-        self.kept = frozenset(program.kept_refs)
+        self.kept_refs = frozenset(program.kept_refs)
         self.groups: dict[int, _MergeCandidate] = {}
-        self.maker: dict[Ref, int] = {}
+        self.makers: dict[Ref, int] = {}
         self.readers: dict[Ref, dict[int, None]] = {}
-        self.met: dict[Ref, dict[int, None]] = {}
+        self.visited_readers: dict[Ref, dict[int, None]] = {}
         """Of the readers, those that were looked at."""
         for place, group in enumerate(passes):
             size, reads, writes = self.ops[group.root].size, dict.fromkeys(group.reads), dict.fromkeys(group.writes)
-            self._enter(place, _MergeCandidate(place, group.members, reads, writes, size, self._is_open(group)))
+            self._add_group(place, _MergeCandidate(place, group.members, reads, writes, size, self._is_open(group)))
 
     def run(self) -> list[_MergeCandidate]:
         for number in list(self.groups):
             while number >= 0:
                 for ref in self.groups[number].reads:
-                    self.met.setdefault(ref, {})[number] = None
-                number = self._widen(number)
+                    self.visited_readers.setdefault(ref, {})[number] = None
+                number = self._merge_with_partner(number)
         return sorted(self.groups.values(), key=lambda group: group.place)
 
     def _is_open(self, group: PassGroup) -> bool:
@@ -97,68 +97,68 @@ class _PassMerger:
             return False
         return all(self.program.shape(ref).size == root.size for ref in group.writes)
 
-    def _enter(self, number: int, group: _MergeCandidate) -> None:
+    def _add_group(self, number: int, group: _MergeCandidate) -> None:
         self.groups[number] = group
-        self.maker |= dict.fromkeys(group.writes, number)
+        self.makers |= dict.fromkeys(group.writes, number)
         for ref in group.reads:
             self.readers.setdefault(ref, {})[number] = None
 
-    def _leave(self, number: int) -> None:
+    def _remove_group(self, number: int) -> None:
         group = self.groups.pop(number)
         for ref in group.reads:
             del self.readers[ref][number]
-            self.met[ref].pop(number, None)
+            self.visited_readers[ref].pop(number, None)
 
-    def _widen(self, number: int) -> int:
+    def _merge_with_partner(self, number: int) -> int:
         """Merge a group with another one; the number of what they became, or -1 if there is none."""
-        for partner in dict.fromkeys(self._partners(number)):
-            first, last = sorted((number, partner), key=lambda one: self.groups[one].place)
-            both = self._both(first, last)
-            if both and fits(self.program, both.fused, self.target):
-                self._leave(first)
-                self._leave(last)
-                self._enter(last, both)
+        for partner in dict.fromkeys(self._find_partners(number)):
+            first, last = sorted((number, partner), key=lambda group: self.groups[group].place)
+            merged = self._merge_pair(first, last)
+            if merged and fits(self.program, merged.fused, self.target):
+                self._remove_group(first)
+                self._remove_group(last)
+                self._add_group(last, merged)
                 return last
         return -1
 
-    def _partners(self, number: int) -> Iterator[int]:
+    def _find_partners(self, number: int) -> Iterator[int]:
         """Groups that share pictures with one and were looked at: those that make them, then those that read them."""
         group = self.groups[number]
         if not group.open:
             return
         for ref in reversed(group.reads):
-            if ref in self.maker and self._can_pair(group, self.maker[ref]):
-                yield self.maker[ref]
+            if ref in self.makers and self._can_pair(group, self.makers[ref]):
+                yield self.makers[ref]
         for ref in group.reads:
             if self.program.shape(ref).size == group.size:
-                latest = islice(reversed(self.met[ref]), MAX_READERS_TRIED)
-                yield from (other for other in latest if other != number and self._can_pair(group, other))
+                latest = islice(reversed(self.visited_readers[ref]), MAX_READERS_TRIED)
+                yield from (reader for reader in latest if reader != number and self._can_pair(group, reader))
 
     def _can_pair(self, group: _MergeCandidate, partner: int) -> bool:
         return self.groups[partner].open and self.groups[partner].size == group.size
 
-    def _both(self, first: int, last: int) -> _MergeCandidate | None:
+    def _merge_pair(self, first: int, last: int) -> _MergeCandidate | None:
         """Two groups as one, if there is a place where it can run."""
         early, late = self.groups[first], self.groups[last]
-        place = self._place(first, last)
+        place = self._find_place(first, last)
         if place < 0 or any(looks_around(self.ops, late.fused, ref) for ref in early.writes if ref in late.reads):
             return None
         members = order_members(self.ops, early.members, late.members)
         if not self.ops[members[-1]].is_pointwise:
             return None
         reads = dict.fromkeys(ref for ref in (*early.reads, *late.reads) if ref not in early.writes)
-        writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_wanted(ref, first, last))
+        writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_read_by_others(ref, first, last))
         return _MergeCandidate(place, members, reads, writes, early.size, True)
 
-    def _is_wanted(self, ref: Ref, *but: int) -> bool:
+    def _is_read_by_others(self, ref: Ref, *groups: int) -> bool:
         """True if others than these groups want a picture."""
-        return ref in self.kept or any(one not in but for one in self.readers.get(ref, ()))
+        return ref in self.kept_refs or any(reader not in groups for reader in self.readers.get(ref, ()))
 
-    def _place(self, first: int, last: int) -> int:
+    def _find_place(self, first: int, last: int) -> int:
         """Where two groups can run as one; -1 if nowhere."""
         early, late = self.groups[first], self.groups[last]
-        makers = (self.maker[ref] for ref in late.reads if ref in self.maker)
-        if all(one == first or self.groups[one].place < early.place for one in makers):
+        makers = (self.makers[ref] for ref in late.reads if ref in self.makers)
+        if all(number == first or self.groups[number].place < early.place for number in makers):
             return early.place
         readers = (one for ref in early.writes for one in self.readers.get(ref, ()) if one != last)
         return late.place if all(self.groups[one].place > late.place for one in readers) else -1

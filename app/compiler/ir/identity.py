@@ -62,12 +62,12 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
     excluded = [place for place, name in enumerate(kind.__struct_fields__) if name not in identity]
     defaults = {field.name: field.default for field in structs.fields(kind)}
     floats: list[tuple[int, object]] = []
-    others: list[tuple[int, Callable[[Any], object]]] = []
+    rest: list[tuple[int, Callable[[Any], object]]] = []
     for place, name in enumerate(kind.__struct_fields__):
         if hints[name] is float:
             floats.append((place, defaults[name]))
         elif name in identity and not _is_plain(hints[name]):
-            others.append((place, _describe_floats if _is_float_tuple(hints[name]) else describe))
+            rest.append((place, _describe_floats if _is_float_tuple(hints[name]) else describe))
 
     def describe_fields(item: Struct) -> object:
         fields: list[Any] = [kind.__name__, *structs.astuple(item)]
@@ -76,7 +76,7 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
         for place, default in floats:
             number = fields[place + 1]
             fields[place + 1] = None if number == default else number + 0.0
-        for place, describe_value in others:
+        for place, describe_value in rest:
             fields[place + 1] = describe_value(fields[place + 1])
         return fields
 

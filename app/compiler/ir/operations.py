@@ -132,7 +132,7 @@ class FunctionOp(Op, frozen=True):
         return replace(self, parameters=_blank_parameters(self.parameters))
 
     def find_user_files(self, library: Library) -> tuple[str, ...]:
-        return (library.file(self.shader),) if self.shader.startswith("written/") else ()
+        return (library.file_name(self.shader),) if self.shader.startswith("written/") else ()
 
 
 class Call(FunctionOp, frozen=True):

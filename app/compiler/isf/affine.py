@@ -80,8 +80,8 @@ def _walk(item: Any, parts: Anatomy) -> object:
     if isinstance(item, Neighborhood):
         return Neighborhood  # it matters for parts of a picture alone, which a shader of this format never makes
     if isinstance(item, Struct):
-        aside = item.compare_exclude if isinstance(item, Record) else ()
-        names = (name for name in item.__struct_fields__ if name not in aside)
+        excluded = item.compare_exclude if isinstance(item, Record) else ()
+        names = (name for name in item.__struct_fields__ if name not in excluded)
         return type(item), tuple(_walk(getattr(item, name), parts) for name in names)
     if isinstance(item, tuple):
         return tuple(_walk(part, parts) for part in cast("tuple[Any, ...]", item))
@@ -99,47 +99,47 @@ class LinearModel:
 
     def predict(self, point: Point) -> list[float]:
         """The numbers at other values of the knobs."""
-        away = {name: point.get(name, knob.base) - knob.base for name, knob in self.knobs.items()}
+        distances = {name: point.get(name, knob.base) - knob.base for name, knob in self.knobs.items()}
         numbers = list(self.base.numbers)
         for name, slopes in self.slopes.items():
-            numbers = [number + slope * away[name] for number, slope in zip(numbers, slopes, strict=True)]
+            numbers = [number + slope * distances[name] for number, slope in zip(numbers, slopes, strict=True)]
         for (first, second), slopes in self.products.items():
-            both = away[first] * away[second]
-            numbers = [number + slope * both for number, slope in zip(numbers, slopes, strict=True)]
+            product = distances[first] * distances[second]
+            numbers = [number + slope * product for number, slope in zip(numbers, slopes, strict=True)]
         return numbers
 
-    def text(self, place: int) -> str:
+    def write_formula(self, place: int) -> str:
         """A number as GLSL."""
-        whole = self.base.numbers[place]
+        constant = self.base.numbers[place]
         factors: dict[str, float] = {name: slopes[place] for name, slopes in self.slopes.items()}
-        size = max(abs(whole), 1e-30)
+        magnitude = max(abs(constant), 1e-30)
         parts: list[str] = []
         for (first, second), slopes in self.products.items():
             if slope := slopes[place]:
                 a, b = self.knobs[first], self.knobs[second]
                 factors[first] -= slope * b.base
                 factors[second] -= slope * a.base
-                whole += slope * a.base * b.base
-                size = max(size, abs(slope * a.base * b.base))
+                constant += slope * a.base * b.base
+                magnitude = max(magnitude, abs(slope * a.base * b.base))
                 parts.append(f"{write_literal(slope)} * {a.text} * {b.text}")
         for name, factor in factors.items():
             knob = self.knobs[name]
-            whole -= self.slopes[name][place] * knob.base
-            size = max(size, abs(factor * knob.base))
-            if abs(factor * max(abs(knob.base), abs(knob.step))) > TOLERANCE * size:
+            constant -= self.slopes[name][place] * knob.base
+            magnitude = max(magnitude, abs(factor * knob.base))
+            if abs(factor * max(abs(knob.base), abs(knob.step))) > TOLERANCE * magnitude:
                 parts.append(f"{write_literal(factor)} * {knob.text}")
         if not parts:
             return write_literal(self.base.numbers[place])
-        if abs(whole) > TOLERANCE * size:
-            parts.append(write_literal(whole))
+        if abs(constant) > TOLERANCE * magnitude:
+            parts.append(write_literal(constant))
         return f"({' + '.join(parts)})"
 
 
-def fit_slopes(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
+def fit_slopes(lower_at: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
     """How fast every number grows with a knob; None if what is computed changes, or numbers do not grow evenly."""
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):
-        program = lowered({knob.name: knob.base + step * knob.step})
+        program = lower_at({knob.name: knob.base + step * knob.step})
         sample = take_apart(program) if program else None
         if sample is None or sample.skeleton != base.skeleton or (sample.sizes != base.sizes and not knob.resizes):
             return None

@@ -25,7 +25,7 @@ class IsfControl:
     entry: Section
     knobs: tuple[Knob, ...]
 
-    def plain(self, point: Mapping[str, float]) -> Plain:
+    def value_at(self, point: Mapping[str, float]) -> Plain:
         """The value where knobs are as `point` says."""
         parts = tuple(point.get(knob.name, knob.rest) for knob in self.knobs)
         if self.value.length > 1:
@@ -37,10 +37,10 @@ def make_identifier(name: str, used_names: Iterable[str]) -> str:
     """A name for GLSL that is not taken."""
     plain = _ODD.sub("_", name).strip("_") or "value"
     plain = f"x{plain}" if plain[0].isdigit() or plain.startswith(("gl_", "isf_", "IMG_")) else plain
-    candidate, again = plain, 1
+    candidate, number = plain, 1
     while candidate in set(used_names):
-        again += 1
-        candidate = f"{plain}{again}"
+        number += 1
+        candidate = f"{plain}{number}"
     return candidate
 
 
@@ -60,39 +60,39 @@ def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfCont
         if target in graph.animation or target in graph.links:
             notes.append(f"control '{name}' is no input: it is animated or linked")
             continue
-        called = make_identifier(name, names)
-        names.add(called)
-        controls.append(_make_control(called, name, control.label or value.label or name, value, graph.value(target)))
+        shader_name = make_identifier(name, names)
+        names.add(shader_name)
+        controls.append(_make_control(shader_name, name, control.label or value.label or name, value, graph.value(target)))
     return controls, notes
 
 
-def _make_control(called: str, name: str, label: str, value: Value, rest: Plain) -> IsfControl:
+def _make_control(shader_name: str, name: str, label: str, value: Value, rest: Plain) -> IsfControl:
     parts = list(rest) if isinstance(rest, tuple) else [float(rest)]
-    low, high = _range(value, parts)
-    entry: Section = {"NAME": called, "LABEL": label}
+    low, high = _find_range(value, parts)
+    entry: Section = {"NAME": shader_name, "LABEL": label}
     if value.type == "color":
         straight = [*map(_encode_light, parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
-        texts = [f"@halation_light(@{called}.{letter})" for letter in "rgb"] + [f"@{called}.a"]
+        texts = [f"@halation_light(@{shader_name}.{letter})" for letter in "rgb"] + [f"@{shader_name}.a"]
     elif value.type == "vector":
         flips, (across, down) = value.handle, parts
         place = [across, 1.0 - down if flips else down]
         entry |= {"TYPE": "point2D", "DEFAULT": place, "MIN": [low, low], "MAX": [high, high]}
-        texts = [f"@{called}.x", f"(1.0 - @{called}.y)" if flips else f"@{called}.y"]
+        texts = [f"@{shader_name}.x", f"(1.0 - @{shader_name}.y)" if flips else f"@{shader_name}.y"]
     elif value.type == "bool":
         entry |= {"TYPE": "bool", "DEFAULT": bool(rest)}
-        texts = [f"(@{called} ? 1.0 : 0.0)"]
+        texts = [f"(@{shader_name} ? 1.0 : 0.0)"]
     else:
         entry |= {"TYPE": "float", "DEFAULT": parts[0], "MIN": low, "MAX": high}
-        texts = [f"@{called}" if value.type == "float" else f"floor(@{called} + 0.5)"]
+        texts = [f"@{shader_name}" if value.type == "float" else f"floor(@{shader_name} + 0.5)"]
     knobs = tuple(
-        _knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
+        _make_knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
         for at, (part, text) in enumerate(zip(parts, texts, strict=False))
     )
     return IsfControl(name, value, entry, knobs)
 
 
-def _knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
+def _make_knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
     if value.type == "bool":
         return Knob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
     step = 1.0 if value.type == "int" else (high - low) * 0.0371
@@ -100,7 +100,7 @@ def _knob(name: str, text: str, value: Value, rest: float, low: float, high: flo
     return Knob(name, text, rest, rest + step, step)
 
 
-def _range(value: Value, parts: list[float]) -> tuple[float, float]:
+def _find_range(value: Value, parts: list[float]) -> tuple[float, float]:
     low, high = max(value.low, value.minimum), min(value.high, value.maximum)
     if low == float("-inf") or high == float("inf") or low >= high:
         low, high = 0.0, 1.0

@@ -44,47 +44,47 @@ class IsfExport:
 class _BoundProvider:
     """The world beyond the graph, where every bound input is a picture of the size that is wanted."""
 
-    outside: ResourceProvider
+    provider: ResourceProvider
     size: Size
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
-        return self.outside.at(path, frame, missing)
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
+        return self.provider.find_frame_file(path, frame, missing)
 
-    def probe(self, picture: Picture) -> PictureProbe:
-        return PictureProbe(self.size, False, picture.path) if picture.in_memory else self.outside.probe(picture)
+    def probe_picture(self, picture: Picture) -> PictureProbe:
+        return PictureProbe(self.size, False, picture.path) if picture.in_memory else self.provider.probe_picture(picture)
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
-        return self.outside.recolor(change)
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
+        return self.provider.write_color_program(change)
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
-        return self.outside.working(color)
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
+        return self.provider.find_working_space(color)
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
-        return self.outside.render(path, named)
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
+        return self.provider.describe_render(path, named)
 
-    def mesh(self, scene: Scene) -> Mesh:
-        return self.outside.mesh(scene)
+    def load_mesh(self, scene: Scene) -> Mesh:
+        return self.provider.load_mesh(scene)
 
 
 def export_isf(
-    graph: Graph, target: Port, outside: ResourceProvider, *, size: Size | None = None, doc: str = ""
+    graph: Graph, target: Port, provider: ResourceProvider, *, size: Size | None = None, doc: str = ""
 ) -> IsfExport:
     """Write what `target` shows of a graph as one shader. Raises the errors of compiling a graph.
 
     Its pictures become those of the shader, and its controls inputs where they change nothing but numbers, evenly.
     `size` is that of the picture where something holds for one size only.
     """
-    return _IsfExporter(graph, target, outside, size or graph.settings.size or SIZE).export(doc)
+    return _IsfExporter(graph, target, provider, size or graph.settings.size or SIZE).export(doc)
 
 
 class _IsfExporter:
     """The work in progress."""
 
-    def __init__(self, graph: Graph, target: Port, outside: ResourceProvider, size: Size) -> None:
-        self.graph, self.target, self.outside, self.size = graph, target, outside, size
-        self.library = graph_library(graph, outside)
+    def __init__(self, graph: Graph, target: Port, provider: ResourceProvider, size: Size) -> None:
+        self.graph, self.target, self.provider, self.size = graph, target, provider, size
+        self.library = graph_library(graph, provider)
         self.first = (graph.settings.frames or (1, 1))[0]
-        self.pictures = _picture_names([name for name, end in graph.inputs.items() if end.kind is Kind.IMAGE])
+        self.pictures = _name_pictures([name for name, end in graph.inputs.items() if end.kind is Kind.IMAGE])
         self.controls, notes = find_controls(graph, self.pictures.values())
         self.notes = notes
 
@@ -92,18 +92,18 @@ class _IsfExporter:
         """The shader, or why there is none."""
         program = self._lower_at({})
         passes = fuse(program, NULL, gathers=False)
-        wrong = [*self._data(program), *find_obstacles(program, passes, self._sources(program))]
+        obstacles = [*self._find_data_inputs(program), *find_obstacles(program, passes, self._find_sources(program))]
         count = sum(len(fused.writes) for fused in passes)
         if count > MAX_PASSES:
-            wrong.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
-        if wrong:
-            return IsfExport("", (), tuple(dict.fromkeys(wrong)))
-        model = ModelSearch(self._lower_at, self._knobs(), self.size).find()
-        self._note(model)
+            obstacles.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
+        if obstacles:
+            return IsfExport("", (), tuple(dict.fromkeys(obstacles)))
+        model = ModelSearch(self._lower_at, self._make_knobs(), self.size).find_model()
+        self._add_notes(model)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
-        inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & model.used]
-        writing = IsfWriter(model, self.library, self._sources(model.program), tuple(self.pictures.values()), self.size)
-        text, targets = writing.write(self.first)
+        inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & model.used_knobs]
+        writer = IsfWriter(model, self.library, self._find_sources(model.program), tuple(self.pictures.values()), self.size)
+        text, targets = writer.write(self.first)
         count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
         if count > MAX_PICTURES:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
@@ -122,13 +122,13 @@ class _IsfExporter:
         """The graph as operations, at values of knobs."""
         graph = self.graph
         for control in self.controls:
-            graph = graph.set_control(control.name, control.plain(point))
+            graph = graph.set_control(control.name, control.value_at(point))
         size = (round(point.get(WIDTH, self.size[0])), round(point.get(HEIGHT, self.size[1])))
         bindings = {name: Picture(name, "", Kind.IMAGE, 4, in_memory=True) for name in self.pictures}
         request = Request({"made": self.target}, bindings, size, frame=round(point.get(FRAME, self.first)))
-        return lower(graph, request, self.library, _BoundProvider(self.outside, size)).program
+        return lower(graph, request, self.library, _BoundProvider(self.provider, size)).program
 
-    def _knobs(self) -> dict[str, Knob]:
+    def _make_knobs(self) -> dict[str, Knob]:
         width, height = (float(side) for side in self.size)
         return {
             **{knob.name: knob for control in self.controls for knob in control.knobs},
@@ -137,18 +137,18 @@ class _IsfExporter:
             HEIGHT: Knob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
         }
 
-    def _note(self, model: IsfModel) -> None:
+    def _add_notes(self, model: IsfModel) -> None:
         """Say what the shader does not follow."""
         for control in self.controls:
-            if held := [knob.name for knob in control.knobs if knob.name in model.held]:
+            if held := [knob.name for knob in control.knobs if knob.name in model.held_knobs]:
                 self.notes.append(f"control '{held[0]}' keeps its value: it changes more than numbers")
-        if FRAME in model.held:
+        if FRAME in model.held_knobs:
             self.notes.append(f"it shows frame {self.first} at all times: more than numbers change with time")
-        if WIDTH in model.held:
+        if WIDTH in model.held_knobs:
             width, height = self.size
             self.notes.append(f"it is made for {width}x{height} pixels, and looks different at others: see --size")
 
-    def _sources(self, program: LoweredProgram) -> dict[Ref, str]:
+    def _find_sources(self, program: LoweredProgram) -> dict[Ref, str]:
         """The pictures of the graph's inputs, by the names that the shader gives them."""
         return {
             Ref(at): self.pictures[picture.path]
@@ -156,7 +156,7 @@ class _IsfExporter:
             if (picture := op.find_upload(0)) and picture.in_memory and picture.path in self.pictures
         }
 
-    def _data(self, program: LoweredProgram) -> list[tuple[str, str]]:
+    def _find_data_inputs(self, program: LoweredProgram) -> list[tuple[str, str]]:
         """Inputs that are files of data."""
         return [
             (op.owner, f"is a {self.graph.inputs[name].kind}: the format has pictures of display values only")
@@ -167,7 +167,7 @@ class _IsfExporter:
         ]
 
 
-def _picture_names(names: list[str]) -> dict[str, str]:
+def _name_pictures(names: list[str]) -> dict[str, str]:
     """What a shader calls the pictures of a graph: the only one is `inputImage`, as in every filter."""
     if len(names) == 1:
         return {names[0]: "inputImage"}

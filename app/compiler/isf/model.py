@@ -13,7 +13,7 @@ from .affine import Anatomy, Knob, LinearModel, Point, are_close, find_length_fo
 
 WIDTH, HEIGHT, FRAME = "width", "height", "frame"
 
-Texts = Mapping[Size, tuple[str, str]]
+SizeFormulas = Mapping[Size, tuple[str, str]]
 """Sizes of pictures as formulas of the whole one's, which is written `{}`."""
 
 
@@ -23,20 +23,20 @@ class IsfModel:
 
     program: LoweredProgram
     model: LinearModel
-    sizes: Texts
-    held: list[str] = field(default_factory=list[str])
+    sizes: SizeFormulas
+    held_knobs: list[str] = field(default_factory=list[str])
 
-    def texts(self, item: UniformConstant) -> tuple[str, ...] | None:
+    def write_constant(self, item: UniformConstant) -> tuple[str, ...] | None:
         """The numbers of a constant as GLSL; None for what is always the same."""
         place = self.model.base.places.get(id(item))
         if place is None:
             return None
         numbers = range(place, place + (len(item.value) if isinstance(item.value, tuple) else 1))
         slopes = (*self.model.slopes.values(), *self.model.products.values())
-        return tuple(map(self.model.text, numbers)) if any(one[at] for one in slopes for at in numbers) else None
+        return tuple(map(self.model.write_formula, numbers)) if any(values[at] for values in slopes for at in numbers) else None
 
     @property
-    def used(self) -> set[str]:
+    def used_knobs(self) -> set[str]:
         """The knobs that change something."""
         return {name for name in self.model.slopes if _matters(self.model, name)}
 
@@ -45,85 +45,85 @@ class IsfModel:
 class ModelSearch:
     """The work in progress: knobs that do not fit in are held at what they have in the graph, one after the other."""
 
-    lowered: Callable[[Point], LoweredProgram]
+    lower_at: Callable[[Point], LoweredProgram]
     knobs: dict[str, Knob]
     size: Size
-    held: list[str] = field(default_factory=list[str])
+    held_knobs: list[str] = field(default_factory=list[str])
 
-    def find(self) -> IsfModel:
+    def find_model(self) -> IsfModel:
         """Hold as few knobs as can be. Raises the errors of compiling at the values of the graph."""
         while True:
             try:
-                program = self.lowered(self._base())
+                program = self.lower_at(self._find_base())
             except HalationError:
                 if not self.knobs:
                     raise
-                self._hold(next(reversed(self.knobs)))
+                self._hold_knob(next(reversed(self.knobs)))
                 continue
             model = LinearModel(take_apart(program), dict(self.knobs))
-            failed = self._fit(model)
-            sizes: Texts | None = None
+            failed = self._fit_slopes(model)
+            sizes: SizeFormulas | None = None
             if WIDTH in self.knobs and not failed:
-                sizes = self._sizes(model.base)
+                sizes = self._find_size_formulas(model.base)
                 failed = WIDTH if sizes is None else ""
-            failed = failed or self._multiply(model)
+            failed = failed or self._fit_products(model)
             if not failed:
-                return IsfModel(program, model, sizes or {}, self.held)
-            self._hold(failed)
+                return IsfModel(program, model, sizes or {}, self.held_knobs)
+            self._hold_knob(failed)
 
-    def _base(self) -> dict[str, float]:
+    def _find_base(self) -> dict[str, float]:
         return {name: knob.base for name, knob in self.knobs.items()}
 
-    def _lower_at(self, point: Point) -> LoweredProgram | None:
+    def _try_lower(self, point: Point) -> LoweredProgram | None:
         try:
-            return self.lowered({**self._base(), **point})
+            return self.lower_at({**self._find_base(), **point})
         except HalationError:
             return None
 
-    def _hold(self, name: str) -> None:
+    def _hold_knob(self, name: str) -> None:
         for held_name in (WIDTH, HEIGHT) if name in (WIDTH, HEIGHT) else (name,):
-            self.held.append(held_name)
+            self.held_knobs.append(held_name)
             del self.knobs[held_name]
 
-    def _fit(self, model: LinearModel) -> str:
+    def _fit_slopes(self, model: LinearModel) -> str:
         """Find the slopes; the name of the first knob that has none."""
         for name, knob in self.knobs.items():
-            slopes = fit_slopes(self._lower_at, model.base, knob)
+            slopes = fit_slopes(self._try_lower, model.base, knob)
             if slopes is None:
                 return name
             model.slopes[name] = slopes
         return ""
 
-    def _multiply(self, model: LinearModel) -> str:
+    def _fit_products(self, model: LinearModel) -> str:
         """Find products of two knobs; the name of a knob that does not fit in with the others, if one does not."""
         names = [name for name in model.slopes if _matters(model, name)]
         for at, first in enumerate(names):
             for second in names[at + 1 :]:
                 a, b = model.knobs[first], model.knobs[second]
                 point = {first: a.base + a.step, second: b.base + b.step}
-                numbers = self._numbers(model, point)
+                numbers = self._find_numbers(model, point)
                 if numbers is None:
                     return first if first in (WIDTH, HEIGHT, FRAME) else second
-                apart = model.predict(point)
-                if not are_close(numbers, apart):
+                predicted = model.predict(point)
+                if not are_close(numbers, predicted):
                     area = a.step * b.step
-                    model.products[first, second] = [(x - y) / area for x, y in zip(numbers, apart, strict=True)]
+                    model.products[first, second] = [(x - y) / area for x, y in zip(numbers, predicted, strict=True)]
         point = {name: model.knobs[name].far for name in names}
-        numbers = self._numbers(model, point) if names else None
+        numbers = self._find_numbers(model, point) if names else None
         return "" if not names or (numbers is not None and are_close(numbers, model.predict(point))) else names[-1]
 
-    def _numbers(self, model: LinearModel, point: Point) -> list[float] | None:
+    def _find_numbers(self, model: LinearModel, point: Point) -> list[float] | None:
         """The numbers at a point; None where something else is computed."""
-        program = self._lower_at(point)
+        program = self._try_lower(point)
         sample = take_apart(program) if program else None
         return sample.numbers if sample is not None and sample.skeleton == model.base.skeleton else None
 
-    def _sizes(self, base: Anatomy) -> Texts | None:
+    def _find_size_formulas(self, base: Anatomy) -> SizeFormulas | None:
         """The sizes of all pictures as formulas; None if they have none."""
         steps = (0, 37, 91, 192)
         samples: list[Anatomy] = []
         for step in steps:
-            program = self._lower_at({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
+            program = self._try_lower({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
             if program is None or (sample := take_apart(program)).skeleton != base.skeleton:
                 return None
             samples.append(sample)

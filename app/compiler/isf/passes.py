@@ -29,25 +29,25 @@ _GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
 class IsfNames(ShaderNames):
     """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
 
-    texts: Callable[[UniformConstant], tuple[str, ...] | None] = lambda item: None
-    sized: Callable[[Uniform], tuple[str, str] | None] = lambda size: None
+    write_constant: Callable[[UniformConstant], tuple[str, ...] | None] = lambda item: None
+    write_size: Callable[[Uniform], tuple[str, str] | None] = lambda size: None
     first: int = 1
     """The frame that FRAMEINDEX counts from."""
     readers: Mapping[Ref, str] = field(default_factory=dict[Ref, str])
-    set: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
+    settings: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
     """Type, name and GLSL of what is set."""
 
     def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
-        name = name or f"u{len(self.set)}"
-        sizes = self.sized(value) if glsl == "ivec2" and name.endswith("_size") else None
+        name = name or f"u{len(self.settings)}"
+        sizes = self.write_size(value) if glsl == "ivec2" and name.endswith("_size") else None
         if sizes:
             text = f"ivec2({sizes[0]}, {sizes[1]})"
         elif glsl.endswith("]") and isinstance(value, tuple):
-            each = ", ".join(_plain("vec4", value[at : at + 4]) for at in range(0, len(value), 4))
+            each = ", ".join(_write_plain("vec4", value[at : at + 4]) for at in range(0, len(value), 4))
             text = f"{glsl}({each})"
         else:
-            text = _plain(glsl, value)
-        self.set.append(("int" if glsl == "bool" else glsl, name, text))
+            text = _write_plain(glsl, value)
+        self.settings.append(("int" if glsl == "bool" else glsl, name, text))
         return f"({name} != 0)" if glsl == "bool" else name
 
     def load(self, ref: Ref, where: str) -> str:
@@ -55,7 +55,7 @@ class IsfNames(ShaderNames):
         return f"@{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
 
     def constant(self, item: UniformConstant, glsl: str) -> str:
-        texts = self.texts(item)
+        texts = self.write_constant(item)
         if texts is None or glsl.endswith("]") or item.channels > 4:
             return super().constant(item, glsl)
         if glsl in ("int", "bool"):
@@ -71,7 +71,7 @@ def find_obstacles(
     """Why a graph cannot be written as one shader: nodes, and sentences about them."""
     for fused in passes:
         for index in fused.members:
-            yield from ((owner, why) for owner in program.ops[index].owners if (why := _reason(program.ops[index])))
+            yield from ((owner, why) for owner in program.ops[index].owners if (why := _find_obstacle(program.ops[index])))
         for ref in fused.reads:
             op = program.ops[ref.op]
             picture = op.find_upload(ref.output)
@@ -89,7 +89,7 @@ _OBSTACLES: Mapping[type[Op], str] = {
 """Kinds of operations that a shader of this format cannot do."""
 
 
-def _reason(op: Op) -> str:
+def _find_obstacle(op: Op) -> str:
     return _OBSTACLES.get(type(op)) or ("changes color by tables of a color library" if op.tables else "")
 
 
@@ -101,39 +101,39 @@ def write_function(
     parts = write_parts(context)
     functions = list(parts.functions)
     if parts.convolution:
-        functions[0] = f"float weight(int j) {{ {_weight(parts.convolution.weights, 0)} }}"
+        functions[0] = f"float weight(int j) {{ {_write_weight(parts.convolution.weights, 0)} }}"
         functions = [line.replace("weights[j >> 2][j & 3]", "weight(j)") for line in functions]
     texts = select_texts(context, parts)
-    lines = list(_lines(context, texts, parts, functions))
+    lines = list(_write_functions(context, texts, parts, functions))
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
-    used = words(*lines, *parts.body, result)
+    used_words = words(*lines, *parts.body, result)
     optional_globals = {
         "frame": ("int", f"@FRAMEINDEX + {names.first}"),
         "proxy": ("float", write_literal(program.scale)),
     }
-    start = [
+    assignments = [
         "pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));",
         "grid = ivec2(RENDERSIZE);",
         "extent = grid;",
     ]
-    declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
+    declarations = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
     for name, (glsl, text) in optional_globals.items():
-        if name in used:
-            declared.append(f"{glsl} {name};")
-            start.append(f"{name} = {text};")
-    for glsl, name, text in names.set:
+        if name in used_words:
+            declarations.append(f"{glsl} {name};")
+            assignments.append(f"{name} = {text};")
+    for glsl, name, text in names.settings:
         if glsl.endswith("]"):
-            declared.append(f"const {glsl[:4]} {name}{glsl[4:]} = {text};")
+            declarations.append(f"const {glsl[:4]} {name}{glsl[4:]} = {text};")
         else:
-            declared.append(f"{glsl} {name};")
-            start.append(f"{name} = {text};")
-    body = [*declared, *lines, "vec4 made() {", *start, *parts.body, f"return {whole};", "}"]
+            declarations.append(f"{glsl} {name};")
+            assignments.append(f"{name} = {text};")
+    body = [*declarations, *lines, "vec4 made() {", *assignments, *parts.body, f"return {whole};", "}"]
     text = "\n".join(line.rstrip() for line in "\n".join(body).split("\n") if line.strip())
     return _prefix_names(text, prefix, names, texts).split("\n"), f"{prefix}made"
 
 
-def _lines(context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]) -> Iterator[str]:
+def _write_functions(context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]) -> Iterator[str]:
     early, late = split_by_accessors(texts, parts)
     for group in (early, None, late):
         if group is None:
@@ -142,11 +142,11 @@ def _lines(context: PassContext, texts: tuple[Text, ...], parts: PassParts, func
         for text in group:
             macros = find_macros(text, context)
             yield from (f"#define {name} {number}" for name, number in macros)
-            yield _portable(text.body)
+            yield _make_portable(text.body)
             yield from (f"#undef {name}" for name, _ in macros)
 
 
-def _portable(body: str) -> str:
+def _make_portable(body: str) -> str:
     """The text without the bits of floats, and a word, that older GLSL does not know."""
     body = re.sub(r"\bprecise\s+", "", body)
     body = _BITS.sub(
@@ -166,21 +166,21 @@ def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ..
     own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
     own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
     own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
-    own |= {name for _, name, _ in names.set} | {"made", *_GLOBALS}
+    own |= {name for _, name, _ in names.settings} | {"made", *_GLOBALS}
     own_words = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
     return own_words.sub(lambda found: prefix + found[1], text).replace("@", "")
 
 
-def _weight(weights: tuple[float, ...], first: int) -> str:
+def _write_weight(weights: tuple[float, ...], first: int) -> str:
     """Statements that return weight `j`: arrays of constants take drivers four times as long to compile."""
     if len(weights) == 1:
         return f"return {write_literal(weights[0])};"
     half = len(weights) // 2
-    low, high = _weight(weights[:half], first), _weight(weights[half:], first + half)
+    low, high = _write_weight(weights[:half], first), _write_weight(weights[half:], first + half)
     return f"if (j < {first + half}) {{ {low} }} else {{ {high} }}"
 
 
-def _plain(glsl: str, value: Uniform) -> str:
+def _write_plain(glsl: str, value: Uniform) -> str:
     if isinstance(value, tuple):
         if glsl.startswith("ivec"):
             return f"{glsl}({', '.join(str(int(part)) for part in value)})"

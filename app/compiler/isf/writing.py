@@ -32,21 +32,21 @@ class IsfWriter:
     targets: list[Section] = field(default_factory=list[Section])
     calls: list[str] = field(default_factory=list[str])
     blocks: list[str] = field(default_factory=list[str])
-    last: dict[Ref, int] = field(default_factory=dict[Ref, int])
+    last_readers: dict[Ref, int] = field(default_factory=dict[Ref, int])
     """The pass that reads a picture last."""
 
     def write(self, first: int) -> tuple[str, list[Section]]:
         """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
         program = self.model.program
-        alone = fuse(program, NULL, gathers=False)
-        passes = [(fused, output) for fused in alone for output in range(len(fused.writes))]
-        self.last = {ref: index for index, (fused, _) in enumerate(passes) for ref in fused.reads}
-        self.last[program.outputs["made"]] = len(passes)
+        passes_alone = fuse(program, NULL, gathers=False)
+        passes = [(fused, output) for fused in passes_alone for output in range(len(fused.writes))]
+        self.last_readers = {ref: index for index, (fused, _) in enumerate(passes) for ref in fused.reads}
+        self.last_readers[program.outputs["made"]] = len(passes)
         for fused, output in passes:
             self._write_pass(fused, output, first)
-        self._show(program.outputs["made"])
+        self._write_display(program.outputs["made"])
         targets = self.targets
-        lines = ["vec2 halation_canvas;", "", *self._display()]
+        lines = ["vec2 halation_canvas;", "", *self._write_display_functions()]
         lines += [line for name in self.pictures for line in _write_reader(name, "from_codes({})")]
         buffer_names = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
         lines += [line for name in buffer_names for line in _write_reader(name, "{}")]
@@ -62,17 +62,17 @@ class IsfWriter:
             "fragment",
             False,
             seams=False,
-            texts=self.model.texts,
-            sized=self._find_size_text,
+            write_constant=self.model.write_constant,
+            write_size=self._find_size_text,
             first=first,
-            readers={one: f"read_{self._name(one)}" for one in fused.reads},
+            readers={one: f"read_{self._find_name(one)}" for one in fused.reads},
         )
         lines, function_name = write_function(
             self.model.program, fused, output, f"p{len(self.calls)}_", names, self.library
         )
         self.blocks += [*lines, ""]
-        size = self._size_of(ref)
-        self.calls.append(f"halation_canvas = {self._canvas(size)}; gl_FragColor = {function_name}();")
+        size = self._find_size(ref)
+        self.calls.append(f"halation_canvas = {self._write_canvas(size)}; gl_FragColor = {function_name}();")
         lengths: Section = {}
         if size != self.size:
             across, down = self.model.sizes.get(size) or (write_literal(size[0]), write_literal(size[1]))
@@ -83,24 +83,24 @@ class IsfWriter:
     def _choose_buffer(self, lengths: Section) -> str:
         """A buffer of this size that nobody reads any more, or another one: hosts read 16 pictures at most."""
         pass_number = len(self.targets)
-        used_buffers = {name for ref, name in self.buffers.items() if self.last.get(ref, -1) >= pass_number}
+        used_buffers = {name for ref, name in self.buffers.items() if self.last_readers.get(ref, -1) >= pass_number}
         buffer_sizes = {
             str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets
         }
         free = (name for name, size in buffer_sizes.items() if size == lengths and name not in used_buffers)
         return next(free, f"buffer{len(buffer_sizes) + 1}")
 
-    def _show(self, last: Ref) -> None:
+    def _write_display(self, last: Ref) -> None:
         """The last pass is the picture."""
         newest = next(reversed(self.buffers), None)
         if newest != last:
-            self.calls.append(f"gl_FragColor = read_{self._name(last)}({_PIXEL});")
+            self.calls.append(f"gl_FragColor = read_{self._find_name(last)}({_PIXEL});")
             self.targets.append({})
-        elif self._size_of(last) == self.size:
+        elif self._find_size(last) == self.size:
             self.targets[-1] = {}
         self.calls[-1] += " gl_FragColor = display_straight(gl_FragColor);"
 
-    def _canvas(self, size: Size) -> str:
+    def _write_canvas(self, size: Size) -> str:
         """The size of the whole picture, seen from a pass of this size."""
         if size == self.size:
             return "RENDERSIZE"
@@ -117,7 +117,7 @@ class IsfWriter:
         across, down = formulas
         return f"int({across.format('@halation_canvas.x')})", f"int({down.format('@halation_canvas.y')})"
 
-    def _display(self) -> list[str]:
+    def _write_display_functions(self) -> list[str]:
         """Between light and the display values of the format."""
         needed, lines = frozenset({"display_straight", "from_codes"}), list[str]()
         for text in reversed(self.library.closure(("lib/isf",), "export")):
@@ -126,10 +126,10 @@ class IsfWriter:
             lines = [line.rstrip() for line in used.body.split("\n") if line.strip()] + lines
         return [*lines, "float halation_light(float code) { return srgb_decode(code); }"]
 
-    def _name(self, ref: Ref) -> str:
+    def _find_name(self, ref: Ref) -> str:
         return self.sources.get(ref) or self.buffers[ref]
 
-    def _size_of(self, ref: Ref) -> Size:
+    def _find_size(self, ref: Ref) -> Size:
         return self.model.program.ops[ref.op].shapes[ref.output].size
 
 

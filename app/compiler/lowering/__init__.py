@@ -4,7 +4,7 @@ A graph says what a user wants; a program of operations says what to compute. Lo
 these steps:
 
 1. Groups are expanded into one flat graph (`expand`), in which a node has a path such as `glow/bloom`. Values that
-   change over time are set to what they are at the frame (`moments`). A node may look at other frames, so the same node
+   change over time are set to what they are at the frame (`graph_at_frames`). A node may look at other frames, so the same node
    can be lowered several times, at different frames.
 2. The nodes that the requested outputs need are put in an order in which each comes after those that feed it. The order
    is found without recursion, because chains of nodes may be long. A loop is an error here.

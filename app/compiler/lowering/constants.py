@@ -1,4 +1,4 @@
-"""Values that do not come from pictures: checked, limited, and as wide as they are wanted."""
+"""Constants of graph inputs, values and unlinked sockets: checked, limited, and with the channels that are needed."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from ...errors import GraphError
 from ...graph import Input, Port
 from ...graph.values import value_fault
 from ..ir import PlannedObject, UniformConstant
-from .expand import zero_value
+from .expand import make_zero
 
 
 def check_values(path: str, node: Node) -> None:
-    """Raise GraphError for a value that no shader could take."""
+    """Raise GraphError for an invalid value."""
     for name, value in node.values.items():
         setting = getattr(node, name)
         if setting is not value.default and (fault := value_fault(value, setting)):
             raise GraphError(f"{path}.{name}: {fault}")
 
 
-def input_constant(port: Port, end: Input) -> UniformConstant:
-    """The constant of a graph input. Raises GraphError where it does not fit."""
+def make_input_constant(port: Port, end: Input) -> UniformConstant:
+    """The constant of a graph input. Raises GraphError if it does not fit the input's type."""
     default = end.default if isinstance(end.default, tuple) else (end.default,)
     numbers = tuple(part for part in default if isinstance(part, float | int) and math.isfinite(part))
     if len(numbers) != len(default) or len(numbers) not in (1, end.width):
@@ -39,7 +39,7 @@ def limit_wire(wire: UniformConstant, value: Value, factor: float) -> UniformCon
     return UniformConstant(parts if isinstance(wire.value, tuple) else parts[0])
 
 
-def socket_default(socket: Socket) -> UniformConstant:
+def make_default(socket: Socket) -> UniformConstant:
     """The constant that an input has without a link: its default with one number per channel."""
     default = socket.default if socket.default is not None else 0.0
     if socket.kind.is_planned:
@@ -49,9 +49,9 @@ def socket_default(socket: Socket) -> UniformConstant:
     return UniformConstant((default,) * socket.channels)
 
 
-def of_nothing(socket: Socket) -> UniformConstant:
-    """The constant that an output shows which has nothing to show."""
-    return PlannedObject() if socket.kind.is_planned else UniformConstant(zero_value(socket))
+def make_empty_constant(socket: Socket) -> UniformConstant:
+    """The constant of a muted output that no input can replace: zero, or no object."""
+    return PlannedObject() if socket.kind.is_planned else UniformConstant(make_zero(socket))
 
 
 def _read_object(kind: Kind, numbers: tuple[float, ...]) -> PlannedObject:

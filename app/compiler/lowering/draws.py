@@ -1,4 +1,4 @@
-"""What a filter's `passes` is handed: it turns draws into operations."""
+"""Turns the draws that a filter records in `passes` into operations."""
 
 from __future__ import annotations
 
@@ -8,60 +8,13 @@ from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
-from halation.nodes import (
-    Affine,
-    Argument,
-    CameraModel,
-    CameraSocket,
-    ColorChange,
-    Drawn,
-    Edge,
-    Filter,
-    Image,
-    Kernel,
-    Kind,
-    Motion,
-    Node,
-    Overlap,
-    Pixels,
-    Plain,
-    Reach,
-    Render,
-    Scene,
-    ShaderText,
-    Size,
-    Socket,
-    Uniform,
-    glsl_type,
-)
+from halation.nodes import Affine, Argument, CameraModel, CameraSocket, ColorChange, Drawn, Edge, Filter, Image, Kernel, Kind, Motion, Node, Overlap, Pixels, Plain, Reach, Render, Scene, ShaderText, Size, Socket, Uniform, glsl_type
 
 from ...errors import ShaderError
 from ...glsl import GlslFunction
 from ...resources.picture import Picture
 from ..areas import Neighborhood
-from ..ir import (
-    BLOCK,
-    MAX_TAPS,
-    Accessor,
-    Builder,
-    Call,
-    Choice,
-    ColorCall,
-    ExternalProgram,
-    Gather,
-    HistoryRead,
-    Memory,
-    Op,
-    Operand,
-    Parameter,
-    PictureShape,
-    PlannedObject,
-    Raster,
-    Read,
-    Reduce,
-    Ref,
-    UniformConstant,
-)
+from ..ir import BLOCK, MAX_TAPS, Accessor, Builder, Call, Choice, ColorCall, ExternalProgram, Gather, HistoryRead, Memory, Op, Operand, Parameter, PictureShape, PlannedObject, Raster, Read, Reduce, Ref, UniformConstant
 from ..library import Library
 from ..raster import CHANNELS
 from . import fourier, gaussian, transforms
@@ -70,7 +23,7 @@ from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 
 
 class Recorder:
-    """Implements `Draw` for one node, which is `fed`."""
+    """Implements `Draw` for one node with its inputs."""
 
     def __init__(
         self,
@@ -79,7 +32,7 @@ class Recorder:
         size: Size,
         builder: Builder,
         library: Library,
-        files: NodeResources,
+        resources: NodeResources,
         memories: Mapping[str, Memory],
         rate: float,
         start: int,
@@ -88,7 +41,7 @@ class Recorder:
         self.reads_frame = False
         """Whether the node asked for the frame."""
         self._owner, self._inputs, self._node = inputs.path, inputs, node
-        self._builder, self._library, self._files = builder, library, files
+        self._builder, self._library, self._resources = builder, library, resources
         self._blurs = BlurBuilder(builder, library, inputs.path)
         self._memories = memories
         self._shader = node.shader
@@ -100,23 +53,23 @@ class Recorder:
         return self._inputs.frame
 
     def size_of(self, pixels: Pixels) -> Size:
-        operand = self._operand(pixels)
+        operand = self._find_operand(pixels)
         return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
 
     def is_linked(self, socket: Socket) -> bool:
         return socket.name in self._inputs.linked
 
     def camera(self, socket: CameraSocket, frame: int | None = None) -> CameraModel | None:
-        operand = self._operand(socket) if frame is None else self._at(socket, frame)
+        operand = self._find_operand(socket) if frame is None else self._find_operand_at(socket, frame)
         content = operand.content if isinstance(operand, PlannedObject) else None
         return content if isinstance(content, CameraModel) else None
 
     def at(self, socket: Socket, frame: int) -> Drawn:
-        operand = self._at(socket, frame)
+        operand = self._find_operand_at(socket, frame)
         if isinstance(operand, Ref):
-            return self._picture_of(operand)
-        shape, parameters = self._shape(socket, self.size), (Parameter(socket.glsl, operand),)
-        return self._add(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
+            return self._wrap(operand)
+        shape, parameters = self._make_shape(socket, self.size), (Parameter(socket.glsl, operand),)
+        return self._add_op(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
     def __call__(
         self,
@@ -130,9 +83,9 @@ class Recorder:
         **arguments: Argument,
     ) -> Drawn:
         light = self._library.is_light(self._shader, function, self._owner)
-        shapes = (self._shape(result, size or self.size),)
-        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
-        return self._add(op)
+        shapes = (self._make_shape(result, size or self.size),)
+        op = self._make_gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
+        return self._add_op(op)
 
     def several(
         self,
@@ -145,37 +98,37 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None = None,
         **arguments: Argument,
     ) -> tuple[Drawn, ...]:
-        shapes = tuple(self._shape(result, size or self.size) for result in results)
+        shapes = tuple(self._make_shape(result, size or self.size) for result in results)
         made_types = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
         drawn_types = [result.glsl for result in results]
         if made_types != drawn_types:
             fault = f"'{function}' makes ({', '.join(made_types)}) but is drawn for ({', '.join(drawn_types)})"
-            raise ShaderError(self._owner, self._library.file(self._shader), 1, fault)
-        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
+            raise ShaderError(self._owner, self._library.file_name(self._shader), 1, fault)
+        op = self._make_gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
         first = self._builder.add(op)
         return tuple(DrawnPicture(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
 
-    def _gather(
+    def _make_gather(
         self,
         function: str,
-        named: Mapping[str, Argument],
+        arguments: Mapping[str, Argument],
         shapes: tuple[PictureShape, ...],
         edge: Edge,
         overlap: Overlap | Mapping[str, Overlap] | None,
         light: bool,
     ) -> Gather:
-        overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(named, overlap)
+        overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(arguments, overlap)
         accessors: list[Accessor] = []
-        rest: dict[str, Argument] = {}
-        for name, item in named.items():
+        plain_arguments: dict[str, Argument] = {}
+        for name, item in arguments.items():
             if isinstance(item, (Socket, DrawnPicture)):
-                operand = self._operand(item)
+                operand = self._find_operand(item)
                 channels = item.channels if isinstance(item, Socket) else item.shape.channels
-                around = self._around(operand, shapes[0].size, overlaps.get(name))
+                around = self._find_neighborhood(operand, shapes[0].size, overlaps.get(name))
                 accessors.append(Accessor(name, glsl_type(channels), operand, around))
             else:
-                rest[name] = item
-        parameters = self._parameters(self._library.function(self._shader, function, self._owner), rest)
+                plain_arguments[name] = item
+        parameters = self._make_parameters(self._library.function(self._shader, function, self._owner), plain_arguments)
         return Gather(
             shapes,
             self._owner,
@@ -192,14 +145,14 @@ class Recorder:
         signature = self._library.function(self._shader, function, self._owner)
         named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
         sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, DrawnPicture))]
-        size = next((found for found in sizes if found != (1, 1)), (1, 1) if sizes else self.size)
-        return self._add(
+        size = next((input_size for input_size in sizes if input_size != (1, 1)), (1, 1) if sizes else self.size)
+        return self._add_op(
             Call(
-                (self._shape(result, size),),
+                (self._make_shape(result, size),),
                 self._owner,
                 self._shader,
                 function,
-                self._parameters(signature, named),
+                self._make_parameters(signature, named),
                 find_choices(self._node),
             )
         )
@@ -213,10 +166,10 @@ class Recorder:
         size: Size | None = None,
         result: Socket | None = None,
     ) -> Drawn:
-        samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
+        samplers = tuple((name, self._find_pixels(item).ref) for name, item in pictures.items())
         values = tuple((name, UniformConstant(value)) for name, value in uniforms.items())
-        return self._add(
-            ExternalProgram((self._shape(result, size or self.size),), self._owner, text, samplers, values)
+        return self._add_op(
+            ExternalProgram((self._make_shape(result, size or self.size),), self._owner, text, samplers, values)
         )
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
@@ -229,29 +182,29 @@ class Recorder:
     def convolve(
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
     ) -> Drawn:
-        picture = self._pixels(image)
+        picture = self._find_pixels(image)
         if len(weights) % 2 == 0 or len(weights) > MAX_TAPS:
             fault = f"a convolution takes an odd number of weights up to {MAX_TAPS}, not {len(weights)}"
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
-        along = 0 if axis == "x" else 1
+        axis_index = 0 if axis == "x" else 1
         origin = -(len(weights) // 2)
-        return self._picture_of(self._blurs.convolve(picture.ref, along, weights, 1, origin, edge, picture.size[along]))
+        return self._wrap(self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index]))
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
-        picture, spread = self._pixels(image), self._pixels(kernel)
-        return self._picture_of(fourier.add_convolution(self._builder, picture.ref, spread.ref, self._owner))
+        picture, kernel_picture = self._find_pixels(image), self._find_pixels(kernel)
+        return self._wrap(fourier.add_convolution(self._builder, picture.ref, kernel_picture.ref, self._owner))
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
-        picture, program = self._pixels(image), self._files.recolor(change)
+        picture, program = self._find_pixels(image), self._resources.write_color_program(change)
         color = (Parameter("vec4", picture.ref),)
-        return self._add(
+        return self._add_op(
             ColorCall((picture.shape,), self._owner, program.text.name, program.function, color, program=program)
         )
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
-        source = self._pixels(image).ref
-        shape = self._shape(None, self.size)
-        return self._picture_of(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
+        source = self._find_pixels(image).ref
+        shape = self._make_shape(None, self.size)
+        return self._wrap(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
 
     def raster(
         self,
@@ -261,23 +214,23 @@ class Recorder:
         near: float,
     ) -> Mapping[str, Drawn]:
         shapes = tuple(PictureShape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
-        rows = tuple(part for camera in cameras for part in camera.rows)
-        moved = tuple(part for motion in motions for part in motion)
-        op = Raster(shapes, self._owner, self._files.mesh(scene), rows, moved, near)
+        camera_rows = tuple(part for camera in cameras for part in camera.rows)
+        motion_rows = tuple(part for motion in motions for part in motion)
+        op = Raster(shapes, self._owner, self._resources.load_mesh(scene), camera_rows, motion_rows, near)
         first = self._builder.add(op)
         return {name: DrawnPicture(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
-        picture = self._pixels(image)
+        picture = self._find_pixels(image)
         while picture.size != (1, 1):
             size = (math.ceil(picture.size[0] / BLOCK), math.ceil(picture.size[1] / BLOCK))
             shape = PictureShape(size, picture.shape.channels, data=True)
-            picture = self._add(Reduce((shape,), self._owner, picture.ref, operation))
+            picture = self._add_op(Reduce((shape,), self._owner, picture.ref, operation))
         return picture
 
     def history(self, first: Pixels, name: str = "") -> Drawn:
-        picture, memory = self._pixels(first), self._memories.get(name)
-        # A memory of another size is of another picture.
+        picture, memory = self._find_pixels(first), self._memories.get(name)
+        # A memory of another size belongs to another picture, from before the node or the proxy changed.
         if memory is None or memory.shape != picture.shape:
             return picture
         return DrawnPicture(
@@ -297,34 +250,34 @@ class Recorder:
         )
         shape = PictureShape((width, rows), 4, data=True)
         picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
-        return self._add(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
+        return self._add_op(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
-        return self._files.render(path, named)
+        return self._resources.describe_render(path, named)
 
     def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
-        return self._picture_of(self._files.read(Picture(path, layer, result.kind, result.channels, space=space)))
+        return self._wrap(self._resources.read_picture(Picture(path, layer, result.kind, result.channels, space=space)))
 
     def asset(self, path: str, folder: str) -> Drawn:
-        return self._picture_of(self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
+        return self._wrap(self._resources.read_asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
 
     # --- parts ---------------------------------------------------------------------------------------------------
 
-    def _add(self, op: Op) -> DrawnPicture:
+    def _add_op(self, op: Op) -> DrawnPicture:
         return DrawnPicture(self._builder.add(op), op.shapes[0])
 
-    def _picture_of(self, ref: Ref) -> DrawnPicture:
+    def _wrap(self, ref: Ref) -> DrawnPicture:
         return DrawnPicture(ref, self._builder.shape(ref))
 
     def _blur(self, image: Pixels, axes: Sequence[gaussian.BlurAxis], edge: Edge) -> DrawnPicture:
-        return self._picture_of(self._blurs.blur(self._pixels(image).ref, axes, edge))
+        return self._wrap(self._blurs.blur(self._find_pixels(image).ref, axes, edge))
 
-    def _shape(self, result: Socket | None, size: Size) -> PictureShape:
+    def _make_shape(self, result: Socket | None, size: Size) -> PictureShape:
         socket = result or Image()
         return PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
 
-    def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Neighborhood | None:
-        """Where a function reads a picture that has this overlap."""
+    def _find_neighborhood(self, operand: Operand, own: Size, overlap: Overlap | None) -> Neighborhood | None:
+        """The neighborhood in which a function reads a picture, as its overlap says."""
         if overlap is None or isinstance(operand, UniformConstant):
             return None
         if isinstance(overlap, Reach):
@@ -332,27 +285,27 @@ class Recorder:
         radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
         return Neighborhood.pixel(own, self._builder.shape(operand).size, radius)
 
-    def _operand(self, item: Pixels) -> Ref | UniformConstant:
+    def _find_operand(self, item: Pixels) -> Ref | UniformConstant:
         if isinstance(item, Socket):
             return self._inputs.inputs[item.name]
         assert isinstance(item, DrawnPicture)
         return item.ref
 
-    def _at(self, socket: Socket, frame: int) -> Operand:
+    def _find_operand_at(self, socket: Socket, frame: int) -> Operand:
         return self._inputs.at_frames.get((socket.name, frame)) or self._inputs.inputs[socket.name]
 
-    def _pixels(self, item: Pixels) -> DrawnPicture:
-        operand = self._operand(item)
+    def _find_pixels(self, item: Pixels) -> DrawnPicture:
+        operand = self._find_operand(item)
         if isinstance(operand, UniformConstant):
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
         return DrawnPicture(operand, self._builder.shape(operand))
 
-    def _parameters(self, signature: GlslFunction, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
+    def _make_parameters(self, signature: GlslFunction, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
         names = tuple(name for _, name in signature.parameters)
         if names != tuple(arguments):
             raise ShaderError(
                 self._owner,
-                self._library.file(self._shader),
+                self._library.file_name(self._shader),
                 1,
                 f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
             )
@@ -361,7 +314,7 @@ class Recorder:
             if isinstance(item, str):
                 operand = Choice(self._node.values[name].choices.index(item))
             elif isinstance(item, (Socket, DrawnPicture)):
-                operand = self._operand(item)
+                operand = self._find_operand(item)
             else:
                 assert isinstance(item, (float, int, tuple))
                 operand = UniformConstant(_check_plain(item))
@@ -370,7 +323,7 @@ class Recorder:
 
 
 def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """The choices of a node by value: its GLSL file sees them as macros."""
+    """The options of every choice of a node, by value: its GLSL file reads them as macros."""
     return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
 
 

@@ -1,4 +1,4 @@
-"""Groups become their bodies: nested graphs in, one flat graph with paths for names out."""
+"""Replaces groups by their bodies: nested graphs become one flat graph, in which names are paths."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from ...glsl import Text
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
 
 MAX_DEPTH = 32
+"""Groups inside groups. Chosen by judgement: graphs in use nest two or three deep. A file can name itself as the body
+of a group, and then this limit ends the expansion."""
 
 
 class FlatGraph(Struct):
@@ -26,10 +28,10 @@ class FlatGraph(Struct):
     muted: set[str] = field(default_factory=set[str])
     unknown: dict[str, Unknown] = field(default_factory=dict[str, Unknown])
     faults: dict[Port, str] = field(default_factory=dict[Port, str])
-    """Why links cannot be, by target: said when something follows one."""
+    """Why links are invalid, by target: an error when something follows such a link."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
 
-    def source(self, port: Port) -> Port | None:
+    def find_source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
         if port not in self.links:
             return None
@@ -44,8 +46,8 @@ class FlatGraph(Struct):
             source = self.links[source]
         return source
 
-    def behind(self, end: Port) -> Port:
-        """`source` without any check, for what has been followed before; the end itself if nothing feeds it."""
+    def follow(self, end: Port) -> Port:
+        """Like `find_source` without checks, for links that were followed before; the end itself if nothing feeds it."""
         for _ in range(len(self.links)):
             if end not in self.links:
                 break
@@ -60,15 +62,15 @@ def find_stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
     return next(chain(same, fitting), None)
 
 
-def zero_value(socket: Socket) -> float | tuple[float, ...]:
-    """Zero in every channel: what a muted output shows that no input can stand in for."""
+def make_zero(socket: Socket) -> float | tuple[float, ...]:
+    """Zero in every channel: the value of a muted output that no input can replace."""
     return 0.0 if socket.channels == 1 else (0.0,) * socket.channels
 
 
 def expand(graph: Graph) -> FlatGraph:
     """Expand every group of `graph`. A group's unlinked input keeps its own default file."""
     flat = FlatGraph()
-    # Depth first without recursion: groups may nest deeper than we would like to recurse through.
+    # Depth first, with a list in place of recursion: the depth is then an error that names the group.
     todo: list[tuple[str, Graph, Mapping[str, Any]]] = [("", graph, {})]
     while todo:
         prefix, body, values = todo.pop()
@@ -76,7 +78,7 @@ def expand(graph: Graph) -> FlatGraph:
             group = prefix.rstrip("/")
             fault = f"group '{group}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
             raise GraphError(fault, node=group)
-        body = _with_controls(body, values)
+        body = _set_controls(body, values)
         flat.folders[prefix] = body.folder
         for name, socket in body.inputs.items():
             flat.inputs[Port(prefix + INPUTS, name)] = socket
@@ -94,20 +96,20 @@ def expand(graph: Graph) -> FlatGraph:
                 if name in body.muted:
                     flat.muted.add(path)
         for target, source in body.links.items():
-            inward = _inward(body, prefix, target)
-            flat.links[inward] = _outward(body, prefix, source)
+            inner_target = _enter_groups(body, prefix, target)
+            flat.links[inner_target] = _leave_group(body, prefix, source)
             if fault := body.link_fault(source, target):
-                where = f"in group '{prefix.rstrip('/')}': " if prefix else ""
-                flat.faults[inward] = f"{where}'{source}' cannot feed '{target}': {fault}"
+                place = f"in group '{prefix.rstrip('/')}': " if prefix else ""
+                flat.faults[inner_target] = f"{place}'{source}' cannot feed '{target}': {fault}"
     return flat
 
 
 def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
-    """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
+    """The nodes whose values differ, by path, if two graphs differ in nothing else that changes pixels; else None."""
     parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
-    same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
-    moves = before.animation is not after.animation and (before.animation or after.animation)
-    if not same or moves or [*before.nodes] != [*after.nodes]:
+    is_same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
+    is_animated = before.animation is not after.animation and (before.animation or after.animation)
+    if not is_same or is_animated or [*before.nodes] != [*after.nodes]:
         return None
     changed: dict[str, Node] = {}
     for id, item in after.nodes.items():
@@ -118,7 +120,7 @@ def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[st
             changed[prefix + id] = item
         elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
             try:
-                bodies = [_with_controls(group.graph, group.values) for group in (old, item)]
+                bodies = [_set_controls(group.graph, group.values) for group in (old, item)]
                 inner = find_changed_nodes(bodies[0], bodies[1], f"{prefix}{id}/")
             except GraphError:
                 return None
@@ -130,15 +132,15 @@ def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[st
     return changed
 
 
-def _with_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
-    """The body of a group, its controls set."""
+def _set_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
+    """The body of a group with its controls set to values."""
     for name, value in values.items():
         body = body.set_control(name, value)
     return body
 
 
-def _inward(body: Graph, prefix: str, target: Port) -> Port:
-    """A link into a group ends at the group's own input, or at what its control turns."""
+def _enter_groups(body: Graph, prefix: str, target: Port) -> Port:
+    """Where a link to this target ends in the flat graph: at the group's input, or at the value that a control sets."""
     item = body.nodes.get(target.node)
     while isinstance(item, Group):
         prefix += target.node + "/"
@@ -151,15 +153,15 @@ def _inward(body: Graph, prefix: str, target: Port) -> Port:
     return Port(prefix + target.node, target.socket)
 
 
-def _outward(body: Graph, prefix: str, source: Port) -> Port:
-    """A link out of a group starts at the group's own output."""
+def _leave_group(body: Graph, prefix: str, source: Port) -> Port:
+    """Where a link from this source starts in the flat graph: at the group's own output."""
     if isinstance(body.nodes.get(source.node), Group):
         return Port(f"{prefix}{source.node}/{OUTPUTS}", source.socket)
     return Port(prefix + source.node, source.socket)
 
 
 def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:
-    """A muted group passes its inputs to its outputs, whatever is inside."""
+    """Link the outputs of a muted group to its inputs, without its body."""
     flat.folders[prefix] = body.folder
     inputs = {name: end.socket(name) for name, end in body.inputs.items()}
     for name, end in body.inputs.items():
@@ -169,7 +171,7 @@ def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:
         if stand_in is not None:
             flat.links[port] = Port(prefix + INPUTS, stand_in)
         else:
-            flat.inputs[port] = Input(end.kind, end.width, default=zero_value(end.socket(name)))
+            flat.inputs[port] = Input(end.kind, end.width, default=make_zero(end.socket(name)))
 
 
 def find_custom_texts(graph: Graph) -> Iterator[Text]:

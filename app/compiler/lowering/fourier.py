@@ -34,11 +34,11 @@ class FourierStage(Struct, frozen=True):
 
 def add_convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
     """A picture convolved with another one around its middle, black outside."""
-    picture, spread = builder.shape(image).size, builder.shape(kernel).size
-    width, height = (pad_length(*lengths) for lengths in zip(picture, spread, strict=True))
+    image_size, kernel_size = builder.shape(image).size, builder.shape(kernel).size
+    width, height = (pad_length(*lengths) for lengths in zip(image_size, kernel_size, strict=True))
     spectra = [
-        _transform(builder, _transform(builder, picture_, 0, width, owner), 1, height, owner)
-        for picture_ in (image, kernel)
+        _transform(builder, _transform(builder, picture, 0, width, owner), 1, height, owner)
+        for picture in (image, kernel)
     ]
     product = builder.add(
         Gather(
@@ -48,17 +48,17 @@ def add_convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Re
             "fourier_product",
             (Parameter("float", UniformConstant(1.0 / (width * height))),),
             accessors=tuple(
-                Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)
+                Accessor(name, "vec4", spectrum) for name, spectrum in zip(("image", "kernel"), spectra, strict=True)
             ),
         )
     )
-    across, down = spread[0] // 2, spread[1] // 2
-    made = _transform(builder, product, 1, height, owner, (down, picture[1]))
-    return _transform(builder, made, 0, width, owner, (across, picture[0]))
+    across, down = kernel_size[0] // 2, kernel_size[1] // 2
+    made = _transform(builder, product, 1, height, owner, (down, image_size[1]))
+    return _transform(builder, made, 0, width, owner, (across, image_size[0]))
 
 
 def pad_length(picture: int, kernel: int) -> int:
-    """Pixels to transform so that nothing that a kernel spreads comes round to the picture again."""
+    """How many pixels to transform, so that no light wraps around from one edge of the picture to the other."""
     length = max(kernel, picture + kernel // 2)
     while _remove_primes(length) != 1:
         length += 1
@@ -66,11 +66,16 @@ def pad_length(picture: int, kernel: int) -> int:
 
 
 def plan_stages(length: int, filled: int) -> tuple[FourierStage, ...]:
-    """The passes that transform a length with no prime factors but 2, 3 and 5; pixels from `filled` on are black."""
+    """The passes that transform a length whose prime factors are 2, 3 and 5; pixels from `filled` on are black.
+
+    A stage of radix r reads r pixels for each one that it makes. A large radix means few stages with many reads, so
+    costs are compared: reads, and `_STAGE_COST` for the pass itself. The first stage reads no black pixels and may take
+    a larger radix for it.
+    """
     terms = {radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0}
     first = min(
         (radix for radix in terms if terms[radix] <= _MAX_READS),
-        key=lambda radix: _STAGE_COST + terms[radix] + _cost(_find_radices(length // radix)),
+        key=lambda radix: _STAGE_COST + terms[radix] + _count_cost(_find_radices(length // radix)),
     )
     stages = [FourierStage(first, 1, terms[first])]
     span = first
@@ -85,11 +90,11 @@ def _find_radices(length: int) -> tuple[int, ...]:
     """The factors of a length that cost the least."""
     if length == 1:
         return ()
-    tried = ((radix, *_find_radices(length // radix)) for radix in range(2, _MAX_READS + 1) if length % radix == 0)
-    return min(tried, key=_cost)
+    candidates = ((radix, *_find_radices(length // radix)) for radix in range(2, _MAX_READS + 1) if length % radix == 0)
+    return min(candidates, key=_count_cost)
 
 
-def _cost(radices: tuple[int, ...]) -> int:
+def _count_cost(radices: tuple[int, ...]) -> int:
     return sum(_STAGE_COST + radix for radix in radices)
 
 
@@ -103,20 +108,20 @@ def _remove_primes(length: int) -> int:
 def _transform(
     builder: Builder, picture: Ref, axis: int, length: int, owner: str, inverse: tuple[int, int] | None = None
 ) -> Ref:
-    """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
+    """Transform along an axis; with `inverse` (the first pixel and how many) back, into these pixels."""
     passes = plan_stages(length, builder.shape(picture).size[axis])
     for stage in passes:
         size = builder.shape(picture).size
         first, count = inverse if inverse and stage is passes[-1] else (0, length)
         size = (count, size[1]) if axis == 0 else (size[0], count)
-        apart = length // stage.radix
+        distance = length // stage.radix
         begins = not inverse and stage is passes[0]
         # The numbers that loops run to are part of the text, so that drivers unroll them.
         parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
         if begins:
-            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.radix, apart)]
+            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.radix, distance)]
         else:
-            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.span, apart, first)]
+            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.span, distance, first)]
             parameters.append(Parameter("float", UniformConstant(1.0 if inverse else -1.0)))
         picture = builder.add(
             Gather(

@@ -69,10 +69,10 @@ def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
     if factor == 1:
         return BlurAxis((), 1, smooth)
     samples = _normalize([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
-    excess = _variance(samples) + (variance + factor**2 / 3.0 - _variance(smooth)) / factor**2
-    near = [(before + after) / 2.0 for before, after in zip([0.0, *samples], [*samples[1:], 0.0], strict=False)]
-    sharp = [max((1.0 + excess) * one - excess * other, 0.0) for one, other in zip(samples, near, strict=True)]
-    return BlurAxis(tuple(steps), factor, _normalize(sharp))
+    excess = _measure_variance(samples) + (variance + factor**2 / 3.0 - _measure_variance(smooth)) / factor**2
+    neighbors = [(before + after) / 2.0 for before, after in zip([0.0, *samples], [*samples[1:], 0.0], strict=False)]
+    sharpened = [max((1.0 + excess) * sample - excess * neighbor, 0.0) for sample, neighbor in zip(samples, neighbors, strict=True)]
+    return BlurAxis(tuple(steps), factor, _normalize(sharpened))
 
 
 def find_spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
@@ -133,6 +133,6 @@ def _normalize(weights: list[float]) -> tuple[float, ...]:
     return tuple(weight / total for weight in weights)
 
 
-def _variance(weights: tuple[float, ...]) -> float:
+def _measure_variance(weights: tuple[float, ...]) -> float:
     """Of normalized weights around their middle."""
     return math.fsum(weight * (i - len(weights) // 2) ** 2 for i, weight in enumerate(weights))

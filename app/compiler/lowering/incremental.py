@@ -38,7 +38,7 @@ from ...resources.provider import ResourceProvider
 from ..ir import Builder, Op, Ref
 from ..request import Request
 from .lower import Lowering
-from .moments import Moments, looks_around
+from .graph_at_frames import GraphAtFrames, sees_other_frames
 from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey
 
 
@@ -47,7 +47,7 @@ class StructureChanged(Exception):
 
 
 def lower_again(
-    before: LoweringRecord, graph: Graph, request: Request, outside: ResourceProvider
+    before: LoweringRecord, graph: Graph, request: Request, provider: ResourceProvider
 ) -> LoweringRecord | None:
     """Lower `graph`, much like the one that was lowered `before`, with the same library.
 
@@ -55,8 +55,8 @@ def lower_again(
     graph must be lowered.
     """
     try:
-        moments = before.moments.follow(graph, before.frame, request.frame)
-        return _IncrementalLowering(before, graph, request, outside, moments).run() if moments else None
+        frames = before.frames.follow(graph, before.frame, request.frame)
+        return _IncrementalLowering(before, graph, request, provider, frames).run() if frames else None
     except (StructureChanged, HalationError):  # an error is found again, and reported, when all is lowered
         return None
 
@@ -114,11 +114,11 @@ class _IncrementalLowering:
     """The work in progress."""
 
     def __init__(
-        self, before: LoweringRecord, graph: Graph, request: Request, outside: ResourceProvider, moments: Moments
+        self, before: LoweringRecord, graph: Graph, request: Request, provider: ResourceProvider, frames: GraphAtFrames
     ) -> None:
-        self.before, self.moments, self.frame = before, moments, request.frame
+        self.before, self.frames, self.frame = before, frames, request.frame
         self.builder = ReplayBuilder(before.builder)
-        self.lowering = Lowering(graph, request, before.library, outside, moments, self.builder)
+        self.lowering = Lowering(graph, request, before.library, provider, frames, self.builder)
         self.lowering.results = dict(before.results)
         self.changed_constants: set[PortAtOffset] = set()
         """Ports that stand for another constant than before."""
@@ -131,10 +131,10 @@ class _IncrementalLowering:
         steps: dict[StepKey, LoweringStep] = dict(before.steps)
         frame_changed = self.frame != before.frame
         offsets = {key[1] for key in steps if key}
-        changed_nodes = {offset: self.moments.changed_nodes(self.frame + offset) for offset in offsets}
+        changed_nodes = {offset: self.frames.nodes_changed_at(self.frame + offset) for offset in offsets}
         for key, step in before.steps.items():
             if (
-                step.reads_outside
+                step.reads_resources
                 or (step.reads_frame and frame_changed)
                 or (key is not None and key[0] in changed_nodes[key[1]])
                 or not self.builder.changed.isdisjoint(step.inspected)
@@ -151,7 +151,7 @@ class _IncrementalLowering:
         return replace(
             before,
             program=program,
-            moments=self.moments,
+            frames=self.frames,
             frame=self.frame,
             builder=builder,
             steps=steps,
@@ -162,15 +162,15 @@ class _IncrementalLowering:
     def _check_times(self, path: str, offset: int) -> None:
         """Raise StructureChanged for a node that looks at other frames than before."""
         frame = self.frame + offset
-        node = self.moments.node(path, frame)
-        if looks_around(node) and node.times(frame) != self.before.moments.node(path, frame).times(frame):
+        node = self.frames.node_at(path, frame)
+        if sees_other_frames(node) and node.times(frame) != self.before.frames.node_at(path, frame).times(frame):
             raise StructureChanged
 
     def _find_sources(self, key: StepKey) -> set[PortAtOffset]:
         """The ports that a step reads."""
         if key is None:
             return {(port, 0) for port in self.lowering.find_sources().values()}
-        feeds = self.moments.find_feeds((key[0], self.frame + key[1])).values()
+        feeds = self.frames.find_feeds((key[0], self.frame + key[1])).values()
         return {(source, frame - self.frame) for source, frames in feeds for frame in frames}
 
     def _replay(self, key: StepKey, before: LoweringStep) -> LoweringStep:

@@ -1,7 +1,8 @@
-"""A graph becomes operations.
+"""Lowers a graph: its nodes become operations.
 
-Only what the requested outputs need is lowered. Groups are expanded, muted and neutral nodes vanish, sizes become
-known, pictures of the wrong size get a fit, and values arrive in working units. `halation.compiler.lowering` says how.
+Only nodes that the requested outputs need are lowered. Groups are expanded, muted and neutral nodes disappear, sizes
+are determined, pictures of another size get a fit, and values are converted to working units. The docstring of this
+package explains the steps.
 """
 
 from __future__ import annotations
@@ -19,41 +20,44 @@ from ..ir import Builder, LoweredProgram, Operand, Ref, UniformConstant
 from ..library import Library
 from ..request import Request
 from . import constants
-from .moments import Moments
+from .graph_at_frames import GraphAtFrames
 from .node_lowering import LoweringContext, NodeLowering
 from .pictures import PictureBuilder
 from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey, WatchedProvider
 
 
-def lower(graph: Graph, request: Request, library: Library, outside: ResourceProvider) -> LoweringRecord:
-    """Lower what `request` asks of `graph`. Raises GraphError where the graph is not fit to render."""
-    return Lowering(graph, request, library, outside, Moments(graph), Builder()).run()
+def lower(graph: Graph, request: Request, library: Library, provider: ResourceProvider) -> LoweringRecord:
+    """Lower the requested outputs of `graph`. Raises GraphError for a graph that cannot be rendered."""
+    return Lowering(graph, request, library, provider, GraphAtFrames(graph), Builder()).run()
 
 
 class Lowering:
-    """The work in progress: `results` says what every port visited so far stands for, so many frames from `frame`."""
+    """The state of lowering one graph. `results` are the operands of all ports lowered so far, by port and frame.
+
+    `find_sources` and `run_step` are public for `incremental`, which lowers single nodes again.
+    """
 
     def __init__(
         self,
         graph: Graph,
         request: Request,
         library: Library,
-        outside: ResourceProvider,
-        moments: Moments,
+        provider: ResourceProvider,
+        frames: GraphAtFrames,
         builder: Builder,
     ) -> None:
-        self.graph, self.request, self.library, self.outside = graph, request, library, WatchedProvider(outside)
+        self.graph, self.request, self.library, self.provider = graph, request, library, WatchedProvider(provider)
         self.frame = request.frame
-        self.moments, self.builder = moments, builder
-        self.flat = self.moments.flat(self.frame)
-        self.pictures = PictureBuilder(graph, self.flat, request, self.outside, self.builder)
+        self.frames, self.builder = frames, builder
+        self.flat = self.frames.flat_at(self.frame)
+        self.pictures = PictureBuilder(graph, self.flat, request, self.provider, self.builder)
         self.nodes = NodeLowering(
             LoweringContext(
                 graph,
                 request,
                 library,
                 self.frame,
-                moments,
+                frames,
                 builder,
                 self.flat,
                 self.pictures,
@@ -65,9 +69,9 @@ class Lowering:
         self.outputs: dict[str, Ref] = {}
 
     def run(self) -> LoweringRecord:
-        """Lower every node that is needed, each after those that it reads, and at last the outputs."""
+        """Lower every node that is needed, each after those that it reads, then the outputs."""
         sources = self.find_sources()
-        order = [(path, frame - self.frame) for path, frame in self.moments.order(sources.values(), self.frame)]
+        order = [(path, frame - self.frame) for path, frame in self.frames.find_order(sources.values(), self.frame)]
         steps: dict[StepKey, LoweringStep] = {key: self.run_step(key) for key in (*order, None)}
         program = LoweredProgram(
             tuple(self.builder.ops),
@@ -81,7 +85,7 @@ class Lowering:
         return LoweringRecord(
             program,
             self.library,
-            self.moments,
+            self.frames,
             self.frame,
             self.builder,
             steps,
@@ -91,8 +95,8 @@ class Lowering:
         )
 
     def run_step(self, key: StepKey) -> LoweringStep:
-        """Lower a node at a frame, or at last the outputs."""
-        self.builder.added, self.builder.inspected, self.outside.is_read = [], [], False
+        """Lower one node at a frame, or for None the outputs."""
+        self.builder.added, self.builder.inspected, self.provider.is_read = [], [], False
         self.step = LoweringStep(len(self.builder.ops), self.builder.added, self.builder.inspected)
         if key is None:
             self._lower_outputs()
@@ -103,7 +107,7 @@ class Lowering:
             except HalationError as error:
                 error.node = error.node or path
                 raise
-        self.step.reads_outside |= self.outside.is_read
+        self.step.reads_resources |= self.provider.is_read
         self.results |= self.step.results
         self.memories |= self.step.memories
         self.cameras |= self.step.cameras
@@ -127,13 +131,13 @@ class Lowering:
         if f"{port.node}/" in self.flat.folders:
             port = Port(f"{port.node}/{OUTPUTS}", port.socket)
         side = port.node.rpartition("/")[2]
-        source = self.flat.source(port) if side in (INPUTS, OUTPUTS) else None
+        source = self.flat.find_source(port) if side in (INPUTS, OUTPUTS) else None
         if source is None and side == OUTPUTS and port not in self.flat.inputs:
             raise GraphError(f"output '{name}' is not linked to anything: link a node to it", node=f"{port}")
         return source or port
 
     def _find_operand(self, port: Port, frame: int) -> Operand | None:
-        """What a source port stands for; None for a graph input that has neither a picture nor a default."""
+        """The operand of a source port; None for a graph input that has neither a picture nor a default."""
         key = (port, frame - self.frame)
         if key in self.results:
             return self.results[key]
@@ -156,7 +160,7 @@ class Lowering:
         if picture is not None:
             operand = self.pictures.read(picture, f"{port}", frame, self.nodes.choose_missing(socket.missing, frame))
         elif socket.default is not None:
-            operand = constants.input_constant(port, socket)
+            operand = constants.make_input_constant(port, socket)
         else:
             return None
         self.step.results[key] = operand
@@ -172,7 +176,7 @@ class Lowering:
         }
 
     def _lower_output(self, source: Port, name: str, socket: Socket | None) -> Ref:
-        """What an output shows, as pixels of its type. A constant fills the canvas, except a single value."""
+        """The pixels of an output in its type. A constant fills the canvas, except a single value."""
         operand = self._find_operand(source, self.frame)
         if operand is None:
             raise GraphError(
@@ -187,10 +191,10 @@ class Lowering:
         if isinstance(operand, UniformConstant):
             size = (1, 1) if socket.single else self.pictures.canvas
             return self.pictures.convert(operand, socket, size, name)
-        return self.nodes.as_type(operand, socket, name)
+        return self.nodes.convert_type(operand, socket, name)
 
     def _find_type(self, target: Port, source: Port) -> Socket | None:
-        """The type that a requested output declares; None for whatever comes."""
+        """The type that a requested output declares; None if it takes any."""
         if target.node == OUTPUTS:
             return self.graph.outputs[target.socket].socket()
         if source in self.flat.inputs:
@@ -200,11 +204,11 @@ class Lowering:
         return output.socket if output else None
 
     def _find_results(self) -> dict[Port, Ref]:
-        """The pictures of all ports at the rendered frame, also of the outputs of groups and the inputs of bodies."""
+        """The pictures of all ports at the rendered frame, with those of the outputs of groups and inputs of bodies."""
         at_frame = ((port, operand) for (port, offset), operand in self.results.items() if not offset)
         refs = {port: operand for port, operand in at_frame if isinstance(operand, Ref)}
         for end in self.flat.links:
             group, slash, side = end.node.rpartition("/")
-            if slash and side in (INPUTS, OUTPUTS) and (ref := refs.get(self.flat.behind(end))):
+            if slash and side in (INPUTS, OUTPUTS) and (ref := refs.get(self.flat.follow(end))):
                 refs[Port(group, end.socket) if side == OUTPUTS else end] = ref
         return refs

@@ -1,4 +1,4 @@
-"""A node with all that it reads, and what it may ask for beyond the graph."""
+"""What one node reads while it is lowered: its inputs, and the files that it names."""
 
 from __future__ import annotations
 
@@ -14,7 +14,11 @@ from ..ir import Operand, PictureShape, Ref
 
 
 class NodeInputs(Struct, frozen=True):
-    """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at."""
+    """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at.
+
+    `linked` are the inputs that something is linked to, in the order in which the node declares them. Operations are
+    added in that order, so it must not be a set: the order of a set of strings is another one in every process.
+    """
 
     path: str
     frame: int
@@ -22,17 +26,17 @@ class NodeInputs(Struct, frozen=True):
     inputs: dict[str, Operand] = field(default_factory=dict[str, Operand])
     wires: dict[str, Operand] = field(default_factory=dict[str, Operand])
     at_frames: dict[tuple[str, int], Operand] = field(default_factory=dict[tuple[str, int], Operand])
-    linked: set[str] = field(default_factory=set[str])
+    linked: list[str] = field(default_factory=list[str])
 
 
 class NodeResources(Struct, frozen=True):
-    """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
+    """What a node can read from files: pixels, color programs, meshes, and the contents of a render."""
 
-    read: Callable[[Picture], Ref]
-    recolor: Callable[[ColorChange], ColorProgram]
-    mesh: Callable[[Scene], Mesh]
-    render: Callable[[str, Mapping[str, str]], Render]
-    asset: Callable[[Picture], Ref]
+    read_picture: Callable[[Picture], Ref]
+    write_color_program: Callable[[ColorChange], ColorProgram]
+    load_mesh: Callable[[Scene], Mesh]
+    describe_render: Callable[[str, Mapping[str, str]], Render]
+    read_asset: Callable[[Picture], Ref]
 
 
 class DrawnPicture(Struct, frozen=True):

@@ -4,22 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from halation.nodes import (
-    CameraModel,
-    Filter,
-    Kind,
-    Missing,
-    Node,
-    Pointwise,
-    Reader,
-    Size,
-    Socket,
-    Temporal,
-    Value,
-    curve_knots,
-    ramp_knots,
-    unit_factor,
-)
+from halation.nodes import CameraModel, Filter, Kind, Missing, Node, Pointwise, Reader, Size, Socket, Temporal, Value, curve_knots, ramp_knots, unit_factor
 from msgspec import Struct
 from msgspec.structs import replace
 
@@ -31,7 +16,7 @@ from ..request import Request
 from . import constants
 from .draws import Recorder, find_choices
 from .expand import FlatGraph, find_stand_in
-from .moments import Moments
+from .graph_at_frames import GraphAtFrames
 from .node_inputs import DrawnPicture, NodeInputs
 from .pictures import PictureBuilder
 from .steps import LoweringStep
@@ -40,7 +25,7 @@ OperandFinder = Callable[[Port, int], Operand | None]
 """What a source port stands for at a frame; None for a graph input without a picture."""
 
 READS_PLACE = frozenset({"pixel", "extent"})
-"""The words by which a function can tell where its pixel lies."""
+"""The GLSL variables from which a function knows the position of its pixel."""
 
 
 class LoweringContext(Struct, frozen=True):
@@ -50,14 +35,14 @@ class LoweringContext(Struct, frozen=True):
     request: Request
     library: Library
     frame: int
-    moments: Moments
+    frames: GraphAtFrames
     builder: Builder
     flat: FlatGraph
     pictures: PictureBuilder
 
 
 class NodeLowering:
-    """Lowers nodes. What each one comes to is entered into a step."""
+    """Lowers nodes. What lowering a node added is entered into a step."""
 
     def __init__(self, context: LoweringContext) -> None:
         self._context = context
@@ -70,40 +55,40 @@ class NodeLowering:
         brought to working units only after that, because units such as a fraction of the height need the size.
         """
         context = self._context
-        node = context.moments.node(path, frame)
+        node = context.frames.node_at(path, frame)
         constants.check_values(path, node)
         inputs = self._collect_inputs(path, frame, node, operand_at)
         if frame == context.frame:
             step.cameras = _find_cameras(inputs)
         size = self._find_size(inputs)
-        through = self._pass_through(inputs)
-        if through is not None:
-            for name, operand in through.items():
+        passed_through = self._pass_through(inputs)
+        if passed_through is not None:
+            for name, operand in passed_through.items():
                 fitted = self._pictures.fit(operand, size, path) if isinstance(operand, Ref) else operand
                 step.results[Port(path, name), frame - context.frame] = fitted
             return
         self._fit_all(inputs, size)
-        working = node.to_working_units(context.request.scale, size[1])
-        if isinstance(working, Pointwise):
-            self._lower_pointwise(replace(inputs, node=working), working, size, step)
-        elif isinstance(working, Filter):
-            self._lower_filter(replace(inputs, node=working), working, size, step)
+        scaled_node = node.to_working_units(context.request.scale, size[1])
+        if isinstance(scaled_node, Pointwise):
+            self._lower_pointwise(replace(inputs, node=scaled_node), scaled_node, size, step)
+        elif isinstance(scaled_node, Filter):
+            self._lower_filter(replace(inputs, node=scaled_node), scaled_node, size, step)
 
     # --- what a node reads -----------------------------------------------------------------------------------------
 
     def _collect_inputs(self, path: str, frame: int, node: Node, operand_at: OperandFinder) -> NodeInputs:
         """A node and all that it reads. Raises GraphError for an input that must be linked and is not."""
         inputs = NodeInputs(path, frame, node)
-        feeds = self._context.moments.find_feeds((path, frame))
+        feeds = self._context.frames.find_feeds((path, frame))
         for name, socket in node.inputs.items():
             source, frames = feeds.get(name, (None, ()))
             by_frame = {at: operand for at in frames if source and (operand := operand_at(source, at)) is not None}
             if by_frame:
                 inputs.inputs[name] = by_frame[frame] if frame in by_frame else next(iter(by_frame.values()))
                 inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
-                inputs.linked.add(name)
+                inputs.linked.append(name)
             elif socket.optional:
-                inputs.inputs[name] = constants.socket_default(socket)
+                inputs.inputs[name] = constants.make_default(socket)
             elif source is not None:
                 raise GraphError(
                     f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
@@ -145,28 +130,28 @@ class NodeLowering:
         if inputs.path in self._context.flat.muted:
             sources = {name: find_stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {
-                name: inputs.inputs[source] if source else constants.of_nothing(node.outputs[name].socket)
+                name: inputs.inputs[source] if source else constants.make_empty_constant(node.outputs[name].socket)
                 for name, source in sources.items()
             }
-        neutral = None if inputs.wires or len(node.outputs) != 1 else node.identity()
-        return dict.fromkeys(node.outputs, inputs.inputs[neutral]) if neutral else None
+        neutral_input = None if inputs.wires or len(node.outputs) != 1 else node.identity()
+        return dict.fromkeys(node.outputs, inputs.inputs[neutral_input]) if neutral_input else None
 
     def _find_size(self, inputs: NodeInputs) -> Size:
-        """The size of a node's outputs. What is made of single values alone is one, unless it is a pattern."""
+        """The size of a node's outputs: 1x1 if all its inputs are single values, unless it draws a pattern."""
         node = inputs.node
-        linked = {name: inputs.inputs[name] for name in node.inputs if name in inputs.linked}
+        linked_inputs = {name: inputs.inputs[name] for name in node.inputs if name in inputs.linked}
         sizes = {
             name: self._builder.shape(operand).size
-            for name, operand in (*linked.items(), *inputs.wires.items())
+            for name, operand in (*linked_inputs.items(), *inputs.wires.items())
             if isinstance(operand, Ref)
         }
         pictures = {name: size for name, size in sizes.items() if size != (1, 1)}
-        if sizes and not pictures and (sizes.keys() & linked.keys() or not self._is_pattern(inputs.path, node)):
+        if sizes and not pictures and (sizes.keys() & linked_inputs.keys() or not self._is_pattern(inputs.path, node)):
             return (1, 1)
         return node.output_size(pictures, self._pictures.canvas)
 
     def _is_pattern(self, path: str, node: Node) -> bool:
-        """True for a node whose pixels differ even if all that it reads is the same everywhere."""
+        """True for a node whose pixels differ although all its inputs are constant."""
         return not node.inputs or self._context.library.uses(node.shader, READS_PLACE, path)
 
     # --- pointwise nodes -------------------------------------------------------------------------------------------
@@ -177,7 +162,7 @@ class NodeLowering:
             if name in node.inputs:
                 parameters.append(Parameter(node.inputs[name].glsl, inputs.inputs[name]))
             elif node.values[name].glsl is not None:
-                parameters.append(self._value_parameter(node, node.values[name], inputs.wires.get(name), size))
+                parameters.append(self._make_value_parameter(node, node.values[name], inputs.wires.get(name), size))
         sockets = [output.socket for output in node.outputs.values()]
         shapes = tuple(
             PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
@@ -200,9 +185,9 @@ class NodeLowering:
             actual = f"({', '.join(parameters)}) to ({', '.join(outputs)})"
             declared = f"({', '.join(takes)}) to ({', '.join(makes)})"
             fault = f"'{node.function}' takes {actual}, but the node declares {declared}"
-            raise ShaderError(path, library.file(node.shader), function.line, fault)
+            raise ShaderError(path, library.file_name(node.shader), function.line, fault)
 
-    def _value_parameter(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
+    def _make_value_parameter(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"
         if wire is not None:
             factor = unit_factor(value.unit, self._context.request.scale, size[1])
@@ -226,9 +211,9 @@ class NodeLowering:
                 f"while frame {context.frame} is rendered: put what changes the time before '{path}'"
             )
         for name in inputs.linked:
-            inputs.inputs[name] = self._as_pixels(path, node.inputs[name], inputs.inputs[name], size)
+            inputs.inputs[name] = self._convert_to_pixels(path, node.inputs[name], inputs.inputs[name], size)
         for (name, frame), operand in inputs.at_frames.items():
-            inputs.at_frames[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
+            inputs.at_frames[name, frame] = self._convert_to_pixels(path, node.inputs[name], operand, size)
         settings = context.graph.settings
         missing = self.choose_missing(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
         recorder = Recorder(
@@ -237,7 +222,7 @@ class NodeLowering:
             size,
             self._builder,
             context.library,
-            self._pictures.resources_of(inputs, missing),
+            self._pictures.collect_resources(inputs, missing),
             self._find_memories(path, step) if remembers else {},
             settings.rate,
             (settings.frames or (1, 1))[0],
@@ -252,19 +237,19 @@ class NodeLowering:
 
     def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
         """What a node remembered of the frame before, by name."""
-        step.reads_outside = True
+        step.reads_resources = True
         memories = self._context.request.memories
         return {port.socket: memory for port, memory in memories.items() if port.node == path}
 
-    def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
-        """A filter looks around in its input: give it real pixels with the channels that it declares."""
+    def _convert_to_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
+        """Pixels with the channels that a filter's input declares: a filter reads neighbors, so a number will not do."""
         if socket.single:
             return operand
         if isinstance(operand, UniformConstant):
             return self._pictures.convert(operand, socket, size, path)
-        return self.as_type(operand, socket, path)
+        return self.convert_type(operand, socket, path)
 
-    def as_type(self, ref: Ref, socket: Socket, owner: str) -> Ref:
+    def convert_type(self, ref: Ref, socket: Socket, owner: str) -> Ref:
         """The same pixels with the channels that a socket declares."""
         shape = self._builder.shape(ref)
         if shape.channels == socket.channels:
@@ -272,7 +257,7 @@ class NodeLowering:
         return self._pictures.convert(ref, socket, shape.size, owner)
 
     def choose_missing(self, policy: Missing, frame: int) -> Missing:
-        """What stands for a missing file. Nodes may look beyond the ends of a shot: those stay as they are."""
+        """What replaces a missing file. A node may read frames before the first or after the last: these are held."""
         return "hold" if policy == "error" and frame != self._context.frame else policy
 
 

@@ -1,4 +1,4 @@
-"""Pictures from outside and their sizes: reading, fitting, converting."""
+"""Reads pictures from files and bindings, and changes their size and type."""
 
 from __future__ import annotations
 
@@ -17,44 +17,45 @@ from ...resources.provider import PictureProbe, ResourceProvider
 from ..areas import Neighborhood, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
-from .expand import FlatGraph, zero_value
-from .named import NamedPictures
+from .expand import FlatGraph, make_zero
+from .references import ReferencedPictures
 from .node_inputs import NodeInputs, NodeResources
 
 DEFAULT_CANVAS: Size = (1920, 1080)
+"""The size of a graph that neither sets a size nor reads a picture: HDTV (ITU-R BT.709)."""
 
 
 class PictureBuilder:
-    """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
+    """Adds reads of pictures, and changes of their size and type, to the operations in `builder`."""
 
     def __init__(
-        self, graph: Graph, flat: FlatGraph, request: Request, outside: ResourceProvider, builder: Builder
+        self, graph: Graph, flat: FlatGraph, request: Request, provider: ResourceProvider, builder: Builder
     ) -> None:
-        self.named = NamedPictures(flat, request.bindings)
-        self._settled = graph.settings.size
+        self.named = ReferencedPictures(flat, request.bindings)
+        self._graph_size = graph.settings.size
         self._color = color_settings(graph)
-        self._request, self._outside, self._builder = request, outside, builder
+        self._request, self._provider, self._builder = request, provider, builder
         self.canvas_is_read = False
         """Whether the canvas has been asked for."""
 
     @cached_property
     def canvas(self) -> Size:
-        """The size of what is made from nothing: asked for, the graph's own, or that of the first picture."""
-        size = self._request.size or self._settled
+        """The size of generated pictures: the requested one, else that of the graph, else that of its first picture."""
+        size = self._request.size or self._graph_size
         if size is None:
             first = next(iter(self.named), None)
-            size = self._first_size(*first) if first else DEFAULT_CANVAS
+            size = self._find_first_size(*first) if first else DEFAULT_CANVAS
         self.canvas_is_read = True
         return self._scale(size)
 
-    def _first_size(self, picture: Picture, owner: str) -> Size:
-        """What a sequence is as large as, whether or not this frame has a file."""
-        path = self._outside.at(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
+    def _find_first_size(self, picture: Picture, owner: str) -> Size:
+        """The size of a picture; of a sequence, whether or not this frame has a file."""
+        path = self._provider.find_frame_file(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
         return self._probe(replace(picture, path=path) if path else picture, owner).size
 
     def _probe(self, picture: Picture, owner: str) -> PictureProbe:
         try:
-            return self._outside.probe(replace(picture, color=self._color))
+            return self._provider.probe_picture(replace(picture, color=self._color))
         except HalationError as error:
             error.node = owner
             raise
@@ -63,30 +64,31 @@ class PictureBuilder:
         return scale_size(size, self._request.scale)
 
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
-        """Upload a picture, or that frame of a sequence, at the size wanted."""
-        picture, black = replace(picture, color=self._color), False
+        """Upload a picture, or that frame of a sequence, at the size of the request."""
+        picture, is_black = replace(picture, color=self._color), False
         if not picture.in_memory:
-            frame_file = self._outside.at(picture.path, frame, missing)
-            picture, black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
+            frame_file = self._provider.find_frame_file(picture.path, frame, missing)
+            picture, is_black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         size = self._scale(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
-        if black:
+        if is_black:
             socket = make_socket(picture.kind, picture.width)
-            return self.convert(UniformConstant(zero_value(socket)), socket, size, owner)
-        # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
+            return self.convert(UniformConstant(make_zero(socket)), socket, size, owner)
+        # A bound array is identified by its fingerprint. Only the request refers to the array, so that plans that are
+        # kept for later do not keep it in memory.
         picture = replace(picture, pixels=None, by_rows=probed.by_rows)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
         return self.fit(ref, size, owner)
 
-    def asset(self, picture: Picture, owner: str) -> Ref:
-        """Upload a picture that belongs to a node, as it is."""
+    def read_asset(self, picture: Picture, owner: str) -> Ref:
+        """Upload a picture that belongs to a node, at its own size."""
         picture = replace(picture, color=self._color)
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
 
-    def resources_of(self, inputs: NodeInputs, missing: Missing) -> NodeResources:
+    def collect_resources(self, inputs: NodeInputs, missing: Missing) -> NodeResources:
         """The files that a node names, which lie beside the graph file that it came from."""
 
         def locate(file: str) -> str:
@@ -97,7 +99,7 @@ class PictureBuilder:
                 change = replace(change, path=locate(change.path))
             else:
                 change = replace(change, color=self._color)
-            return self._outside.recolor(change)
+            return self._provider.write_color_program(change)
 
         def read(picture: Picture) -> Ref:
             return self.read(replace(picture, path=locate(picture.path)), inputs.path, inputs.frame, missing)
@@ -105,14 +107,14 @@ class PictureBuilder:
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
                 scene = replace(scene, path=locate(scene.path))
-            return self._outside.mesh(scene)
+            return self._provider.load_mesh(scene)
 
         def render(file: str, named: Mapping[str, str]) -> Render:
-            return self._outside.render(self._outside.at(locate(file), inputs.frame, missing).path, named)
+            return self._provider.describe_render(self._provider.find_frame_file(locate(file), inputs.frame, missing).path, named)
 
         def asset(picture: Picture) -> Ref:
             whole = replace(picture, path=locate(picture.path), within=locate(picture.within))
-            return self.asset(whole, inputs.path)
+            return self.read_asset(whole, inputs.path)
 
         return NodeResources(read, recolor, mesh, render, asset)
 
@@ -124,9 +126,9 @@ class PictureBuilder:
         across, down = shape.size[0] / size[0], shape.size[1] / size[1]
         if abs(across / down - 1.0) > max(1.0 / side for side in (*size, *shape.size)):
             across = down = min(across, down)
-        fitted = PictureShape(size, shape.channels, shape.data)
+        fitted_shape = PictureShape(size, shape.channels, shape.data)
         function = "fit_nearest" if shape.data else "fit"
-        # The middles of both lie on each other; a pixel more for what floats of 32 bits round.
+        # The centers of both pictures coincide. One more pixel of reach covers rounding in 32-bit floats.
         matrix = (
             across,
             0.0,
@@ -137,7 +139,7 @@ class PictureBuilder:
         )
         around = Neighborhood(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
         accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", UniformConstant((across, down)))
-        return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (scale,), accessors=(accessor,)))
+        return self._builder.add(Gather((fitted_shape,), owner, "primitive/fit", function, (scale,), accessors=(accessor,)))
 
     def convert(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
         """The same as the pixels that `socket` stands for."""

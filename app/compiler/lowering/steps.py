@@ -1,4 +1,4 @@
-"""What lowering a graph came to, node by node, so that another graph much like it need not be lowered as a whole."""
+"""Records of lowering, node by node, from which an edited graph is lowered without starting again."""
 
 from __future__ import annotations
 
@@ -15,38 +15,38 @@ from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ...resources.working_space import WorkingSpace
 from ..ir import Builder, LoweredProgram, Operand, Ref
 from ..library import Library
-from .moments import Moments
+from .graph_at_frames import GraphAtFrames
 
 PortAtOffset = tuple[Port, int]
-"""A port, so many frames after the one that is rendered."""
+"""A port, and how many frames after the rendered one it is read."""
 
 StepKey = tuple[str, int] | None
-"""A node, so many frames after the one that is rendered; None stands for the outputs."""
+"""The path of a node, and how many frames after the rendered one it is lowered; None stands for the outputs."""
 
 
 class LoweringStep(Struct):
-    """What lowering one node at a frame came to. `first` is how many operations there were before."""
+    """What lowering one node at a frame added. `first` is how many operations there were before."""
 
     first: int
     added: list[int]
-    """The operations that it added, in order, also those that were there."""
+    """The operations that it added, in order, including equal ones that were there already."""
     inspected: list[int]
-    """Operations of other nodes that it did not only read: these decided what it added."""
+    """Operations of other nodes whose content, not only their shape, decided what it added."""
     results: dict[PortAtOffset, Operand] = field(default_factory=dict[PortAtOffset, Operand])
     cameras: dict[Port, CameraModel] = field(default_factory=dict[Port, CameraModel])
     memories: dict[Port, Ref] = field(default_factory=dict[Port, Ref])
-    reads_outside: bool = False
-    """True if something beyond the graph decided, which may be another thing the next time."""
+    reads_resources: bool = False
+    """True if a file or a memory of an earlier frame decided what it added: these may differ the next time."""
     reads_frame: bool = False
-    """True if the number of the frame decided."""
+    """True if the number of the frame decided what it added."""
 
 
 class LoweringRecord(Struct, frozen=True, weakref=True):
-    """A program, and how it came to be."""
+    """A program, and the steps that lowered it."""
 
     program: LoweredProgram
     library: Library
-    moments: Moments
+    frames: GraphAtFrames
     frame: int
     builder: Builder
     steps: Mapping[StepKey, LoweringStep]
@@ -54,34 +54,34 @@ class LoweringRecord(Struct, frozen=True, weakref=True):
     counts: Mapping[int, int]
     """How often each operation was added."""
     canvas: Size | None
-    """None where nothing depends on it."""
+    """The size of generated pictures; None if no operation depends on it."""
 
 
 class WatchedProvider:
-    """The resources beyond the graph; `is_read` tells whether any was asked for."""
+    """A provider that notes in `is_read` whether anything was asked of it."""
 
-    def __init__(self, outside: ResourceProvider) -> None:
-        self._outside = outside
+    def __init__(self, provider: ResourceProvider) -> None:
+        self._provider = provider
         self.is_read = False
 
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
-        return self._note_read().at(path, frame, missing)
+    def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
+        return self._note_read().find_frame_file(path, frame, missing)
 
-    def probe(self, picture: Picture) -> PictureProbe:
-        return self._note_read().probe(picture)
+    def probe_picture(self, picture: Picture) -> PictureProbe:
+        return self._note_read().probe_picture(picture)
 
-    def recolor(self, change: ColorChange) -> ColorProgram:
-        return self._note_read().recolor(change)
+    def write_color_program(self, change: ColorChange) -> ColorProgram:
+        return self._note_read().write_color_program(change)
 
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
-        return self._note_read().working(color)
+    def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
+        return self._note_read().find_working_space(color)
 
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
-        return self._note_read().render(path, named)
+    def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
+        return self._note_read().describe_render(path, named)
 
-    def mesh(self, scene: Scene) -> Mesh:
-        return self._note_read().mesh(scene)
+    def load_mesh(self, scene: Scene) -> Mesh:
+        return self._note_read().load_mesh(scene)
 
     def _note_read(self) -> ResourceProvider:
         self.is_read = True
-        return self._outside
+        return self._provider

@@ -1,8 +1,8 @@
-"""Transforms of transforms: pixels are filtered once, by the product of the matrices.
+"""Joins chains of transforms: pixels are filtered once, through the product of the matrices.
 
-A transform of what another one made reads the picture that the other one read, through the product. So nothing is
-softened twice, and what left the frame in between comes back: between the two there is no frame. That holds where both
-have the same edge mode; another one says that the frame in between does matter. The last kernel is used for all.
+The second of two transforms reads the picture that the first one read, through the product. So the picture is not
+softened twice, and what the first one moved out of the frame can come back. That holds where both have the same edge
+mode; with another one, the edge of the frame between them is visible and must be kept. The last kernel is used for all.
 """
 
 from __future__ import annotations
@@ -16,15 +16,18 @@ from ..areas import Neighborhood
 from ..ir import Accessor, Builder, Choice, Parameter, PictureShape, Placement, Ref, UniformConstant
 
 STILL_TOLERANCE = 1e-9
-"""A product that moves no pixel farther than this is that of a transform and its inverse, but for rounding."""
+"""How far, in widths of the picture, a matrix may move pixels and still count as none. A transform and its inverse
+leave about 1e-15 in doubles; a millionth of a pixel in 8192 pixels is 1e-10, which nobody sees."""
 
 
 _LOBES = {"nearest": 0.0, "triangle": 1.0, "catmull-rom": 2.0, "mitchell": 2.0, "lanczos": 3.0}
 _WIDEST = 32.0
-"""How far a kernel reaches, and how many times that at most: as in primitive/place.glsl."""
+"""How far each kernel reaches in pixels, and how many times as far at most where it shrinks a picture: the same numbers
+as in primitive/place.glsl, because tiles must hold all pixels that the shader reads."""
 
 _ROUNDING = 1.0
-"""Pixels by which a place may be off in floats of 32 bits."""
+"""Pixels by which a position in 32-bit floats may be off. At 32768 pixels their spacing is 1/256, and a matrix adds
+three roundings; a whole pixel is more than enough."""
 
 
 def place(
@@ -65,7 +68,7 @@ def place(
 
 
 def multiply(first: Affine, then: Affine) -> Affine:
-    """Where pixels placed by `first` and `then` lie: both lead backward, so the first one's comes last."""
+    """The matrix of two transforms in a row. Matrices lead from output to input, so that of `first` is applied last."""
     a, b, x, c, d, y = first
     e, f, u, g, h, v = then
     return (a * e + b * g, a * f + b * h, a * u + b * v + x, c * e + d * g, c * f + d * h, c * u + d * v + y)

@@ -1,4 +1,4 @@
-"""What a node shows depends on everything upstream of it: one hash per node says whether any of that changed."""
+"""One hash per node of everything upstream of it: it changes when anything that the node's picture depends on does."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from msgspec.structs import replace
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
 from .expand import FlatGraph, find_changed_nodes
-from .moments import Moments
+from .graph_at_frames import GraphAtFrames
 
 
-class Upstream:
+class UpstreamHashes:
     """A hash by path of every node (`glow/bloom`), group (`glow`) and input (`inputs.beauty`, `glow/inputs.image`).
 
-    It changes with the node, its values and links, and with those of all that feed it, and with the frame; not with
-    pictures bound to the graph. What cannot be rendered, because it goes in a circle say, has none. From what is
-    `known` of another graph that differs in values of nodes only, as while one is dragged, only what they reach is
-    found out anew.
+    It changes with the node, its values and links, those of all nodes that feed it, and the frame; not with pictures
+    bound to the graph. A node that cannot be rendered, because it is part of a loop say, has none.
+
+    If only values of nodes differ from the graph of `before`, as while a slider is dragged, only the nodes downstream
+    of these are hashed again.
     """
 
-    def __init__(self, graph: Graph, frame: int = 1, before: Upstream | None = None) -> None:
+    def __init__(self, graph: Graph, frame: int = 1, before: UpstreamHashes | None = None) -> None:
         self.graph, self.frame = graph, frame
         self.hashes: dict[str, str] = {}
         follows = before and before.frame == frame and not is_animated(graph)
@@ -36,11 +37,11 @@ class Upstream:
             self.hashes = {}
 
     def _find_all(self) -> None:
-        moments = Moments(self.graph)
-        self._flat: FlatGraph = moments.flat(self.frame)
-        # A node may look at other frames, where values are others.
-        self._settings = repr((self.graph.settings, self.frame, _animations(self.graph)))
-        self._reads = {path: self._sources(path) for path in self._order(moments)}
+        frames = GraphAtFrames(self.graph)
+        self._flat: FlatGraph = frames.flat_at(self.frame)
+        # A node may read other frames, at which animated values differ: so all animation counts.
+        self._settings = repr((self.graph.settings, self.frame, _collect_animations(self.graph)))
+        self._reads = {path: self._find_sources(path) for path in self._find_order(frames)}
         for path in self._reads:
             self._hash_node(path)
         self._ends = [
@@ -50,7 +51,7 @@ class Upstream:
         ]
         self._hash_ends()
 
-    def _follow(self, before: Upstream, changed: dict[str, Node]) -> None:
+    def _follow(self, before: UpstreamHashes, changed: dict[str, Node]) -> None:
         self.hashes = dict(before.hashes)
         if not before.hashes:
             return
@@ -63,27 +64,27 @@ class Upstream:
                 self._hash_node(path)
         self._hash_ends()
 
-    def _order(self, moments: Moments) -> list[str]:
+    def _find_order(self, frames: GraphAtFrames) -> list[str]:
         paths = [Port(path, "") for path in self._flat.nodes]
         try:
-            return list(dict.fromkeys(path for path, _ in moments.order(paths, self.frame)))
-        except GraphError:  # something is wrong somewhere: take what can be had
+            return list(dict.fromkeys(path for path, _ in frames.find_order(paths, self.frame)))
+        except GraphError:  # some nodes cannot be rendered: take those that can
             paths_: dict[str, None] = {}
             for path in paths:
                 try:
-                    paths_ |= dict.fromkeys(node for node, _ in moments.order((path,), self.frame))
+                    paths_ |= dict.fromkeys(node for node, _ in frames.find_order((path,), self.frame))
                 except GraphError:
                     continue
             return list(paths_)
 
-    def _sources(self, path: str) -> list[Port | None]:
+    def _find_sources(self, path: str) -> list[Port | None]:
         node = self._flat.nodes[path]
-        return [self._flat.source(Port(path, name)) for name in (*node.inputs, *node.values)]
+        return [self._flat.find_source(Port(path, name)) for name in (*node.inputs, *node.values)]
 
     def _hash_node(self, path: str) -> None:
         node = self._flat.nodes[path]
         values = {name: getattr(node, name) for name in node.values}
-        read = [f"{source} {self._of(source)}" if source else "-" for source in self._reads[path]]
+        read = [f"{source} {self._hash_source(source)}" if source else "-" for source in self._reads[path]]
         self.hashes[path] = _hash(node.shader, values, path in self._flat.muted, self._settings, *read)
 
     def _hash_ends(self) -> None:
@@ -91,22 +92,22 @@ class Upstream:
         for end in self._ends:
             group, _, side = end.node.rpartition("/")
             if side == INPUTS:
-                self.hashes[f"{end}"] = self._of(self._flat.behind(end))
+                self.hashes[f"{end}"] = self._hash_source(self._flat.follow(end))
             else:
-                groups[group] = _hash(groups.get(group, ""), end.socket, self._of(self._flat.behind(end)))
+                groups[group] = _hash(groups.get(group, ""), end.socket, self._hash_source(self._flat.follow(end)))
         self.hashes |= groups
 
-    def _of(self, source: Port) -> str:
-        """The hash of what a link starts at."""
+    def _hash_source(self, source: Port) -> str:
+        """The hash of the port that a link starts at."""
         if source in self._flat.inputs:
             return _hash(f"{source}", self._flat.inputs[source], self._settings)
         return self.hashes.get(source.node, "")
 
 
-def _animations(graph: Graph) -> list[object]:
+def _collect_animations(graph: Graph) -> list[object]:
     """How values change over time, in groups too."""
-    inner = [_animations(item.graph) for item in graph.nodes.values() if isinstance(item, Group)]
-    return [sorted(graph.animation.items(), key=lambda item: item[0]), *(found for found in inner if any(found))]
+    inner = [_collect_animations(item.graph) for item in graph.nodes.values() if isinstance(item, Group)]
+    return [sorted(graph.animation.items(), key=lambda item: item[0]), *(animation for animation in inner if any(animation))]
 
 
 def _hash(*parts: object) -> str:

@@ -62,7 +62,7 @@ class PassFingerprints:
     def _describe_textures(self, refs: Iterable[Ref]) -> list[object]:
         """How pictures are stored on the device."""
         program, formats = self._program, self._formats
-        return [(*program.shape(ref).size, formats[ref], *_window(program, ref)) for ref in refs]
+        return [(*program.shape(ref).size, formats[ref], *_describe_window(program, ref)) for ref in refs]
 
     def _describe(self, index: int, op: Op) -> str:
         """An operation, the texts that it calls, and the uniforms of the whole pass that it reads."""
@@ -93,28 +93,28 @@ def update_keys(
 
     Returns the pictures that have other keys than before.
     """
-    fresh: set[Ref] = set()
+    changed_refs: set[Ref] = set()
 
     def enter(ref: Ref, key: str) -> None:
         if keys.get(ref) != key:
             keys[ref] = key
-            fresh.add(ref)
+            changed_refs.add(ref)
 
     for ref in sources:
         op = program.ops[ref.op]
         if isinstance(op, SourceOp):
             key = op.key(ref.output)
-            enter(ref, key if isinstance(key, str) else hash_parts(key, *_window(program, ref)))
+            enter(ref, key if isinstance(key, str) else hash_parts(key, *_describe_window(program, ref)))
     changed_passes = frozenset(changed)
     for number, parts in enumerate(fingerprints):
         for group, fingerprint in parts:
-            if number in changed_passes or not fresh.isdisjoint(group.reads):
+            if number in changed_passes or not changed_refs.isdisjoint(group.reads):
                 key = hash_parts(fingerprint, *(keys[ref] for ref in group.reads))
                 for place, ref in enumerate(group.writes):
                     enter(ref, f"{key}.{place}")
-    return fresh
+    return changed_refs
 
 
-def _window(program: LoweredProgram, ref: Ref) -> tuple[object, ...]:
+def _describe_window(program: LoweredProgram, ref: Ref) -> tuple[object, ...]:
     """Which part of a picture it is, where it is not whole."""
     return (program.windows[ref],) if ref in program.windows else ()

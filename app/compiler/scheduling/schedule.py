@@ -59,8 +59,8 @@ def schedule(
             keys[ref],
             program.ops[ref.op].owner,
             program.size_on_device(ref),
-            _shape(program, ref).channels,
-            _depth(texels[ref]),
+            _find_shape(program, ref).channels,
+            _find_depth(texels[ref]),
             slots[ref],
             first[ref],
             last[ref],
@@ -128,7 +128,7 @@ def _find_memories(
 ) -> Mapping[Port, Memory]:
     return MappingProxyType(
         {
-            node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
+            node: Memory(keys[ref], _find_shape(program, ref), texels[ref].endswith("16f"))
             for node, ref in program.memories.items()
         }
     )
@@ -153,19 +153,19 @@ def _find_textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict
     return needed | dict.fromkeys(program.kept_refs)
 
 
-def _shape(program: LoweredProgram, ref: Ref) -> PictureShape:
+def _find_shape(program: LoweredProgram, ref: Ref) -> PictureShape:
     return program.ops[ref.op].shapes[ref.output]
 
 
-def peak_bytes(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
+def count_peak_bytes(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
     """Bytes of all textures that passes need at the same time."""
     first, last = _find_lifetimes(program, passes)
     return sum(_assign_slots(program, _find_textures(program, passes), texels, first, last)[1])
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
-    by_image = target.form == "compute" and not op.is_fragment_only
-    most = target.max_images if by_image else target.max_targets
+    as_images = target.form == "compute" and not op.is_fragment_only
+    most = target.max_images if as_images else target.max_targets
     if count > most:
         raise DeviceError(
             f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
@@ -176,7 +176,7 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
 
 def _choose_format(program: LoweredProgram, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
-    op, shape = program.ops[ref.op], _shape(program, ref)
+    op, shape = program.ops[ref.op], _find_shape(program, ref)
     half = op.is_half(ref.output) if isinstance(op, SourceOp) else precision == "half" and not shape.data
     return texture_format(shape.channels, half)
 
@@ -194,7 +194,7 @@ def _find_rounded(
     return frozenset(rounded.difference(program.memories.values()))
 
 
-def _depth(format: str) -> Depth:
+def _find_depth(format: str) -> Depth:
     return "f2" if format.endswith("16f") else "f4"
 
 
@@ -253,7 +253,7 @@ def _find_uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[U
         op = program.ops[ref.op]
         picture = op.find_upload(ref.output)
         if picture is not None:
-            uploads.append(Upload(number, picture, op.owner, _shape(program, ref).size))
+            uploads.append(Upload(number, picture, op.owner, _find_shape(program, ref).size))
     return uploads
 
 

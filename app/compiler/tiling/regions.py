@@ -17,7 +17,7 @@ from ..ir import LoweredProgram, Ref
 
 
 def find_regions(
-    program: LoweredProgram, passes: Sequence[PassGroup], requested: Mapping[Ref, Region], there: Set[Ref] = frozenset()
+    program: LoweredProgram, passes: Sequence[PassGroup], requested: Mapping[Ref, Region], cached_refs: Set[Ref] = frozenset()
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
 
@@ -29,7 +29,7 @@ def find_regions(
         written = [ref for ref in fused.writes if ref in regions]
         if not written:
             continue
-        is_there = all(ref in there for ref in written)
+        is_there = all(ref in cached_refs for ref in written)
         size = program.shape(written[0]).size
         whole = is_there or any(program.ops[index].is_indivisible for index in fused.members)
         region = Region.whole(size) if whole else _unite([regions[ref] for ref in written])
@@ -44,7 +44,7 @@ def find_regions(
 
 
 def focus_program(
-    program: LoweredProgram, passes: Sequence[PassGroup], region: Region, there: Set[Ref] = frozenset()
+    program: LoweredProgram, passes: Sequence[PassGroup], region: Region, cached_refs: Set[Ref] = frozenset()
 ) -> LoweredProgram:
     """The same program, which makes only a region of its outputs, as far as that lies in them.
 
@@ -56,9 +56,9 @@ def focus_program(
         width, height = program.shape(ref).size
         requested[ref] = Region.of(clip_span(region.across, width, "clamp"), clip_span(region.down, height, "clamp"))
     requested |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
-    regions = find_regions(program, passes, requested, there)
+    regions = find_regions(program, passes, requested, cached_refs)
     written = {ref for fused in passes for ref in fused.writes}
-    whole_refs = {ref for ref in regions if ref not in written and (ref in there or program.ops[ref.op].is_memory)}
+    whole_refs = {ref for ref in regions if ref not in written and (ref in cached_refs or program.ops[ref.op].is_memory)}
     parts = {
         ref: part for ref, part in regions.items() if ref not in whole_refs and part.size != program.shape(ref).size
     }

@@ -17,12 +17,12 @@ from msgspec.structs import replace
 
 from ...errors import DeviceError
 from ..areas import Region
-from ..explain import size_text
+from ..explain import format_bytes
 from ..fusion.fuse import PassGroup
 from ..ir import LoweredProgram, Op, Ref, StoredResult
 from ..library import Library
 from ..plan import Plan, texture_bytes
-from ..scheduling.schedule import peak_bytes, schedule
+from ..scheduling.schedule import count_peak_bytes, schedule
 from ..target import Precision, Target
 from .regions import find_regions
 from .tiles import TileStage, Tiling
@@ -68,12 +68,12 @@ def plan_tiling(
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
     for ref in texels:
-        if _area(program.shape(ref).size) > MAX_PIXELS:
+        if _count_pixels(program.shape(ref).size) > MAX_PIXELS:
             raise DeviceError(
                 f"{why}, and too many to be made in parts; render smaller with --scale or --size",
                 node=program.ops[ref.op].owner,
             )
-    _check(program, passes, target)
+    _check_whole_pictures(program, passes, target)
     work = _StagePlanner(program, passes, texels, target, by_rows)
     before, last = work.plan_before(), work.plan_last()
     # What an output was rounded to as a part of the whole, it is rounded to in a tile.
@@ -103,24 +103,24 @@ def _find_excess(
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
-                f"node '{owner}': {_size_text(size)} pixels is more than the {target.max_size} that {target.renderer} "
+                f"node '{owner}': {_format_size(size)} pixels is more than the {target.max_size} that {target.renderer} "
                 "can hold on a side"
             )
     if not target.memory:
         return ""
-    nbytes = peak_bytes(program, passes, texels) + sum(
-        _nbytes(program, texels, ref) for ref in _find_outside(program, passes)
+    nbytes = count_peak_bytes(program, passes, texels) + sum(
+        _count_bytes(program, texels, ref) for ref in _find_outside(program, passes)
     )
     nbytes += _count_memory_bytes(program, texels)
     if nbytes <= target.memory:
         return ""
-    return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
+    return f"{format_bytes(nbytes)} of textures and pictures is more than the {format_bytes(target.memory)} that may be used"
 
 
 def _count_memory_bytes(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
     """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
-    kept_bytes = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
-    read = sum(_nbytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
+    kept_bytes = sum(_count_bytes(program, texels, ref) for ref in program.memories.values())
+    read = sum(_count_bytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
     return max(kept_bytes - read, 0)
 
 
@@ -130,12 +130,12 @@ def _find_outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[R
     return reads | set(program.outputs.values())
 
 
-def _nbytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -> int:
+def _count_bytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -> int:
     """What a whole picture takes."""
     return texture_bytes(program.shape(ref).size, texels[ref])
 
 
-def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
+def _check_whole_pictures(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
     """Raise DeviceError for what must be whole and does not fit, and for what remembers frames."""
     for fused in passes:
         for op in (program.ops[index] for index in fused.members):
@@ -146,7 +146,7 @@ def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target)
             for size in sizes:
                 if max(size) > target.max_size:
                     raise DeviceError(
-                        f"node '{op.owner}': it may need all {_size_text(size)} pixels of a picture for one of its "
+                        f"node '{op.owner}': it may need all {_format_size(size)} pixels of a picture for one of its "
                         f"own, so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a "
                         "side; render smaller with --scale or --size",
                         node=op.owner,
@@ -159,7 +159,7 @@ def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target)
         )
 
 
-def _size_text(size: Size) -> str:
+def _format_size(size: Size) -> str:
     return f"{size[0]}x{size[1]}"
 
 
@@ -176,48 +176,48 @@ class _StagePlanner:
     ) -> None:
         self.program, self.passes, self.texels, self.target = program, passes, texels, target
         self.makers = {ref: fused for fused in passes for ref in fused.writes}
-        self.largest = max(_area(program.shape(ref).size) for ref in texels)
-        self.cuts = tuple(fused for fused in passes if self._is_cut(fused))
-        self.held = {ref for fused in self.cuts for ref in fused.writes}
-        self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.held)
+        self.largest = max(_count_pixels(program.shape(ref).size) for ref in texels)
+        self.whole_passes = tuple(fused for fused in passes if self._is_made_whole(fused))
+        self.whole_refs = {ref for fused in self.whole_passes for ref in fused.writes}
+        self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.whole_refs)
         self.nbytes = 0
 
     def plan_before(self) -> tuple[TileStage, ...]:
         """What is made whole before it is read."""
         return tuple(
-            self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts
+            self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.whole_passes
         )
 
     def plan_last(self) -> tuple[TileStage, ...]:
         """The outputs that are not made by then, by size."""
         sizes: dict[Size, dict[str, Ref]] = {}
         for name, ref in self.program.outputs.items():
-            if ref not in self.held:
+            if ref not in self.whole_refs:
                 sizes.setdefault(self.program.shape(ref).size, {})[name] = ref
         return tuple(self._plan_stage(outputs, None) for outputs in sizes.values())
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _is_cut(self, fused: PassGroup) -> bool:
+    def _is_made_whole(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures are made as a whole before others read them."""
-        if any(op.is_made_first for op in self._ops(fused)):
+        if any(op.is_made_first for op in self._find_ops(fused)):
             return True
         if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
             return True
         return any(
             op.reads_whole(ref, self.program.shape(ref).size) and self.program.shape(ref).size != (1, 1)
             for other in self.passes
-            for op in self._ops(other)
+            for op in self._find_ops(other)
             for ref in op.reads()
             if ref in fused.writes
         )
 
     def _is_small(self, ref: Ref) -> bool:
-        return SMALL_FRACTION * _area(self.program.shape(ref).size) <= self.largest
+        return SMALL_FRACTION * _count_pixels(self.program.shape(ref).size) <= self.largest
 
     def _is_light(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures leave room for much else."""
-        nbytes = sum(_nbytes(self.program, self.texels, ref) for ref in fused.writes)
+        nbytes = sum(_count_bytes(self.program, self.texels, ref) for ref in fused.writes)
         return not self.target.memory or 8 * nbytes <= self.target.memory
 
     def _stays_small(self, fused: PassGroup) -> bool:
@@ -225,14 +225,14 @@ class _StagePlanner:
         readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
         return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
 
-    def _ops(self, fused: PassGroup) -> list[Op]:
+    def _find_ops(self, fused: PassGroup) -> list[Op]:
         return [self.program.ops[index] for index in fused.members]
 
     def _plan_stage(self, outputs: dict[str, Ref], own: PassGroup | None) -> TileStage:
         """A stage with the fewest tiles that fit."""
         passes = self._find_passes(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
-        whole = any(op.is_indivisible for fused in passes for op in self._ops(fused))
+        whole = any(op.is_indivisible for fused in passes for op in self._find_ops(fused))
         tile = size
         usual = max(USUAL_BYTES, 2 * self._measure_textures(passes, outputs, size, (MIN_TILE, MIN_TILE))[1])
         while True:
@@ -241,30 +241,30 @@ class _StagePlanner:
             fits = self._fits(windows, textures, nbytes, usual)
             if fits or whole or max(tile) <= MIN_TILE:
                 break
-            tile = _halve_tile(tile, self._too_wide(windows))
-        if not fits and (self.target.memory or any(self._too_wide(windows))):
-            self._refuse(windows, nbytes)
+            tile = _halve_tile(tile, self._find_too_long_sides(windows))
+        if not fits and (self.target.memory or any(self._find_too_long_sides(windows))):
+            self._raise_too_large(windows, nbytes)
         self.nbytes = max(self.nbytes, nbytes)
-        if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MAX_TILES:
+        if math.prod(-(-side // length) for side, length in zip(size, tile, strict=True)) > MAX_TILES:
             owner, memory = self.program.ops[next(iter(outputs.values())).op].owner, self.target.memory
-            within = f"within {size_text(memory)} its" if memory else "its"
+            within = f"within {format_bytes(memory)} its" if memory else "its"
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
-                f"node '{owner}': {within} {_size_text(size)} pixels can only be made in tiles of {_size_text(tile)}, "
+                f"node '{owner}': {within} {_format_size(size)} pixels can only be made in tiles of {_format_size(tile)}, "
                 f"which takes too long; {more} smaller with --scale or --size",
                 node=owner,
             )
         tiles = _split_into_tiles(size, tile)
-        all_ = [self._find_windows(passes, outputs.values(), region) for region in tiles]
-        return TileStage(MappingProxyType(outputs), passes, tiles, _select_parts(self.program, all_))
+        windows_by_tile = [self._find_windows(passes, outputs.values(), region) for region in tiles]
+        return TileStage(MappingProxyType(outputs), passes, tiles, _select_parts(self.program, windows_by_tile))
 
     def _measure_textures(
         self, passes: Sequence[PassGroup], outputs: dict[str, Ref], size: Size, tile: Size
     ) -> tuple[list[dict[Ref, Region]], int]:
         """The windows of tiles of this size, and what textures take at most."""
         windows = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
-        programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in windows)
-        return windows, max(peak_bytes(program, passes, self.texels) for program in programs)
+        programs = (replace(self.program, windows=tile_windows, outputs=outputs, memories={}) for tile_windows in windows)
+        return windows, max(count_peak_bytes(program, passes, self.texels) for program in programs)
 
     def _find_passes(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
         """The passes that make pictures of what stages before made; `own` is the stage's own one."""
@@ -274,7 +274,7 @@ class _StagePlanner:
         while todo:
             ref = todo.pop()
             fused = self.makers.get(ref)
-            if fused is None or numbers[id(fused)] in numbers_found or (ref in self.held and fused is not own):
+            if fused is None or numbers[id(fused)] in numbers_found or (ref in self.whole_refs and fused is not own):
                 continue
             numbers_found.add(numbers[id(fused)])
             todo.extend(fused.reads)
@@ -295,37 +295,37 @@ class _StagePlanner:
         Of files that are read by rows, and outputs that are handed over by rows, those of a tile: of outputs twice,
         since they are encoded.
         """
-        held = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
+        held_refs = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.whole_refs}
         rows = {
             ref: max(windows[ref].height for windows in windows_by_tile if ref in windows)
-            for ref in held
+            for ref in held_refs
             if self.target.memory and (picture := self.program.ops[ref.op].find_upload(ref.output)) and picture.by_rows
         }
         rows |= {ref: 2 * tile[1] for name, ref in outputs.items() if name in self.by_rows}
         total = 0
-        for ref in held | set(outputs.values()):
+        for ref in held_refs | set(outputs.values()):
             height = self.program.shape(ref).size[1]
-            total += _nbytes(self.program, self.texels, ref) * min(rows.get(ref, height), height) // height
+            total += _count_bytes(self.program, self.texels, ref) * min(rows.get(ref, height), height) // height
         return total
 
     def _fits(self, windows: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
         """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
         fits = nbytes <= self.target.memory if self.target.memory else textures <= usual
-        return fits and self._too_wide(windows) == (False, False)
+        return fits and self._find_too_long_sides(windows) == (False, False)
 
-    def _too_wide(self, windows_by_tile: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
+    def _find_too_long_sides(self, windows_by_tile: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
         """Whether a window is wider, or higher, than the device can hold."""
         most = self.target.max_size
         regions = [region for windows in windows_by_tile for region in windows.values()]
         return any(region.width > most for region in regions), any(region.height > most for region in regions)
 
-    def _refuse(self, windows_by_tile: Sequence[Mapping[Ref, Region]], nbytes: int) -> None:
+    def _raise_too_large(self, windows_by_tile: Sequence[Mapping[Ref, Region]], nbytes: int) -> None:
         """Raise DeviceError: even the smallest tiles are too large."""
         sizes = {ref: region.width * region.height for windows in windows_by_tile for ref, region in windows.items()}
         largest = max(sizes, key=lambda ref: sizes[ref])
         owner, memory = self.program.ops[largest.op].owner, self.target.memory
         if memory and nbytes > memory:
-            shortage = f"{size_text(nbytes)} of pictures must be held at once, but only {size_text(memory)} may be used"
+            shortage = f"{format_bytes(nbytes)} of pictures must be held at once, but only {format_bytes(memory)} may be used"
             raise DeviceError(
                 f"node '{owner}': {shortage}; give more with --memory, or render smaller with --scale or --size",
                 node=owner,
@@ -337,7 +337,7 @@ class _StagePlanner:
         )
 
 
-def _area(size: Size) -> int:
+def _count_pixels(size: Size) -> int:
     return size[0] * size[1]
 
 
@@ -352,8 +352,8 @@ def _split_into_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
 def _sample_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
     """Of the tiles of a grid, those in corners, along edges and in the middle: all others are like one of these."""
     across, down = (
-        sorted({0, (length - 1) // one // 2 * one, (length - 1) // one * one})
-        for length, one in zip(size, tile, strict=True)
+        sorted({0, (length - 1) // step // 2 * step, (length - 1) // step * step})
+        for length, step in zip(size, tile, strict=True)
     )
     return tuple(Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y)) for y, x in product(down, across))
 

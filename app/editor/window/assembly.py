@@ -42,7 +42,7 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     renderer = Renderer(device, budget=store.current.memory_budget * 2**20)
     renders, session = RenderOverviews(), Session()
     session.measure = _measure
-    renderer.pictures.look = renders.render
+    renderer.pictures.describer = renders.describe_render
     display = Display(device)
     return Editor(
         DocumentStage(session),
@@ -61,7 +61,7 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
 
 def _measure(graph: Graph, bindings: Mapping[str, str]) -> tuple[int, int]:
     pictures = MediaProvider()
-    return pictures.frames(graph, pictures.bind(graph, bindings))
+    return pictures.find_frames(graph, pictures.bind(graph, bindings))
 
 
 def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -> None:

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from ...compiler import Pass, Plan, Ref, Region, StoredResult, TileStage, Upload, plan_tile
 from ...compiler.areas import Span
-from ...compiler.explain import size_text
+from ...compiler.explain import format_bytes
 from ...compiler.ir import LoweredProgram
 from ...errors import DeviceError, HalationError
 from ...resources.machine import machine_memory
@@ -219,7 +219,7 @@ def _check_memory(program: LoweredProgram, taken: Set[str]) -> None:
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
     if nbytes > (most := machine_memory()):
         raise DeviceError(
-            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(int(most))}; "
+            f"the outputs take {format_bytes(nbytes)} of memory, and this machine has {format_bytes(int(most))}; "
             "render smaller with --scale or --size"
         )
 

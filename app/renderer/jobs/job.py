@@ -106,7 +106,7 @@ def run_job(
         renderer.runner.counters.passes - counters,
         renderer.runner.programs.compiled - programs,
         renderer.runner.textures.peak,
-        dict(renderer.pictures.repaired),
+        dict(renderer.pictures.repaired_pixels),
         job.videos,
         job.seconds,
     )
@@ -303,7 +303,7 @@ class _Job:
     def _rate(self) -> float | Fraction:
         """Frames per second of what is written."""
         pictures = self._renderer.pictures
-        return pictures.rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
+        return pictures.find_rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
 
     def _report_frame(self, report: FrameReport) -> None:
         self._reports.append(report)

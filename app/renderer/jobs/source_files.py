@@ -14,7 +14,7 @@ from msgspec import Struct, field
 
 from ... import media
 from ...compiler import Plan, find_named_files
-from ...compiler.lowering.named import CONFIG, find_path_texts
+from ...compiler.lowering.references import CONFIG, find_path_texts
 from ...errors import HalationError
 from ...graph import INPUTS, OUTPUTS, Graph
 from ...graph.frames import format_frames
@@ -115,7 +115,7 @@ class SourceFinder:
         led = self._led.setdefault(owner, {})
         for frame in lead:
             if frame not in led:
-                led[frame] = self._pictures.at(path, frame, missing).path
+                led[frame] = self._pictures.find_frame_file(path, frame, missing).path
         files = [*(led[frame] for frame in lead), *(picture.path for picture in pictures)]
         named = {sequence.pattern.frame(Path(file).name): file for file in files}
         ordered = {frame: named[frame] for frame in sorted(frame for frame in named if frame is not None)}
@@ -124,7 +124,7 @@ class SourceFinder:
     def _find_file(self, path: str, frame: int) -> str:
         """The file of a frame, or "" if there is none."""
         try:
-            file = self._pictures.at(path, frame, "nearest").path
+            file = self._pictures.find_frame_file(path, frame, "nearest").path
         except HalationError:
             return ""
         return file if Path(file).is_file() else ""

@@ -12,7 +12,7 @@ from halation.nodes import Node
 from halation.presets import paths as presets
 from msgspec import structs
 
-from ...compiler.lowering.named import CONFIG, find_path_texts
+from ...compiler.lowering.references import CONFIG, find_path_texts
 from ...errors import InputError, UsageError
 from ...graph import INPUTS, Graph, did_you_mean
 from ...graph.frames import Pattern

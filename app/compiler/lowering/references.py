@@ -1,4 +1,4 @@
-"""Which files a graph names."""
+"""The files that a graph names: pictures of inputs and sources, and other paths."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from ...resources.picture import Picture
 from .expand import FlatGraph, expand
 
 CONFIG = "settings.config"
-"""Who names the file of color management."""
+"""Stands for the node where the color settings of the graph name a file."""
 
 
-class NamedPictures:
+class ReferencedPictures:
     """The pictures that a graph names, and those that are bound to its inputs."""
 
     def __init__(self, flat: FlatGraph, bindings: Mapping[str, Picture]) -> None:
         self._flat, self._bindings = flat, bindings
 
     def __iter__(self) -> Iterator[tuple[Picture, str]]:
-        """Every picture and who reads it, inputs first, then sources. A path may stand for a sequence."""
+        """Every picture and the node that reads it, inputs first, then sources. A path may stand for a sequence."""
         for port, socket in self._flat.inputs.items():
             named = port.node == INPUTS and not socket.socket().single
             picture = self.find_bound(port, socket) if named else None
@@ -36,7 +36,7 @@ class NamedPictures:
                     yield Picture(self.locate(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
 
     def find_bound(self, port: Port, socket: Input) -> Picture | None:
-        """The picture bound to a graph input, else its default file. What is planned is none."""
+        """The picture bound to a graph input, else its default file; None for objects such as cameras."""
         if socket.kind.is_planned:
             return None
         kind, width = socket.kind, socket.socket().channels
@@ -54,13 +54,13 @@ class NamedPictures:
 
 
 def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str, str, Missing]]:
-    """The paths of all pictures that a graph reads, who reads them, and what shows where a frame has no file.
+    """The paths of all pictures that a graph reads, their nodes, and what is shown where a frame has no file.
 
     Groups are looked into; a path may stand for a sequence.
     """
     flat = expand(graph)
 
-    def missing(owner: str) -> Missing:
+    def find_policy(owner: str) -> Missing:
         node = flat.nodes.get(owner)
         if isinstance(node, Reader):
             return node.missing
@@ -68,14 +68,14 @@ def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tupl
         return flat.inputs[Port(group, name)].missing if node is None else "error"
 
     return [
-        (picture.path, owner, missing(owner))
-        for picture, owner in NamedPictures(flat, bindings)
+        (picture.path, owner, find_policy(owner))
+        for picture, owner in ReferencedPictures(flat, bindings)
         if not picture.in_memory
     ]
 
 
 def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
-    """Every file that inputs and values of nodes name, by who names it: the text, and the path that it leads to.
+    """Every file that inputs and values of nodes name, by input or value: the text, and the path that it leads to.
 
     Inputs are `inputs.beauty` or `glow/inputs.image`, values `read.path` or `glow/read.path`; a file of color
     management is `settings.config`.
