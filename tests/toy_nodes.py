@@ -8,7 +8,28 @@ from typing import Annotated, Any, Literal
 
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
-from halation.nodes import RGBA, Field, FilePath, Filter, Image, Kernel3x3, Kind, Light, LightKind, LightList, Node, Number, Points, Pointwise, Position, Slider, Source, Stops, Vector, numbers_of
+from halation.nodes import (
+    RGBA,
+    Field,
+    FilePath,
+    Filter,
+    Image,
+    Kernel3x3,
+    Kind,
+    Light,
+    LightKind,
+    LightList,
+    Node,
+    Number,
+    Points,
+    Pointwise,
+    Position,
+    Slider,
+    Source,
+    Stops,
+    Vector,
+    numbers_of,
+)
 from halation.nodes import OutputSocket as Made
 
 

@@ -12,7 +12,19 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import show_progress
-from .options import AsJson, Form, GraphFile, Inputs, Node, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
+from .options import (
+    AsJson,
+    Form,
+    GraphFile,
+    Inputs,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import print_json
 from .watchdog import Timeout, rerun_watched
 

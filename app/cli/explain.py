@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Memory, Node, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    Memory,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import print_json
 
 if TYPE_CHECKING:

@@ -10,7 +10,21 @@ from ..errors import UsageError
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .execute import execute
-from .options import AsJson, Form, Frames, GraphFile, Inputs, Memory, Node, OneFrame, Precision, Scale, Sets, SizeText, standard_input
+from .options import (
+    AsJson,
+    Form,
+    Frames,
+    GraphFile,
+    Inputs,
+    Memory,
+    Node,
+    OneFrame,
+    Precision,
+    Scale,
+    Sets,
+    SizeText,
+    standard_input,
+)
 from .watchdog import Timeout
 
 

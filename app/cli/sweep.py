@@ -11,7 +11,18 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import open_batch
-from .options import AsJson, GraphFile, Inputs, Node, Precision, Scale, SizeText, open_graph, report_problems, resolve_inputs
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    Node,
+    Precision,
+    Scale,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import note, print_json
 from .sweeping import axes
 from .watchdog import Timeout, rerun_watched

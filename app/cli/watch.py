@@ -11,7 +11,20 @@ import typer
 
 from ..errors import HalationError, UsageError
 from . import parsing
-from .options import Frames, GraphFile, Inputs, Node, OneFrame, Precision, Scale, Sets, SizeText, open_graph, report_problems, resolve_inputs
+from .options import (
+    Frames,
+    GraphFile,
+    Inputs,
+    Node,
+    OneFrame,
+    Precision,
+    Scale,
+    Sets,
+    SizeText,
+    open_graph,
+    report_problems,
+    resolve_inputs,
+)
 from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:

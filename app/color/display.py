@@ -15,7 +15,15 @@ import numpy as np
 from halation.nodes import ColorSettings
 
 from ..errors import UsageError
-from .management import BUILT_IN, DEFAULT_COLOR, ColorManager, get_color_manager, load_builtin_config, load_ocio, load_studio_config
+from .management import (
+    BUILT_IN,
+    DEFAULT_COLOR,
+    ColorManager,
+    get_color_manager,
+    load_builtin_config,
+    load_ocio,
+    load_studio_config,
+)
 from .transforms import Array, apply_processor, quantize, unpremultiply
 
 NO_VIEW = "none"

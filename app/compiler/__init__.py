@@ -12,7 +12,7 @@ data, of which the renderer needs nothing else. `isf` writes a graph as one shad
 from __future__ import annotations
 
 from .areas import Region, scale_size
-from .explain import plan_as_json, explain, write_dot
+from .explain import explain, plan_as_json, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
 from .library import Library, installed_library
 from .lowering.references import find_named_files
@@ -47,7 +47,6 @@ __all__ = [
     "Tiling",
     "Upload",
     "UpstreamHashes",
-    "plan_as_json",
     "compile_graph",
     "examine",
     "explain",
@@ -55,6 +54,7 @@ __all__ = [
     "graph_library",
     "installed_library",
     "library_for",
+    "plan_as_json",
     "plan_tile",
     "scale_size",
     "write_dot",

@@ -131,7 +131,9 @@ class Library(Record, frozen=True):
     def _find_words(self, shader: str, function: str, asker: str) -> frozenset[str]:
         """All words of a function and of those that it calls."""
         if (shader, function) not in self._words:
-            self._words[shader, function] = frozenset[str]().union(*dict(self._find_words_by_file(shader, function, asker)).values())
+            self._words[shader, function] = frozenset[str]().union(
+                *dict(self._find_words_by_file(shader, function, asker)).values()
+            )
         return self._words[shader, function]
 
     def _find_words_by_file(self, shader: str, function: str, asker: str) -> Iterator[tuple[str, frozenset[str]]]:

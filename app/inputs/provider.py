@@ -125,7 +125,9 @@ class MediaProvider:
             from ..media.pictures.row_reader import read_rows
 
             pixels = read_rows(path, request, *picture.rows)
-            repaired = self.repaired_pixels.get(path, 0) + pixels.repaired  # rows of one picture come one after the other
+            repaired = (
+                self.repaired_pixels.get(path, 0) + pixels.repaired
+            )  # rows of one picture come one after the other
         else:
             from ..media.pixels import read_layers
 

@@ -107,7 +107,9 @@ class NotingProvider:
 
     def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
-        file = self._answer_or_note(path, ("at", path, frame, missing), lambda: self.pictures.find_frame_file(path, frame, missing))
+        file = self._answer_or_note(
+            path, ("at", path, frame, missing), lambda: self.pictures.find_frame_file(path, frame, missing)
+        )
         shown_file = file or FrameFile(path)
         self._asked[shown_file.path] = path
         return shown_file
@@ -116,7 +118,9 @@ class NotingProvider:
         """Size and precision of a picture, or something instead."""
         how = (picture.kind, picture.width, picture.space, picture.color)
         key, path = (picture.path, picture.layer, *how), picture.path
-        probe = None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe_picture(picture))
+        probe = (
+            None if picture.in_memory else self._answer_or_note(path, key, lambda: self.pictures.probe_picture(picture))
+        )
         return probe or PictureProbe(self.size, False, path)
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:

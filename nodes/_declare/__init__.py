@@ -32,7 +32,37 @@ from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import CameraSocket, Color, Edge, Field, Image, Number, OutputSocket, Size, Socket, Vector, glsl_type
 from .traits import ProxyNote, Trait
-from .values import RGBA, ColorRamp, Curve, Doc, File, FilePath, Fraction, Handle, Holds, Kernel3x3, LightList, Lights, Missing, OfLayer, OfSpace, Picks, Plain, Points, Position, RenderPath, ScenePath, Slider, Stops, Swatch, TablePath, Uniform, Unit, Value, unit_factor
+from .values import (
+    RGBA,
+    ColorRamp,
+    Curve,
+    Doc,
+    File,
+    FilePath,
+    Fraction,
+    Handle,
+    Holds,
+    Kernel3x3,
+    LightList,
+    Lights,
+    Missing,
+    OfLayer,
+    OfSpace,
+    Picks,
+    Plain,
+    Points,
+    Position,
+    RenderPath,
+    ScenePath,
+    Slider,
+    Stops,
+    Swatch,
+    TablePath,
+    Uniform,
+    Unit,
+    Value,
+    unit_factor,
+)
 
 __all__ = [
     "KINDS",

@@ -1,7 +1,20 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Image, OutputSocket, Picks, Reader, RenderPath, Vector, matte_of, pick_ids
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Image,
+    OutputSocket,
+    Picks,
+    Reader,
+    RenderPath,
+    Vector,
+    matte_of,
+    pick_ids,
+)
 
 _AT_ONCE = 32
 """Ids that one draw looks for: two to a vector."""

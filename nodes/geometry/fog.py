@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, Slider, Trait, Vector
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    Slider,
+    Trait,
+    Vector,
+)
 
 
 class Fog(Filter):

@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Vector
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 
 
 class RimLight(Filter):

@@ -2,7 +2,23 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Curve, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Pixels, Points, Size, Slider, Trait, curve_at
+from .._declare import (
+    RGBA,
+    Curve,
+    Doc,
+    Draw,
+    Drawn,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    Pixels,
+    Points,
+    Size,
+    Slider,
+    Trait,
+    curve_at,
+)
 
 _NO_LIMIT = 65504.0
 

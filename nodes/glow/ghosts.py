@@ -1,7 +1,21 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Position, ProxyNote, Reach, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    Position,
+    ProxyNote,
+    Reach,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 

@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, ProxyNote, Size, Slider, Trait, Vector
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Size,
+    Slider,
+    Trait,
+    Vector,
+)
 
 _NO_LIMIT = 65504.0
 

@@ -2,7 +2,22 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, OutputSocket, ProxyNote, Reach, Size, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Edge,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Reach,
+    Size,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 

@@ -2,7 +2,22 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, Position, ProxyNote, Reach, Slider, Trait
+from .._declare import (
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    Position,
+    ProxyNote,
+    Reach,
+    Slider,
+    Trait,
+)
 
 _NO_LIMIT = 65504.0
 

@@ -1,7 +1,23 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraModel, CameraSocket, Doc, Draw, Drawn, Field, Image, Meaning, OfLayer, OfSpace, OutputSocket, Reader, Render, RenderPath, Vector
+from .._declare import (
+    CameraModel,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Image,
+    Meaning,
+    OfLayer,
+    OfSpace,
+    OutputSocket,
+    Reader,
+    Render,
+    RenderPath,
+    Vector,
+)
 
 _KINDS = ("planar", "radial", "inverse", "negative", "normalized")
 _PLAIN = {

@@ -2,7 +2,25 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import BuiltInScene, CameraModel, CameraSocket, Doc, Draw, Drawn, Field, Fraction, Image, Motion, OutputSocket, SceneFile, ScenePath, Slider, Source, Vector, orbit_camera
+from .._declare import (
+    BuiltInScene,
+    CameraModel,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Fraction,
+    Image,
+    Motion,
+    OutputSocket,
+    SceneFile,
+    ScenePath,
+    Slider,
+    Source,
+    Vector,
+    orbit_camera,
+)
 
 _NEAR = 0.01
 """What is nearer than this part of the distance to the target is cut off."""

@@ -2,7 +2,25 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from .._declare import Argument, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, OutputSocket, Overlap, Position, Reach, Size, Slider, Trait, Vector
+from .._declare import (
+    Argument,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Number,
+    OutputSocket,
+    Overlap,
+    Position,
+    Reach,
+    Size,
+    Slider,
+    Trait,
+    Vector,
+)
 
 _FINEST = {"draft": 4.0, "normal": 6.0, "high": 12.0, "exact": math.inf}
 """Radius in pixels of the largest disc that is made of the picture's own pixels."""

@@ -2,7 +2,20 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, ProxyNote, Slider, Vector
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Vector,
+)
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}

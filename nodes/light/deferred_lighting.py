@@ -2,7 +2,29 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Annotated, Literal
 
-from .._declare import MAX_LIGHTS, RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Light, LightKind, LightList, OutputSocket, Slider, Stops, Trait, Vector, lights_of, numbers_of, ramp_at
+from .._declare import (
+    MAX_LIGHTS,
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Light,
+    LightKind,
+    LightList,
+    OutputSocket,
+    Slider,
+    Stops,
+    Trait,
+    Vector,
+    lights_of,
+    numbers_of,
+    ramp_at,
+)
 
 TILE = 16
 """Pixels across a tile."""

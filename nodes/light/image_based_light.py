@@ -2,7 +2,21 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, Overlap, Slider, Trait, Vector
+from .._declare import (
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    Overlap,
+    Slider,
+    Trait,
+    Vector,
+)
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)

@@ -1,7 +1,21 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait, Vector
+from .._declare import (
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    OutputSocket,
+    ProxyNote,
+    Slider,
+    Trait,
+    Vector,
+)
 from ._march import surfaces
 
 _RAYS = {"preview": 4, "quality": 16, "reference": 64}

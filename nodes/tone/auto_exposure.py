@@ -2,7 +2,22 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, OutputSocket, Position, Reach, Slider, Trait, Vector
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Number,
+    OutputSocket,
+    Position,
+    Reach,
+    Slider,
+    Trait,
+    Vector,
+)
 
 _BINS = 128
 _FOLD = 32

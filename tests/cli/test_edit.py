@@ -13,8 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 
 HALATION = [sys.executable, "-m", "halation.cli", "edit"]
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")

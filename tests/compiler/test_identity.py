@@ -12,7 +12,29 @@ import pytest
 from halation.compiler import NULL
 from halation.compiler.areas import Neighborhood
 from halation.compiler.fusion.fuse import PassGroup
-from halation.compiler.ir import Accessor, Call, Choice, ColorCall, Convolve, ExternalProgram, FunctionOp, Gather, HistoryRead, LoweredProgram, Op, Parameter, PictureShape, Placement, Raster, Read, Reduce, Ref, SourceOp, StoredResult, UniformConstant
+from halation.compiler.ir import (
+    Accessor,
+    Call,
+    Choice,
+    ColorCall,
+    Convolve,
+    ExternalProgram,
+    FunctionOp,
+    Gather,
+    HistoryRead,
+    LoweredProgram,
+    Op,
+    Parameter,
+    PictureShape,
+    Placement,
+    Raster,
+    Read,
+    Reduce,
+    Ref,
+    SourceOp,
+    StoredResult,
+    UniformConstant,
+)
 from halation.compiler.scheduling.fingerprints import PassFingerprints, find_keys
 from halation.glsl import parse
 from halation.nodes import Kind, ShaderStage, ShaderText

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.document import dumps, load, loads, save
-from halation.document import limits
+from halation.document import dumps, limits, load, loads, save
 from halation.errors import DocumentError, OutputError
 from halation.graph import Graph, Group
 from toy_nodes import TOYS, Gain, small

@@ -7,8 +7,7 @@ import random
 from pathlib import Path
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 from halation.errors import DocumentError
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -10,7 +10,15 @@ from typing import Any
 import pytest
 from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
-from halation.document.diff_merge import MergedGraph, PartPath, Side, compare_graphs, merge_graphs, read_conflicts, resolve_conflicts
+from halation.document.diff_merge import (
+    MergedGraph,
+    PartPath,
+    Side,
+    compare_graphs,
+    merge_graphs,
+    read_conflicts,
+    resolve_conflicts,
+)
 from halation.document.diff_merge.aligning import align_three
 from halation.document.diff_merge.lines import merge_lines
 from halation.document.diff_merge.parts import equals, get_part, is_tree, parts_of

@@ -8,7 +8,22 @@ from dataclasses import replace
 import pytest
 from halation import document
 from halation.errors import DocumentError, GraphError
-from halation.graph import Control, Expression, Graph, Group, Key, Keys, Output, Port, Settings, evaluate_at_frame, find_key_range, is_animated, problems, value_at
+from halation.graph import (
+    Control,
+    Expression,
+    Graph,
+    Group,
+    Key,
+    Keys,
+    Output,
+    Port,
+    Settings,
+    evaluate_at_frame,
+    find_key_range,
+    is_animated,
+    problems,
+    value_at,
+)
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.grade import Grade

@@ -9,8 +9,7 @@ from random import Random
 
 import pytest
 from halation.errors import GraphError
-from halation.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems
-from halation.graph import rules
+from halation.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems, rules
 from halation.nodes import Kind
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -11,8 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 from halation.authoring.commands import SetValue
 from halation.graph import Port
 

@@ -15,8 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 from halation.authoring.recovery.recovery import RecoveryFile
 from halation.graph import Port
 

@@ -10,8 +10,7 @@ import random
 import shutil
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 from halation.editor.toolkit.keys import chord
 from imgui_bundle import ImVec2
 

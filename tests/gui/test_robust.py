@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from halation import document
-from halation import presets
+from halation import document, presets
 from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
 from halation.editor.shared.dialogs import Question

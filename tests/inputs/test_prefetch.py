@@ -81,7 +81,9 @@ def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
     for file in files.values():
         Path(file).write_bytes(Path(picture).read_bytes())
     ahead = Prefetcher(graph(**{name: Input() for name in names}), files)
-    assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MAX_WAITING + [True] * 2
+    assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MAX_WAITING + [
+        True
+    ] * 2
 
 
 def test_a_damaged_file_is_found_out_by_who_wants_it(tmp_path: Path) -> None:

@@ -9,7 +9,13 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import UsageError
-from halation.media.comparison.metrics import EIGHT_BIT_STEP, amplify_difference, compare_pictures, measure_flip, measure_ssim
+from halation.media.comparison.metrics import (
+    EIGHT_BIT_STEP,
+    amplify_difference,
+    compare_pictures,
+    measure_flip,
+    measure_ssim,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 from halation.errors import InputError
-from halation.media import find_frame_file, find_sequence, suggest_pattern
-from halation.media import sequences
+from halation.media import find_frame_file, find_sequence, sequences, suggest_pattern
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

@@ -8,7 +8,16 @@ import cv2
 import numpy as np
 import pytest
 from halation.errors import OutputError, UsageError
-from halation.media.comparison.contact_sheet import make_caption, make_grouped_sheet, make_sheet, show_any_light, show_data, show_light, show_over_checker, write_sheet
+from halation.media.comparison.contact_sheet import (
+    make_caption,
+    make_grouped_sheet,
+    make_sheet,
+    show_any_light,
+    show_data,
+    show_light,
+    show_over_checker,
+    write_sheet,
+)
 
 COLORS = {"red": (0.8, 0.0, 0.0), "green_blue": (0.0, 0.7, 0.6), "white": (1.0, 1.0, 1.0)}
 PICTURES = {name: np.full((40, 80, 3), color, np.float32) for name, color in COLORS.items()}

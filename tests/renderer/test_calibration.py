@@ -7,8 +7,7 @@ import json
 import pytest
 from halation.compiler.devices import FormTimings
 from halation.errors import ShaderError
-from halation.renderer import calibration
-from halation.renderer import open_device
+from halation.renderer import calibration, open_device
 from halation.renderer.calibration import load_or_measure, measure_forms
 from halation.renderer.execution.runner import Runner
 from halation.resources.sandbox import fenced

@@ -11,7 +11,20 @@ from .ends import KEEP, AddInput, AddOutput, Keep, RemoveEnd, RenameEnd, SetInpu
 from .grouping import LinkGroup, MakeGroup, MakeGroupLocal, Ungroup
 from .keys import AnimateValue, AnimateValues, BakeKeys, RemoveKey, SetExpression, SetKey, ToggleKey
 from .layout import AlignSelection, ArrangeElements, MoveElements, PlaceElement
-from .linking import Connect, CutLinks, DeleteSelection, Disconnect, DisconnectAll, ExtractSelection, MoveLink, RenameNode, ReplaceNode, SwapInputs, ToggleCollapse, ToggleMute
+from .linking import (
+    Connect,
+    CutLinks,
+    DeleteSelection,
+    Disconnect,
+    DisconnectAll,
+    ExtractSelection,
+    MoveLink,
+    RenameNode,
+    ReplaceNode,
+    SwapInputs,
+    ToggleCollapse,
+    ToggleMute,
+)
 from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll
 from .values import DescribeControl, ExposeValue, HideControl, RenameControl, ResetNode, ResetValue, SetValue, SetValues
 from .viewing import AssignViewer, ReplaceGraph

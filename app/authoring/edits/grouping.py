@@ -11,7 +11,17 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
 from ...graph.names import check_name, fresh_name
 from . import timing
-from .elements import Place, entry, is_note, list_elements, place, with_entries, with_places, with_sections, without_entries
+from .elements import (
+    Place,
+    entry,
+    is_note,
+    list_elements,
+    place,
+    with_entries,
+    with_places,
+    with_sections,
+    without_entries,
+)
 from .layout import GAP, bounds, positions
 from .routes import routes, tidy_routes
 from .sizes import WIDTH, element_size

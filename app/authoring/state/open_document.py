@@ -19,7 +19,22 @@ from halation.nodes import Node, Plain, catalogue
 from ...custom_nodes import Code
 from ...document import load
 from ...errors import GraphError, HalationError
-from ...graph import ANIMATED, INPUTS, Animation, Expression, Graph, Group, Key, Keys, Port, Problem, Settings, animation_fault, find_key_range, value_at
+from ...graph import (
+    ANIMATED,
+    INPUTS,
+    Animation,
+    Expression,
+    Graph,
+    Group,
+    Key,
+    Keys,
+    Port,
+    Problem,
+    Settings,
+    animation_fault,
+    find_key_range,
+    value_at,
+)
 from ...graph.graph import declared
 from ..edits import clipboard, coding, decor, elements, folding, layout, paths, wiring
 from ..edits.elements import Place, Sizes

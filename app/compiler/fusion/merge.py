@@ -147,7 +147,9 @@ class _PassMerger:
         if not self.ops[members[-1]].is_pointwise:
             return None
         reads = dict.fromkeys(ref for ref in (*early.reads, *late.reads) if ref not in early.writes)
-        writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_read_by_others(ref, first, last))
+        writes = dict.fromkeys(
+            ref for ref in (*early.writes, *late.writes) if self._is_read_by_others(ref, first, last)
+        )
         return _MergeCandidate(place, members, reads, writes, early.size, True)
 
     def _is_read_by_others(self, ref: Ref, *groups: int) -> bool:

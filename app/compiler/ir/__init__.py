@@ -25,7 +25,24 @@ equal pixels, and a field that a hash forgets would show stale pixels.
 from __future__ import annotations
 
 from .operation import Op, SourceOp
-from .operations import BLOCK, EDGES, MAX_TAPS, MAX_WEIGHTS, Call, ColorCall, Convolve, ExternalProgram, FunctionOp, Gather, HistoryRead, Placement, Raster, Read, Reduce, StoredResult
+from .operations import (
+    BLOCK,
+    EDGES,
+    MAX_TAPS,
+    MAX_WEIGHTS,
+    Call,
+    ColorCall,
+    Convolve,
+    ExternalProgram,
+    FunctionOp,
+    Gather,
+    HistoryRead,
+    Placement,
+    Raster,
+    Read,
+    Reduce,
+    StoredResult,
+)
 from .program import Builder, LoweredProgram
 from .values import Accessor, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
 

@@ -62,7 +62,9 @@ def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfCont
             continue
         shader_name = make_identifier(name, names)
         names.add(shader_name)
-        controls.append(_make_control(shader_name, name, control.label or value.label or name, value, graph.value(target)))
+        controls.append(
+            _make_control(shader_name, name, control.label or value.label or name, value, graph.value(target))
+        )
     return controls, notes
 
 

@@ -51,7 +51,9 @@ class _BoundProvider:
         return self.provider.find_frame_file(path, frame, missing)
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
-        return PictureProbe(self.size, False, picture.path) if picture.in_memory else self.provider.probe_picture(picture)
+        return (
+            PictureProbe(self.size, False, picture.path) if picture.in_memory else self.provider.probe_picture(picture)
+        )
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:
         return self.provider.write_color_program(change)
@@ -102,7 +104,9 @@ class _IsfExporter:
         self._add_notes(model)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
         inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & model.used_knobs]
-        writer = IsfWriter(model, self.library, self._find_sources(model.program), tuple(self.pictures.values()), self.size)
+        writer = IsfWriter(
+            model, self.library, self._find_sources(model.program), tuple(self.pictures.values()), self.size
+        )
         text, targets = writer.write(self.first)
         count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
         if count > MAX_PICTURES:

@@ -33,7 +33,11 @@ class IsfModel:
             return None
         numbers = range(place, place + (len(item.value) if isinstance(item.value, tuple) else 1))
         slopes = (*self.model.slopes.values(), *self.model.products.values())
-        return tuple(map(self.model.write_formula, numbers)) if any(values[at] for values in slopes for at in numbers) else None
+        return (
+            tuple(map(self.model.write_formula, numbers))
+            if any(values[at] for values in slopes for at in numbers)
+            else None
+        )
 
     @property
     def used_knobs(self) -> set[str]:

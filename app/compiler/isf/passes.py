@@ -71,7 +71,9 @@ def find_obstacles(
     """Why a graph cannot be written as one shader: nodes, and sentences about them."""
     for fused in passes:
         for index in fused.members:
-            yield from ((owner, why) for owner in program.ops[index].owners if (why := _find_obstacle(program.ops[index])))
+            yield from (
+                (owner, why) for owner in program.ops[index].owners if (why := _find_obstacle(program.ops[index]))
+            )
         for ref in fused.reads:
             op = program.ops[ref.op]
             picture = op.find_upload(ref.output)
@@ -133,7 +135,9 @@ def write_function(
     return _prefix_names(text, prefix, names, texts).split("\n"), f"{prefix}made"
 
 
-def _write_functions(context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]) -> Iterator[str]:
+def _write_functions(
+    context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]
+) -> Iterator[str]:
     early, late = split_by_accessors(texts, parts)
     for group in (early, None, late):
         if group is None:

@@ -8,13 +8,60 @@ from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
-from halation.nodes import Affine, Argument, CameraModel, CameraSocket, ColorChange, Drawn, Edge, Filter, Image, Kernel, Kind, Motion, Node, Overlap, Pixels, Plain, Reach, Render, Scene, ShaderText, Size, Socket, Uniform, glsl_type
+from halation.nodes import (
+    Affine,
+    Argument,
+    CameraModel,
+    CameraSocket,
+    ColorChange,
+    Drawn,
+    Edge,
+    Filter,
+    Image,
+    Kernel,
+    Kind,
+    Motion,
+    Node,
+    Overlap,
+    Pixels,
+    Plain,
+    Reach,
+    Render,
+    Scene,
+    ShaderText,
+    Size,
+    Socket,
+    Uniform,
+    glsl_type,
+)
 
 from ...errors import ShaderError
 from ...glsl import GlslFunction
 from ...resources.picture import Picture
 from ..areas import Neighborhood
-from ..ir import BLOCK, MAX_TAPS, Accessor, Builder, Call, Choice, ColorCall, ExternalProgram, Gather, HistoryRead, Memory, Op, Operand, Parameter, PictureShape, PlannedObject, Raster, Read, Reduce, Ref, UniformConstant
+from ..ir import (
+    BLOCK,
+    MAX_TAPS,
+    Accessor,
+    Builder,
+    Call,
+    Choice,
+    ColorCall,
+    ExternalProgram,
+    Gather,
+    HistoryRead,
+    Memory,
+    Op,
+    Operand,
+    Parameter,
+    PictureShape,
+    PlannedObject,
+    Raster,
+    Read,
+    Reduce,
+    Ref,
+    UniformConstant,
+)
 from ..library import Library
 from ..raster import CHANNELS
 from . import fourier, gaussian, transforms
@@ -188,7 +235,9 @@ class Recorder:
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
         axis_index = 0 if axis == "x" else 1
         origin = -(len(weights) // 2)
-        return self._wrap(self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index]))
+        return self._wrap(
+            self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index])
+        )
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
         picture, kernel_picture = self._find_pixels(image), self._find_pixels(kernel)

@@ -71,7 +71,10 @@ def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
     samples = _normalize([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
     excess = _measure_variance(samples) + (variance + factor**2 / 3.0 - _measure_variance(smooth)) / factor**2
     neighbors = [(before + after) / 2.0 for before, after in zip([0.0, *samples], [*samples[1:], 0.0], strict=False)]
-    sharpened = [max((1.0 + excess) * sample - excess * neighbor, 0.0) for sample, neighbor in zip(samples, neighbors, strict=True)]
+    sharpened = [
+        max((1.0 + excess) * sample - excess * neighbor, 0.0)
+        for sample, neighbor in zip(samples, neighbors, strict=True)
+    ]
     return BlurAxis(tuple(steps), factor, _normalize(sharpened))
 
 

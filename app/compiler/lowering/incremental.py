@@ -37,8 +37,8 @@ from ...graph import Graph
 from ...resources.provider import ResourceProvider
 from ..ir import Builder, Op, Ref
 from ..request import Request
-from .lower import Lowering
 from .graph_at_frames import GraphAtFrames, sees_other_frames
+from .lower import Lowering
 from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey
 
 

@@ -4,7 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from halation.nodes import CameraModel, Filter, Kind, Missing, Node, Pointwise, Reader, Size, Socket, Temporal, Value, curve_knots, ramp_knots, unit_factor
+from halation.nodes import (
+    CameraModel,
+    Filter,
+    Kind,
+    Missing,
+    Node,
+    Pointwise,
+    Reader,
+    Size,
+    Socket,
+    Temporal,
+    Value,
+    curve_knots,
+    ramp_knots,
+    unit_factor,
+)
 from msgspec import Struct
 from msgspec.structs import replace
 

@@ -18,8 +18,8 @@ from ..areas import Neighborhood, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
 from .expand import FlatGraph, make_zero
-from .references import ReferencedPictures
 from .node_inputs import NodeInputs, NodeResources
+from .references import ReferencedPictures
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 """The size of a graph that neither sets a size nor reads a picture: HDTV (ITU-R BT.709)."""
@@ -50,7 +50,11 @@ class PictureBuilder:
 
     def _find_first_size(self, picture: Picture, owner: str) -> Size:
         """The size of a picture; of a sequence, whether or not this frame has a file."""
-        path = self._provider.find_frame_file(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
+        path = (
+            self._provider.find_frame_file(picture.path, self._request.frame, "nearest").path
+            if not picture.in_memory
+            else ""
+        )
         return self._probe(replace(picture, path=path) if path else picture, owner).size
 
     def _probe(self, picture: Picture, owner: str) -> PictureProbe:
@@ -110,7 +114,9 @@ class PictureBuilder:
             return self._provider.load_mesh(scene)
 
         def render(file: str, named: Mapping[str, str]) -> Render:
-            return self._provider.describe_render(self._provider.find_frame_file(locate(file), inputs.frame, missing).path, named)
+            return self._provider.describe_render(
+                self._provider.find_frame_file(locate(file), inputs.frame, missing).path, named
+            )
 
         def asset(picture: Picture) -> Ref:
             whole = replace(picture, path=locate(picture.path), within=locate(picture.within))
@@ -139,7 +145,9 @@ class PictureBuilder:
         )
         around = Neighborhood(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
         accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", UniformConstant((across, down)))
-        return self._builder.add(Gather((fitted_shape,), owner, "primitive/fit", function, (scale,), accessors=(accessor,)))
+        return self._builder.add(
+            Gather((fitted_shape,), owner, "primitive/fit", function, (scale,), accessors=(accessor,))
+        )
 
     def convert(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
         """The same as the pixels that `socket` stands for."""

@@ -107,7 +107,10 @@ class UpstreamHashes:
 def _collect_animations(graph: Graph) -> list[object]:
     """How values change over time, in groups too."""
     inner = [_collect_animations(item.graph) for item in graph.nodes.values() if isinstance(item, Group)]
-    return [sorted(graph.animation.items(), key=lambda item: item[0]), *(animation for animation in inner if any(animation))]
+    return [
+        sorted(graph.animation.items(), key=lambda item: item[0]),
+        *(animation for animation in inner if any(animation)),
+    ]
 
 
 def _hash(*parts: object) -> str:

@@ -17,7 +17,10 @@ from ..ir import LoweredProgram, Ref
 
 
 def find_regions(
-    program: LoweredProgram, passes: Sequence[PassGroup], requested: Mapping[Ref, Region], cached_refs: Set[Ref] = frozenset()
+    program: LoweredProgram,
+    passes: Sequence[PassGroup],
+    requested: Mapping[Ref, Region],
+    cached_refs: Set[Ref] = frozenset(),
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
 
@@ -58,7 +61,9 @@ def focus_program(
     requested |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
     regions = find_regions(program, passes, requested, cached_refs)
     written = {ref for fused in passes for ref in fused.writes}
-    whole_refs = {ref for ref in regions if ref not in written and (ref in cached_refs or program.ops[ref.op].is_memory)}
+    whole_refs = {
+        ref for ref in regions if ref not in written and (ref in cached_refs or program.ops[ref.op].is_memory)
+    }
     parts = {
         ref: part for ref, part in regions.items() if ref not in whole_refs and part.size != program.shape(ref).size
     }

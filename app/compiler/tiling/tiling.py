@@ -185,7 +185,8 @@ class _StagePlanner:
     def plan_before(self) -> tuple[TileStage, ...]:
         """What is made whole before it is read."""
         return tuple(
-            self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.whole_passes
+            self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused)
+            for fused in self.whole_passes
         )
 
     def plan_last(self) -> tuple[TileStage, ...]:
@@ -263,7 +264,9 @@ class _StagePlanner:
     ) -> tuple[list[dict[Ref, Region]], int]:
         """The windows of tiles of this size, and what textures take at most."""
         windows = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
-        programs = (replace(self.program, windows=tile_windows, outputs=outputs, memories={}) for tile_windows in windows)
+        programs = (
+            replace(self.program, windows=tile_windows, outputs=outputs, memories={}) for tile_windows in windows
+        )
         return windows, max(count_peak_bytes(program, passes, self.texels) for program in programs)
 
     def _find_passes(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
@@ -325,7 +328,9 @@ class _StagePlanner:
         largest = max(sizes, key=lambda ref: sizes[ref])
         owner, memory = self.program.ops[largest.op].owner, self.target.memory
         if memory and nbytes > memory:
-            shortage = f"{format_bytes(nbytes)} of pictures must be held at once, but only {format_bytes(memory)} may be used"
+            shortage = (
+                f"{format_bytes(nbytes)} of pictures must be held at once, but only {format_bytes(memory)} may be used"
+            )
             raise DeviceError(
                 f"node '{owner}': {shortage}; give more with --memory, or render smaller with --scale or --size",
                 node=owner,

@@ -8,7 +8,19 @@ from typing import Any
 
 from ...graph import Graph, Group
 from .aligning import NodeRename, align_two, rename_all, replace_items
-from .parts import ABSENT, PartPath, Tree, equals, is_section, is_tree, is_whole, local_path, parts_of, put_part, sorted_keys
+from .parts import (
+    ABSENT,
+    PartPath,
+    Tree,
+    equals,
+    is_section,
+    is_tree,
+    is_whole,
+    local_path,
+    parts_of,
+    put_part,
+    sorted_keys,
+)
 
 
 @dataclass(frozen=True)

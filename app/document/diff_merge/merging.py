@@ -20,7 +20,23 @@ from .conflicts import Conflict, add_conflicts
 from .faults import find_merge_faults
 from .layout import remove_stray_layout
 from .lines import merge_lines
-from .parts import ABSENT, CONFLICTS, PartPath, Tree, equals, get_part, is_list, is_tree, is_whole, keep_kind, local_path, parts_of, put_part, sorted_keys, text_of
+from .parts import (
+    ABSENT,
+    CONFLICTS,
+    PartPath,
+    Tree,
+    equals,
+    get_part,
+    is_list,
+    is_tree,
+    is_whole,
+    keep_kind,
+    local_path,
+    parts_of,
+    put_part,
+    sorted_keys,
+    text_of,
+)
 from .references import LINKED, find_contested, references
 
 ThreeSides = tuple[Any, Any, Any]

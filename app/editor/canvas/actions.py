@@ -5,7 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...authoring.commands import AddComment, AddFrame, AlignSelection, ArrangeElements, ExtractSelection, MakeGroup, MakeGroupLocal, ResetNode, SwapInputs, ToggleCollapse, ToggleMute, Ungroup
+from ...authoring.commands import (
+    AddComment,
+    AddFrame,
+    AlignSelection,
+    ArrangeElements,
+    ExtractSelection,
+    MakeGroup,
+    MakeGroupLocal,
+    ResetNode,
+    SwapInputs,
+    ToggleCollapse,
+    ToggleMute,
+    Ungroup,
+)
 from ...graph import Group
 from ..shared.action import Act, Action
 from ..shared.dialogs import Browse

@@ -23,7 +23,18 @@ from .menus import CanvasMenus
 from .minimap import Minimap
 from .mouse import CanvasMouse
 from .naming import NameField
-from .paint_decor import paint_band, paint_comment, paint_curve, paint_cut, paint_dot, paint_frame, paint_grid, paint_hint, paint_note, paint_wire
+from .paint_decor import (
+    paint_band,
+    paint_comment,
+    paint_curve,
+    paint_cut,
+    paint_dot,
+    paint_frame,
+    paint_grid,
+    paint_hint,
+    paint_note,
+    paint_wire,
+)
 from .paint_node import paint_node, paint_pin
 from .pictures import ThumbnailSlots
 from .places import PlaceRecorder

@@ -11,7 +11,16 @@ from halation.nodes import Kind
 from numpy.typing import NDArray
 
 from ...graph import Port
-from .geometry import SAMPLES, Curve, Point, find_crossed, find_crossing, find_midpoint, measure_distances, sample_curves
+from .geometry import (
+    SAMPLES,
+    Curve,
+    Point,
+    find_crossed,
+    find_crossing,
+    find_midpoint,
+    measure_distances,
+    sample_curves,
+)
 
 
 @dataclass(frozen=True, slots=True)

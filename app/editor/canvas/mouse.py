@@ -8,11 +8,45 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ...authoring.commands import AddDot, Connect, CutLinks, Disconnect, ExtractSelection, MoveElements, MoveLink, ReplaceGraph, ResizeComment, ResizeFrame, SpliceChain
+from ...authoring.commands import (
+    AddDot,
+    Connect,
+    CutLinks,
+    Disconnect,
+    ExtractSelection,
+    MoveElements,
+    MoveLink,
+    ReplaceGraph,
+    ResizeComment,
+    ResizeFrame,
+    SpliceChain,
+)
 from ...graph import Group, Port
 from .frame import CanvasFrame, apply_wheel, pan_at_border
 from .geometry import Point, contains
-from .gestures import IDLE, Band, CutGesture, Gesture, GesturePreview, Idle, LinkGesture, MoveGesture, PanGesture, ResizeGesture, add_crossing_dots, add_members, find_fitting_pins, find_insertion, find_refused_pin, find_snap_pin, find_touched, make_band_rect, move_to, preview_gesture, resize_to
+from .gestures import (
+    IDLE,
+    Band,
+    CutGesture,
+    Gesture,
+    GesturePreview,
+    Idle,
+    LinkGesture,
+    MoveGesture,
+    PanGesture,
+    ResizeGesture,
+    add_crossing_dots,
+    add_members,
+    find_fitting_pins,
+    find_insertion,
+    find_refused_pin,
+    find_snap_pin,
+    find_touched,
+    make_band_rect,
+    move_to,
+    preview_gesture,
+    resize_to,
+)
 from .scene import EMPTY, CanvasScene, Hit
 
 if TYPE_CHECKING:

@@ -10,11 +10,33 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.commands import AddCodeFile, AddComment, AddFrame, AddGroupFile, AddInput, AddNode, AddOutput, ReplaceNode
+from ...authoring.commands import (
+    AddCodeFile,
+    AddComment,
+    AddFrame,
+    AddGroupFile,
+    AddInput,
+    AddNode,
+    AddOutput,
+    ReplaceNode,
+)
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Port
 from ...graph.names import fresh_name
-from ..shared.entries import GRAPH, GROUP, SHADER, CatalogEntry, Section, arrange_entries, code_entries, graph_entries, keep_fitting, node_entries, preset_entries, shader_entries
+from ..shared.entries import (
+    GRAPH,
+    GROUP,
+    SHADER,
+    CatalogEntry,
+    Section,
+    arrange_entries,
+    code_entries,
+    graph_entries,
+    keep_fitting,
+    node_entries,
+    preset_entries,
+    shader_entries,
+)
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.places import record
 from .geometry import Point

@@ -12,7 +12,15 @@ from ...graph import Interpolation, Keys, Port
 from ..toolkit.plane import Plane
 from .hits import Mark, find_line
 from .rows import CurveRow, Lane, Spot
-from .shapes import Pieces, flatten_curves, is_straight, make_all_pieces, make_outside_pieces, project_pieces, read_key_channel
+from .shapes import (
+    Pieces,
+    flatten_curves,
+    is_straight,
+    make_all_pieces,
+    make_outside_pieces,
+    project_pieces,
+    read_key_channel,
+)
 
 Floats = NDArray[np.float64]
 _BEYOND = 12.0

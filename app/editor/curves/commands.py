@@ -11,7 +11,19 @@ from ...errors import UsageError
 from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
 from ..toolkit.plane import View
 from .copying import decode_keys, encode_keys, paste_keys
-from .editing import Ease, align_handles, ease_keys, extrapolate_keys, find_frame_range, fix_handles, group_spots, interpolate_keys, move_keys, remove_keys, reset_handles
+from .editing import (
+    Ease,
+    align_handles,
+    ease_keys,
+    extrapolate_keys,
+    find_frame_range,
+    fix_handles,
+    group_spots,
+    interpolate_keys,
+    move_keys,
+    remove_keys,
+    reset_handles,
+)
 from .rows import CurveRow, Spot, count_channels, find_limits, list_spots
 from .shapes import ExpressionSamples, find_value_range
 

@@ -9,7 +9,22 @@ from halation.nodes import Kind, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.commands import AddInput, AddOutput, DescribeControl, EditComment, EditFrame, ExposeValue, HideControl, RemoveEnd, RenameControl, RenameEnd, SetCanvasSize, SetFrameRange, SetFrameRate, SetPreroll
+from ...authoring.commands import (
+    AddInput,
+    AddOutput,
+    DescribeControl,
+    EditComment,
+    EditFrame,
+    ExposeValue,
+    HideControl,
+    RemoveEnd,
+    RenameControl,
+    RenameEnd,
+    SetCanvasSize,
+    SetFrameRange,
+    SetFrameRate,
+    SetPreroll,
+)
 from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import value_label
 from ...graph import Port, Unknown, signature

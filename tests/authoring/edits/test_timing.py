@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 import pytest
-from halation.authoring.commands import ExposeValue, HideControl, MakeGroup, PasteText, RenameControl, ReplaceGraph, ResetValue, Ungroup
+from halation.authoring.commands import (
+    ExposeValue,
+    HideControl,
+    MakeGroup,
+    PasteText,
+    RenameControl,
+    ReplaceGraph,
+    ResetValue,
+    Ungroup,
+)
 from halation.authoring.edits import timing
 from halation.authoring.edits.clipboard import copy_elements
 from halation.authoring.session import Session

@@ -3,7 +3,23 @@
 from __future__ import annotations
 
 import pytest
-from halation.authoring.commands import AnimateValues, BakeKeys, ExposeValue, MakeGroup, RemoveKey, ReplaceGraph, ResetValue, SetCanvasSize, SetExpression, SetFrameRange, SetFrameRate, SetKey, SetPreroll, SetValue, ToggleKey
+from halation.authoring.commands import (
+    AnimateValues,
+    BakeKeys,
+    ExposeValue,
+    MakeGroup,
+    RemoveKey,
+    ReplaceGraph,
+    ResetValue,
+    SetCanvasSize,
+    SetExpression,
+    SetFrameRange,
+    SetFrameRate,
+    SetKey,
+    SetPreroll,
+    SetValue,
+    ToggleKey,
+)
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Expression, Keys, Port

@@ -5,7 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from halation.authoring.commands import AddNode, Connect, DropFiles, DuplicateSelection, EmbedCode, ExposeValue, ExtractSelection, MakeGroup, PasteText, RenameNode, ReplaceGraph, ReplaceNode, SetCode, SetKey, SetValue, ToggleMute, Ungroup
+from halation.authoring.commands import (
+    AddNode,
+    Connect,
+    DropFiles,
+    DuplicateSelection,
+    EmbedCode,
+    ExposeValue,
+    ExtractSelection,
+    MakeGroup,
+    PasteText,
+    RenameNode,
+    ReplaceGraph,
+    ReplaceNode,
+    SetCode,
+    SetKey,
+    SetValue,
+    ToggleMute,
+    Ungroup,
+)
 from halation.authoring.edits import coding
 from halation.authoring.edits.coding import BrokenCodeNode
 from halation.authoring.session import Session

@@ -4,7 +4,44 @@ from __future__ import annotations
 
 import pytest
 from halation import presets
-from halation.authoring.commands import AddComment, AddDot, AddFrame, AddGroupFile, AddInput, AddNode, AddOutput, CutSelection, DeleteSelection, DescribeControl, DuplicateSelection, EditFrame, ExposeValue, ExtractSelection, HideControl, InsertNode, MakeGroup, MakeGroupLocal, MoveElements, PasteText, RemoveDot, RemoveEnd, RenameControl, RenameEnd, ReplaceGraph, ResetNode, ResetValue, ResizeComment, ResizeFrame, SetCanvasSize, SetInput, SetOutput, SetValue, SpliceChain, ToggleCollapse, ToggleMute
+from halation.authoring.commands import (
+    AddComment,
+    AddDot,
+    AddFrame,
+    AddGroupFile,
+    AddInput,
+    AddNode,
+    AddOutput,
+    CutSelection,
+    DeleteSelection,
+    DescribeControl,
+    DuplicateSelection,
+    EditFrame,
+    ExposeValue,
+    ExtractSelection,
+    HideControl,
+    InsertNode,
+    MakeGroup,
+    MakeGroupLocal,
+    MoveElements,
+    PasteText,
+    RemoveDot,
+    RemoveEnd,
+    RenameControl,
+    RenameEnd,
+    ReplaceGraph,
+    ResetNode,
+    ResetValue,
+    ResizeComment,
+    ResizeFrame,
+    SetCanvasSize,
+    SetInput,
+    SetOutput,
+    SetValue,
+    SpliceChain,
+    ToggleCollapse,
+    ToggleMute,
+)
 from halation.authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from halation.authoring.session import Session
 from halation.document import load

@@ -5,7 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from halation.authoring.commands import AddNode, Disconnect, MakeGroup, MoveElements, PlaceElement, RenameNode, ReplaceGraph, SetValue, ToggleMute
+from halation.authoring.commands import (
+    AddNode,
+    Disconnect,
+    MakeGroup,
+    MoveElements,
+    PlaceElement,
+    RenameNode,
+    ReplaceGraph,
+    SetValue,
+    ToggleMute,
+)
 from halation.authoring.session import Session
 from halation.authoring.state import history
 from halation.errors import GraphError

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 import pytest
-from halation.authoring.commands import AddNode, AssignViewer, DeleteSelection, Disconnect, MakeGroup, RenameEnd, RenameNode, ReplaceGraph
+from halation.authoring.commands import (
+    AddNode,
+    AssignViewer,
+    DeleteSelection,
+    Disconnect,
+    MakeGroup,
+    RenameEnd,
+    RenameNode,
+    ReplaceGraph,
+)
 from halation.authoring.session import Session
 from halation.compiler import Request, compile_graph
 from halation.errors import GraphError

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.editor.canvas.geometry import find_bounds, find_crossed, find_crossing, find_midpoint, find_pan_direction, fit_view, make_curve, make_transform, measure_distances, sample_curves, snap_to_grid, zoom_about
+from halation.editor.canvas.geometry import (
+    find_bounds,
+    find_crossed,
+    find_crossing,
+    find_midpoint,
+    find_pan_direction,
+    fit_view,
+    make_curve,
+    make_transform,
+    measure_distances,
+    sample_curves,
+    snap_to_grid,
+    zoom_about,
+)
 
 ENDS = [(0.0, 0.0, 300.0, 120.0), (0.0, 0.0, -260.0, 40.0), (10.0, 5.0, 30.0, 5.0), (0.0, 0.0, 0.0, 500.0)]
 

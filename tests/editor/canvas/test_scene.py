@@ -5,7 +5,20 @@ from __future__ import annotations
 import pytest
 from halation.authoring.edits.decor import add_frame
 from halation.authoring.edits.layout import pin_places, positions
-from halation.editor.canvas.gestures import LinkGesture, MoveGesture, ResizeGesture, add_crossing_dots, find_fitting_pins, find_insertion, find_refused_pin, find_snap_pin, find_touched, move_to, preview_gesture, resize_to
+from halation.editor.canvas.gestures import (
+    LinkGesture,
+    MoveGesture,
+    ResizeGesture,
+    add_crossing_dots,
+    find_fitting_pins,
+    find_insertion,
+    find_refused_pin,
+    find_snap_pin,
+    find_touched,
+    move_to,
+    preview_gesture,
+    resize_to,
+)
 from halation.editor.canvas.scene import CanvasScene
 from halation.editor.canvas.staging import SceneBuilder, measure_comment
 from halation.editor.shared.entries import GROUP, arrange_entries, graph_entries, keep_fitting, node_entries

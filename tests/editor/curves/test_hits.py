@@ -4,7 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from halation.editor.curves.bundle import BundleBuilder
-from halation.editor.curves.hits import EntryCache, find_line, find_nearest, find_sheet_marks, find_spots_in_box, find_tips
+from halation.editor.curves.hits import (
+    EntryCache,
+    find_line,
+    find_nearest,
+    find_sheet_marks,
+    find_spots_in_box,
+    find_tips,
+)
 from halation.editor.curves.rows import make_rows
 from halation.editor.toolkit.plane import Plane, View
 from halation.graph import Graph, Key, Keys, Port

@@ -6,7 +6,14 @@ import itertools
 
 import numpy as np
 import pytest
-from halation.editor.curves.shapes import ExpressionSamples, cut_dashes, find_value_range, flatten_curves, make_outside_pieces, make_pieces
+from halation.editor.curves.shapes import (
+    ExpressionSamples,
+    cut_dashes,
+    find_value_range,
+    flatten_curves,
+    make_outside_pieces,
+    make_pieces,
+)
 from halation.editor.toolkit.plane import Plane, View, ticks
 from halation.graph import Expression, Graph, Key, Keys, Port, Settings
 from toy_nodes import Gain

@@ -5,7 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.color.transforms import decode_srgb
-from halation.editor.fields.colors import brightened, decode, dimmed, encode, from_hexadecimal, hexadecimal, intensity, picked, swatch
+from halation.editor.fields.colors import (
+    brightened,
+    decode,
+    dimmed,
+    encode,
+    from_hexadecimal,
+    hexadecimal,
+    intensity,
+    picked,
+    swatch,
+)
 from halation.errors import UsageError
 from hypothesis import given
 from hypothesis import strategies as st

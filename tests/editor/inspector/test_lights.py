@@ -4,7 +4,21 @@ from __future__ import annotations
 
 import pytest
 from halation.editor.fields.fields import Fields
-from halation.editor.fields.lights import PARTS, added, changed, count_of, counted, fresh, light_at, moved, parts_of, removed, strength, title, turned
+from halation.editor.fields.lights import (
+    PARTS,
+    added,
+    changed,
+    count_of,
+    counted,
+    fresh,
+    light_at,
+    moved,
+    parts_of,
+    removed,
+    strength,
+    title,
+    turned,
+)
 from halation.editor.fields.lights_field import selected
 from halation.editor.theme.palette import DARK
 from halation.graph.values import value_fault

@@ -3,7 +3,17 @@
 import math
 
 import pytest
-from halation.editor.viewer.geometry import Sight, box_dragged, box_grip, ordered, texel, texels, wipe_angle, wipe_direction, wipe_grip
+from halation.editor.viewer.geometry import (
+    Sight,
+    box_dragged,
+    box_grip,
+    ordered,
+    texel,
+    texels,
+    wipe_angle,
+    wipe_direction,
+    wipe_grip,
+)
 
 SIGHT = Sight((100.0, 50.0), (800, 600), (400, 200), zoom=3.0, pan=(17.0, -5.0))
 

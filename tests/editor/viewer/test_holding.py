@@ -13,7 +13,18 @@ from halation.editor.viewer.lights import MOST, lamps
 from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
 from halation.graph import Port
-from halation.nodes import CameraSocket, Filter, Image, Light, LightKind, LightList, catalogue, lights_of, look_at, numbers_of
+from halation.nodes import (
+    CameraSocket,
+    Filter,
+    Image,
+    Light,
+    LightKind,
+    LightList,
+    catalogue,
+    lights_of,
+    look_at,
+    numbers_of,
+)
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
 CAMERA = look_at((0.0, -5.0, 0.0), (0.0, 0.0, 0.0), (1.0, 2.0))

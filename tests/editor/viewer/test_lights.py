@@ -18,7 +18,21 @@ from halation.editor.viewer.lights import Lamp, add, can_add, can_remove, lamps,
 from halation.editor.viewer.perspective import project
 from halation.editor.viewer.state import ViewerState
 from halation.graph import Port
-from halation.nodes import MAX_LIGHTS, CameraSocket, Field, Filter, Image, Light, LightKind, LightList, Vector, catalogue, lights_of, look_at, numbers_of
+from halation.nodes import (
+    MAX_LIGHTS,
+    CameraSocket,
+    Field,
+    Filter,
+    Image,
+    Light,
+    LightKind,
+    LightList,
+    Vector,
+    catalogue,
+    lights_of,
+    look_at,
+    numbers_of,
+)
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
 CAMERA = look_at((0.0, -5.0, 0.0), (0.0, 0.0, 0.0), (1.0, 2.0))
