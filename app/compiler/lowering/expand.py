@@ -47,7 +47,7 @@ class FlatGraph(Struct):
         return source
 
     def follow(self, end: Port) -> Port:
-        """Like `find_source` without checks, for links that were followed before; the end itself if nothing feeds it."""
+        """Like `find_source` without checks, for links that were checked before; the end itself if nothing feeds it."""
         for _ in range(len(self.links)):
             if end not in self.links:
                 break

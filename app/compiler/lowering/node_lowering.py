@@ -257,7 +257,7 @@ class NodeLowering:
         return {port.socket: memory for port, memory in memories.items() if port.node == path}
 
     def _convert_to_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
-        """Pixels with the channels that a filter's input declares: a filter reads neighbors, so a number will not do."""
+        """Pixels with the channels that a filter's input declares: it reads neighbors, so a number is not enough."""
         if socket.single:
             return operand
         if isinstance(operand, UniformConstant):

@@ -103,8 +103,8 @@ def _find_excess(
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
-                f"node '{owner}': {_format_size(size)} pixels is more than the {target.max_size} that {target.renderer} "
-                "can hold on a side"
+                f"node '{owner}': {_format_size(size)} pixels is more than the {target.max_size} that "
+                f"{target.renderer} can hold on a side"
             )
     if not target.memory:
         return ""
@@ -114,7 +114,8 @@ def _find_excess(
     nbytes += _count_memory_bytes(program, texels)
     if nbytes <= target.memory:
         return ""
-    return f"{format_bytes(nbytes)} of textures and pictures is more than the {format_bytes(target.memory)} that may be used"
+    allowed = format_bytes(target.memory)
+    return f"{format_bytes(nbytes)} of textures and pictures is more than the {allowed} that may be used"
 
 
 def _count_memory_bytes(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
@@ -251,8 +252,8 @@ class _StagePlanner:
             within = f"within {format_bytes(memory)} its" if memory else "its"
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
-                f"node '{owner}': {within} {_format_size(size)} pixels can only be made in tiles of {_format_size(tile)}, "
-                f"which takes too long; {more} smaller with --scale or --size",
+                f"node '{owner}': {within} {_format_size(size)} pixels can only be made in tiles of "
+                f"{_format_size(tile)}, which takes too long; {more} smaller with --scale or --size",
                 node=owner,
             )
         tiles = _split_into_tiles(size, tile)
