@@ -1,5 +1,7 @@
 """Runs the real editor in a real OpenGL window without a display, moved by a simulated mouse and keyboard.
 
+The clock of the window goes on by a sixtieth of a second per frame, however long the machine needs for it: double
+clicks, repeated keys, and whatever else depends on how quick the user is, are the same on a busy machine.
 HALATION_SHOTS=folder keeps screenshots there. HALATION_TEST_FORM=fragment is OpenGL 4.1, as on macOS.
 """
 
@@ -20,6 +22,10 @@ from halation.editor.window.opengl import needs_no_display
 from halation.editor.window.window import Window
 from imgui_bundle import ImVec2, hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
+
+FRAME_SECONDS = 1.0 / 60.0
+PATIENCE = 120.0
+"""Seconds of real time after which what never became true fails a test; a busy machine needs some of them."""
 
 T = TypeVar("T")
 Point = tuple[float, float]
@@ -46,7 +52,7 @@ class Ui:
         """Let the window draw."""
         self.ctx.yield_(frames)
 
-    def until(self, question: Callable[[], bool], seconds: float = 20.0) -> None:
+    def until(self, question: Callable[[], bool], seconds: float = PATIENCE) -> None:
         """Wait for something to become true."""
         end = time.monotonic() + seconds
         while not question():
@@ -93,14 +99,10 @@ class Ui:
         self.wait(3)
 
     def double_click(self, place: str | Point, fraction: Point = (0.5, 0.5)) -> None:
-        """Click twice; two clicks count as one thing however long a busy machine needs for the frames between them."""
+        """Click twice."""
         self.move(place, fraction)
-        io = imgui.get_io()
-        usual_times = io.mouse_single_click_delay, io.mouse_double_click_time
-        io.mouse_single_click_delay, io.mouse_double_click_time = 61.0, 60.0
         self.ctx.mouse_double_click(0)
         self.wait(3)
-        io.mouse_single_click_delay, io.mouse_double_click_time = usual_times
 
     def drag(
         self,
@@ -134,12 +136,9 @@ class Ui:
         self.wait(2)
 
     def keys(self, text: str) -> None:
-        """Press a shortcut such as "Ctrl+Z" once, however long a busy machine needs until it is let go."""
-        io = imgui.get_io()
-        usual, io.key_repeat_delay = io.key_repeat_delay, 60.0
+        """Press a shortcut such as "Ctrl+Z" once."""
         self.ctx.key_press(chord(text))
         self.wait(3)
-        io.key_repeat_delay = usual
 
     def type(self, text: str, enter: bool = True) -> None:
         """Replace the text of the field that is being edited: key by key, as a hand does, a frame for each."""
@@ -206,8 +205,11 @@ def drive(
             ui.answer()
 
         window.params.callbacks.post_new_frame = each_frame
-        patience = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
-        patience.config_watchdog_warning = patience.config_watchdog_kill_test = 600.0
+        engine = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
+        engine.config_watchdog_warning = engine.config_watchdog_kill_test = 600.0
+        engine.config_fixed_delta_time = FRAME_SECONDS
+        began = time.time() - imgui.get_time()
+        window.editor.log.clock = lambda: began + imgui.get_time()
         imgui.get_io().config_error_recovery_enable_assert = True  # what a panel leaves open is a fault here
         if likes:
             ui.editor.store.change(**likes)

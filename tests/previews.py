@@ -52,7 +52,7 @@ def request_preview(
 
 def settle(preview: Preview) -> int:
     """Work to the end; how many calls that took."""
-    for count in range(1, 10_000):
+    for count in range(1, 100_000):
         if not preview.work(0.0):
             return count
         time.sleep(0.0005)

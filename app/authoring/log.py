@@ -24,8 +24,8 @@ class LogEntry:
 
     sentence: str
     level: Level
+    at: float
     detail: str = ""
-    at: float = field(default_factory=time)
 
 
 @dataclass
@@ -33,6 +33,7 @@ class Log:
     """The newest sentences, oldest first."""
 
     entries: deque[LogEntry] = field(default_factory=lambda: deque[LogEntry](maxlen=KEPT))
+    clock: Callable[[], float] = time
     dismissed: float = 0.0
     """Entries up to this time are not repeated as toasts any more."""
 
@@ -41,7 +42,7 @@ class Log:
         newest = self.entries[-1] if self.entries else None
         if newest and (newest.sentence, newest.level, newest.detail) == (sentence, level, detail):
             self.entries.pop()
-        self.entries.append(LogEntry(sentence, level, detail))
+        self.entries.append(LogEntry(sentence, level, self.clock(), detail))
 
     def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
         """Do something that the user asked for; what goes wrong becomes an entry, and `default` is returned.
@@ -63,9 +64,13 @@ class Log:
 
     def toasts(self) -> tuple[LogEntry, ...]:
         """What was said just now."""
-        since = max(time() - TOAST_SECONDS, self.dismissed)
+        since = max(self.clock() - TOAST_SECONDS, self.dismissed)
         return tuple(entry for entry in self.entries if entry.at > since)
 
     def dismiss(self) -> None:
         """No toast for what was said so far."""
-        self.dismissed = time()
+        self.dismissed = self.clock()
+
+    def age(self, entry: LogEntry) -> float:
+        """Seconds since an entry was added."""
+        return self.clock() - entry.at

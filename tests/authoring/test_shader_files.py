@@ -25,7 +25,7 @@ def files() -> Iterator[ShaderFiles]:
 
 
 def found(files: ShaderFiles, *folders: Path) -> tuple[ShaderFile, ...]:
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 120.0
     while (known := files.find(map(str, folders))) is None:
         assert time.monotonic() < end
         time.sleep(0.01)

@@ -224,10 +224,10 @@ def test_a_hundred_megabytes_are_refused_unread(tmp_path: Path) -> None:
     with path.open("wb") as file:
         file.truncate(100 * 2**20)
     tracemalloc.start()
-    start = time.perf_counter()
+    start = time.thread_time()
     with pytest.raises(DocumentError, match=r"huge\.json: the file has more than 32 MB; that is no graph"):
         load(path)
-    assert time.perf_counter() - start < 0.1
+    assert time.thread_time() - start < 0.1
     assert tracemalloc.get_traced_memory()[1] < 2**20
     tracemalloc.stop()
 

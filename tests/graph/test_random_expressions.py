@@ -206,7 +206,7 @@ def test_nothing_else_is_ever_raised() -> None:
             text = mutated(rng, rng.choice(SEEDS))
         else:
             text = "".join(rng.choice(PIECES) for _ in range(rng.randint(0, rng.choice((4, 12, 300)))))
-        start = time.perf_counter()
+        start = time.thread_time()
         try:
             found = at(text, rng.choice((0.0, -3.5, 1e15, 1e300)))
             good += 1
@@ -214,5 +214,5 @@ def test_nothing_else_is_ever_raised() -> None:
         except ExpressionError as error:
             assert 0 <= error.position <= len(text) and error.sentence
         Expression(text).rename("glow", "x y")
-        slowest = max(slowest, time.perf_counter() - start)
+        slowest = max(slowest, time.thread_time() - start)
     assert good > 500 and slowest < 1.0

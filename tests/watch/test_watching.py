@@ -34,7 +34,7 @@ def watcher(request, monkeypatch):
 
 def news(watcher, count=1):
     """The next changes."""
-    found, end = [], time.monotonic() + 20.0
+    found, end = [], time.monotonic() + 120.0
     while len(found) < count:
         assert time.monotonic() < end, found
         found += watcher.poll()
@@ -154,7 +154,7 @@ def test_folders_of_shaders_and_nodes(watcher, tmp_path):
 
 
 def until_listed(watcher):
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 120.0
     while not watcher._listed:
         assert time.monotonic() < end
         time.sleep(0.005)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -40,7 +40,7 @@ class Preview:
     pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment.
     """
 
-    def __init__(self, renderer: Renderer, display: Display) -> None:
+    def __init__(self, renderer: Renderer, display: Display, clock: Callable[[], float] = time.perf_counter) -> None:
         self.renderer, self._runner = renderer, renderer.runner
         self._thumbnails = Thumbnails(renderer, display)
         self._wish: PreviewRequest | None = None
@@ -63,6 +63,8 @@ class Preview:
         self.ahead: int | None = None
         self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
+        self.clock = clock
+        """Seconds, by which a graph rests and patience ends; the budget of `work` and what is measured are real time."""
         self.seconds = 0.0
         """How long the frame took that was finished last."""
         self._takes: list[FrameCache] = []
@@ -284,7 +286,7 @@ class Preview:
         job, ports = self._job, wish.ports
         if job is not None and job.ahead and job.frame == wish.frame and job.wish.frame_cache is wish.frame_cache:
             job.ahead, job.wish = False, wish
-            self._round = PreviewWork(wish, [], time.perf_counter())
+            self._round = PreviewWork(wish, [], self.clock())
             self._settle(self._round)
             return
         self._restart()
@@ -297,7 +299,7 @@ class Preview:
             self._shelf.show(name, ports[name], wish, images[name])
         skimmed = bool(images and self.skims)
         queue = [ports] if ports and not skimmed else []
-        self._round = PreviewWork(wish, queue, time.perf_counter(), from_cache_only=skimmed)
+        self._round = PreviewWork(wish, queue, self.clock(), from_cache_only=skimmed)
         self._settle(self._round)
 
     def _may_restart(self, wish: PreviewRequest) -> bool:
@@ -307,7 +309,7 @@ class Preview:
             return True
         if now.part and not job.part:
             return True
-        return time.perf_counter() - now.started_at > self.patience
+        return self.clock() - now.started_at > self.patience
 
     def _peek(self, now: PreviewWork) -> bool:
         """Begin with what can be seen, where that is a part of what is still to be done."""
@@ -327,7 +329,7 @@ class Preview:
         """Begin with the next ports; False if there are none."""
         if self._looks_ahead and self.ahead is not None:
             ports, frame, ahead = now.wish.ports, self.ahead, True
-        elif not now.queue or now.must_wait:
+        elif not now.queue or now.must_wait(self.clock()):
             return False
         else:
             ports, frame, ahead = now.queue.pop(0), now.wish.frame, False

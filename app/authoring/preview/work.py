@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -44,10 +43,9 @@ class PreviewWork:
             return False
         return glimpse.names <= self.wish.ports.keys() and not (self.part and self.part.shows(glimpse))
 
-    @property
-    def must_wait(self) -> bool:
-        """True while the first of the queue must not be begun."""
-        if self.part is not None and time.perf_counter() - self.started_at < REST:
+    def must_wait(self, now: float) -> bool:
+        """True while the first of the queue must not be begun; `now` is of the clock of `started_at`."""
+        if self.part is not None and now - self.started_at < REST:
             return True
         return self.pending is not None and not self.pending.ready()
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from imgui_bundle import ImVec2
+from imgui_bundle import ImVec2, imgui
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
 from ...authoring.commands import SetCode
@@ -85,7 +84,7 @@ class Page:
         widget.set_read_only_enabled(bool(self.context.session.borrowed))
         widget.render(f"##code {self.path}", ImVec2(*size))
         text = widget.get_text()
-        now = time.monotonic()
+        now = imgui.get_time()
         if text != self._text:
             if now - self._typed_at > BURST:
                 self._bursts += 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from time import time
 from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
@@ -44,7 +43,7 @@ class Toasts:
     def _draw_toast(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
         """Draw with the lower right corner there; the height."""
         scale = ui_scale()
-        left = TOAST_SECONDS - (time() - entry.at)
+        left = TOAST_SECONDS - self._context.log.age(entry)
         opacity = min(max(left / _FADE, 0.05), 1.0)
         imgui.set_next_window_pos(corner, imgui.Cond_.always.value, ImVec2(1, 1))
         imgui.set_next_window_size_constraints(ImVec2(_WIDTH * scale, 0), ImVec2(_WIDTH * scale, 400 * scale))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -142,11 +141,11 @@ class RenderForm:
 
     # --- all together ------------------------------------------------------------------------------------------------
 
-    def targets(self) -> RenderTargets:
-        """What would be written now."""
+    def targets(self, now: float) -> RenderTargets:
+        """What would be written; the disk is looked at again when `now` is a second later, or the choices differ."""
         frames = self.frames()
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.chosen_outputs()))
-        key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
+        key = paths, frames, self.list_fault if not frames else ""
         if self._seen[0] != key or now - self._seen[1] > _FRESH:
             self._seen = (key, now, find_targets(paths, frames, key[2]))
         return self._seen[2]

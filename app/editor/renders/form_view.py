@@ -35,7 +35,7 @@ def draw_form(context: RendersContext, form: RenderForm) -> None:
     _draw_files(context, form)
     _draw_frames(context, form)
     _draw_options(context, form)
-    aim = form.targets()
+    aim = form.targets(imgui.get_time())
     imgui.dummy((0, 2 * ui_scale()))
     _draw_consequences(context, form, aim)
     waits = bool(context.exports.unfinished)

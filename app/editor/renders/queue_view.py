@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -246,7 +245,7 @@ class RenderQueueView:
         """The file that stands for it: a new one only now and then, for decoding takes time too."""
         if not export.written_files:
             return None
-        path, now, before = export.written_files[-1], time.monotonic(), self._seen.get(export)
+        path, now, before = export.written_files[-1], imgui.get_time(), self._seen.get(export)
         late = before is None or now - before[2] > _PAUSE or export.state != "running"
         if late and (before is None or before[0] != path):
             try:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from imgui_bundle import imgui
+
 from ...authoring.commands import SetFrameRange
 from ..shared.action import Act, Action
 from .playback import LOOPS, Loop
@@ -14,7 +16,7 @@ if TYPE_CHECKING:
 
 def play(context: TimelineContext) -> None:
     """Play, or stop."""
-    context.timeline.play(context.session, context.preview.remembers)
+    context.timeline.play(context.session, imgui.get_time(), context.preview.remembers)
 
 
 def _step(by: int) -> Act:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -33,9 +32,9 @@ class MissingFrames:
     _of: tuple[object, ...] = ()
     _at: float = field(default=float("-inf"))
 
-    def update(self, session: Session) -> Gaps:
+    def update(self, session: Session, now: float) -> Gaps:
         """The frames between the first and the last one of a sequence that have no file."""
-        now, of = time.monotonic(), (session.root, dict(session.bindings))
+        of = session.root, dict(session.bindings)
         if now - self._at > STALE or (now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
             self._at, self._of = now, of
             self.gaps = find_gaps(session.root, session.bindings)

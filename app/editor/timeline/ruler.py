@@ -146,7 +146,7 @@ class Ruler:
         bottom = plane.rect[3]
         for frames, color in (
             (list_runs(self.context.preview.frames), palette.good),
-            (self.missing.update(self.context.session), palette.error),
+            (self.missing.update(self.context.session, imgui.get_time()), palette.error),
         ):
             for first, last in frames:
                 a, b = plane.x(first - 0.5), max(plane.x(last + 0.5), plane.x(first - 0.5) + 1.5)

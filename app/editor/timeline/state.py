@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -58,12 +57,12 @@ class TimelineState:
         first, last = self.span(session)
         return Course(first, last, session.settings.rate, self.loop, self.every or every)
 
-    def play(self, session: Session, every: bool = False) -> None:
-        """Play, or stop."""
+    def play(self, session: Session, now: float, every: bool = False) -> None:
+        """Play from this second on, or stop."""
         if self.playback.playing:
             self.stop()
         else:
-            self.playback.start(self.course(session, every), session.frame, time.monotonic())
+            self.playback.start(self.course(session, every), session.frame, now)
             session.seek(self.playback.frame)
 
     def stop(self) -> None:

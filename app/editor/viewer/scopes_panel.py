@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -123,7 +122,7 @@ class ScopesPanel:
             viewer.meaning,
             self._context.palette.name,
         )
-        now = time.monotonic()
+        now = imgui.get_time()
         if self._waiting:
             self._make(self._waiting.pop(0))
             return

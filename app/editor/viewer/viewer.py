@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -221,7 +220,7 @@ class Viewer:
         if now.a is not None and not fault and now.a.kind in (Kind.NUMBER, Kind.COLOR):
             values = self._reader.pixel(self._context.probe, "single", now.a, (0, 0))
             draw_message(self._context, sight, "  ".join(written(value) for value in values), palette.text)
-        waited = time.monotonic() - self._busy_since if self._busy_since is not None else 0.0
+        waited = imgui.get_time() - self._busy_since if self._busy_since is not None else 0.0
         if waited > 0.12 and not preview.paused:
             done, total = preview.progress
             draw_progress(self._context, sight, done / total if total else 0.0)
@@ -304,7 +303,7 @@ class Viewer:
 
     def _time(self, now: _Now) -> None:
         """How long pictures take, for the line below and for the proxy of drags."""
-        preview, moment = self._context.preview, time.monotonic()
+        preview, moment = self._context.preview, imgui.get_time()
         busy = preview.busy and not preview.completing
         if busy:
             self._busy_since = moment if self._busy_since is None else self._busy_since

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import time
 from typing import TYPE_CHECKING
 
 from halation.nodes import plugins
+from imgui_bundle import imgui
 
 from ...compiler import installed_library
 from ...graph import Port
@@ -34,7 +34,7 @@ class FrameUpdater:
         self._editor, self._contexts = editor, contexts
         self._nodes = NodeFiles()
         self._watched: tuple[object, ...] = ()
-        self._flushed = 0.0
+        self._flushed = float("-inf")
         self._reported: set[str] = set()
 
     def update(self) -> None:
@@ -45,8 +45,8 @@ class FrameUpdater:
         for change in editor.watcher.poll():
             editor.log.attempt(lambda change=change: self._take_change(change))
         editor.recovery.note(editor.session.recoverable, editor.session.path, editor.session.dirty)
-        if time.monotonic() - self._flushed > 1.0:
-            self._flushed = time.monotonic()
+        if imgui.get_time() - self._flushed > 1.0:
+            self._flushed = imgui.get_time()
             editor.store.flush()
             self._report_faults()
         self._contexts.flipbooks.follow()
@@ -78,7 +78,7 @@ class FrameUpdater:
     def _play(self, session: Session) -> None:
         """Go on to the frame that is due."""
         timeline, preview = self._editor.timeline, self._editor.preview
-        playback, now = timeline.playback, time.monotonic()
+        playback, now = timeline.playback, imgui.get_time()
         if playback.playing:
             playback.keep(timeline.course(session, preview.remembers), session.frame, now)
             if not preview.busy:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from time import time
-
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -27,7 +25,7 @@ def draw_status(editor: Editor, contexts: Contexts) -> None:
     left = max(end - imgui.calc_text_size(figures).x, 0.0)
     newest = editor.log.entries[-1] if editor.log.entries else None
     imgui.set_cursor_pos_x(imgui.get_style().window_padding.x)
-    if newest and time() - newest.at < SECONDS:
+    if newest and editor.log.age(newest) < SECONDS:
         text = cut_end(newest.sentence.splitlines()[0], left - 2 * EM)
         imgui.text_colored(vec4(level_color(editor.palette, newest.level)), text)
     else:

@@ -22,7 +22,7 @@ def graph(tmp_path) -> Graph:
 
 
 def worked(preview) -> None:
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 120.0
     while (preview.work(0.1) or preview.busy) and time.monotonic() < end:
         time.sleep(0.002)
     assert not preview.busy, "this never came to an end"

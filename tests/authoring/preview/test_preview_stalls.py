@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-import time
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -219,10 +219,11 @@ def test_hundreds_of_edits_leave_nothing_behind(preview: Preview, engine):
 
 
 def test_a_slow_file_lets_frames_go_on_and_edits_through(preview, engine, tmp_path: Path):
-    load, slept = engine.runner._load, []
+    load, loads, disk = engine.runner._load, [], threading.Event()
 
     def slow(picture):
-        slept.append(time.sleep(0.2))
+        assert disk.wait(60.0)
+        loads.append(picture)
         return load(picture)
 
     engine.runner._load = slow
@@ -232,7 +233,8 @@ def test_a_slow_file_lets_frames_go_on_and_edits_through(preview, engine, tmp_pa
         for _ in range(3):
             frames += 1
             preview.work(0.001)
-    assert not slept or len(slept) < 2, "no frame waited"
+    assert frames == 12 and not loads, "no frame waited"
+    disk.set()
     settle(preview)
-    assert frames == 12 and len(slept) == 1, "what is being read is still wanted after an edit"
+    assert len(loads) == 1, "what is being read is still wanted after an edit"
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=4.0)))

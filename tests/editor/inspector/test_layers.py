@@ -30,7 +30,7 @@ def picture(tmp_path: Path) -> Path:
 
 
 def waited(ask):
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 120.0
     while (found := ask()) is None and time.monotonic() < end:
         time.sleep(0.01)
     return found

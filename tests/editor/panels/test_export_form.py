@@ -45,13 +45,13 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     assert list(form.extents()) == ["this frame", "all frames", "some frames"]
     assert (form.extent_of(), form.frames()) == ("all frames", tuple(range(1, 25)))
     assert form.file("image") == tmp_path / "out" / "soft_bloom.####.exr"
-    aim = form.targets()
+    aim = form.targets(0.0)
     assert (aim.files, aim.exist, aim.fault) == (24, 0, "")
     assert aim_text(aim) == "Writes 24 files: soft_bloom.0001.exr \u2026 soft_bloom.0024.exr"
     desk.session.seek(7)
     form.extend("this frame")
     assert form.frames() == (7,)
-    assert aim_text(form.targets()) == "Writes soft_bloom.exr"
+    assert aim_text(form.targets(0.0)) == "Writes soft_bloom.exr"
     desk.session.apply(SetFrameRange(None))
     assert list(RenderForm(desk).extents()) == ["this frame", "some frames"]
     assert RenderForm(desk).extent_of() == "this frame"
@@ -72,10 +72,10 @@ def test_typed_frames_are_checked(desk: Desk) -> None:
     assert (form.listed, form.list_fault) == ("1-24", "")
     form.listed = "1-24x2,40"
     assert form.frames() == (*range(1, 25, 2), 40)
-    assert form.targets().last.endswith("soft_bloom.0040.exr")
+    assert form.targets(0.0).last.endswith("soft_bloom.0040.exr")
     form.listed = "1-x"
     assert form.frames() == ()
-    assert "neither a frame nor a range" in form.targets().fault
+    assert "neither a frame nor a range" in form.targets(0.0).fault
     with pytest.raises(UsageError, match="neither a frame nor a range"):
         form.start()
     assert desk.exports.all == ()
@@ -86,24 +86,26 @@ def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
     form.extend("all frames")
     assert form.file("image").name == "mine.####.png"
     form.files["image"] = str(tmp_path / "out" / "mine.png")
-    assert "cannot go into one file" in form.targets().fault
+    assert "cannot go into one file" in form.targets(0.0).fault
     form.number()
-    assert form.targets().fault == ""
+    assert form.targets(0.0).fault == ""
     form.files["image"] = str(tmp_path / "out" / "mine.%03d.png")
     form.extend("some frames")
-    assert form.targets().first.endswith("mine.001.png")
+    assert form.targets(0.0).first.endswith("mine.001.png")
 
 
 def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
     form = RenderForm(desk)
     for frame in (1, 2, 3, 40):
         (tmp_path / "out" / f"soft_bloom.{frame:04d}.exr").touch()
-    aim = form.targets()
+    aim = form.targets(0.0)
     assert aim.exist == 3
+    (tmp_path / "out" / "soft_bloom.0004.exr").touch()
+    assert form.targets(0.9) is aim and form.targets(1.1).exist == 4, "the disk is asked once in a second"
     assert exist_text(aim, False) == "3 of them are there, and will be replaced."
     assert exist_text(aim, True).startswith("3 of them are there. They are kept")
     form.chosen["image"] = False
-    assert "Choose an output" in form.targets().fault
+    assert "Choose an output" in form.targets(0.0).fault
 
 
 def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:

@@ -22,7 +22,7 @@ def picture(path: Path, value: float, width: int = 400, height: int = 100) -> Pa
 
 
 def ready(pictures: FileThumbnails, path: Path, at: float = 1.0):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 120
     while (found := pictures.get(path, at)) is None:
         assert time.monotonic() < end
         time.sleep(0.005)
