@@ -64,7 +64,7 @@ class Preview:
         self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
         self.clock = clock
-        """Seconds, by which a graph rests and patience ends; the budget of `work` and what is measured are real time."""
+        """Seconds for waits: until a graph rests, until patience ends. Budgets and measurements are in real time."""
         self.seconds = 0.0
         """How long the frame took that was finished last."""
         self._takes: list[FrameCache] = []
