@@ -63,7 +63,7 @@ def fill_rules(text: str) -> str:
 
 
 WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
-    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.page(list(built_in_nodes().values()))}
+    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.catalogue_page(list(built_in_nodes().values()))}
 )
 """Pages that are generated from the first line to the last."""
 

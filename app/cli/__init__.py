@@ -1,4 +1,6 @@
-"""The commands. Each imports what it needs when it runs, so that `--help` is instant and no command opens a window."""
+"""The command line. Each command imports what it needs when it runs, so that `--help` is instant and only `edit`
+loads a window library.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +13,16 @@ from typing import TextIO
 
 _INTERRUPTED = 130
 _YOUNG = 100_000
-"""Objects made since Python last looked for garbage that make it look again: modules that are being loaded are none."""
+"""New objects after which Python collects garbage, instead of 700: importing modules creates many, and none of them
+is garbage."""
 
 
 def main() -> None:
-    """Run the command line, and leave at once: nothing is left to tidy up that the system does not take back.
+    """Run the command line and end the process at once: the system frees all that it holds.
 
-    Closed streams are replaced, lest the next file to be opened takes their place; names of files may hold bytes
-    that no encoding knows. Matrices are small here: numpy's threads for large ones would only spin while they wait.
+    A closed standard stream is replaced, because the next opened file would get its number. File names may hold bytes
+    that are not valid text, so printing escapes them. Matrices are small here, and the threads that numpy starts for
+    large ones would cost time.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_YOUNG)
@@ -30,7 +34,7 @@ def main() -> None:
         from .program import run
 
         code = run(sys.argv[1:])
-    except KeyboardInterrupt:  # while modules were still being loaded
+    except KeyboardInterrupt:  # while modules are still being imported
         code = _INTERRUPTED
     os._exit(code)
 

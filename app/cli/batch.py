@@ -1,4 +1,4 @@
-"""What commands share that render many pictures into a folder."""
+"""What `demo`, `gallery`, `sweep` and `bench` share: a renderer, and a progress bar over many pictures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .outcome import note
+from .outcome import print_note
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Batch:
-    """A renderer, and a bar on terminals that shows how far it is."""
+    """A renderer, and a progress bar on terminals."""
 
     renderer: Renderer
     _progress: Progress
@@ -27,30 +27,30 @@ class Batch:
 
     @property
     def device(self) -> str:
-        """What it renders on."""
+        """The description of the device."""
         return self.renderer.device.description
 
     def step(self, name: str) -> None:
-        """Say what comes next."""
+        """Show the name of what is rendered next, and advance the bar."""
         self._progress.update(self._task, description=name, advance=1)
 
     def say(self, line: str) -> None:
-        """A line above the bar."""
+        """Print a line above the bar."""
         self._progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
 
 
-def middle_frame(renderer: Renderer, graph: Graph) -> int:
-    """The frame that stands for all of a graph: by then something has happened."""
+def find_middle_frame(renderer: Renderer, graph: Graph) -> int:
+    """The frame in the middle of a graph, which shows an animation better than its first frame."""
     return sum(renderer.frames(graph)) // 2
 
 
 @contextmanager
 def open_batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
-    """Make the folder, open a device and show the bar; at the end both are closed.
+    """Create the folder, open a device and show a progress bar; close both at the end.
 
-    `budget` is how many bytes of results may stay on the device from one picture to the next.
+    `budget` is how many bytes of results the device may keep from one picture to the next.
 
-    Raises OutputError for a folder that cannot be made, DeviceError without usable OpenGL.
+    Raises OutputError for a folder that cannot be created, DeviceError without usable OpenGL.
     """
     from ..errors import OutputError
     from ..renderer import Renderer, open_device
@@ -58,20 +58,22 @@ def open_batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
-        raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
+        raise OutputError(
+            f"{output}: the folder cannot be created ({fault.strerror}); choose another with -o"
+        ) from None
     renderer = Renderer(open_device(), budget=budget)
-    with show_progress(renderer, total) as work:
-        yield work
+    with show_progress(renderer, total) as batch:
+        yield batch
     renderer.close()
 
 
 @contextmanager
 def show_progress(renderer: Renderer, total: int) -> Iterator[Batch]:
-    """Show the bar of what somebody else's device does."""
+    """Show a progress bar for a renderer that the caller has opened and closes."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-    note(renderer.device.description)
+    print_note(renderer.device.description)
     console = Console(stderr=True)
     columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:

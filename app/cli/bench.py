@@ -1,4 +1,4 @@
-"""`halation bench`: where the time goes."""
+"""`halation bench`: measures how long each node and pass takes."""
 
 from __future__ import annotations
 
@@ -43,63 +43,81 @@ def bench(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int | None, typer.Option(help="The frame to measure; by default the first of the graph.")] = None,
-    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure these frames together.")] = None,
-    repeats: Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="How often to measure.")] = 15,
-    warm_up: Annotated[int, typer.Option("--warm-up", min=0, max=10_000, help="How often to render before that.")] = 3,
-    passes: Annotated[bool, typer.Option("--passes", help="A line for every pass instead of every node.")] = False,
+    frame: Annotated[
+        int | None, typer.Option(help="Measure this frame; by default the first frame of the graph.")
+    ] = None,
+    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure the sum over these frames.")] = None,
+    repeats: Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="Number of measured runs.")] = 15,
+    warm_up: Annotated[
+        int, typer.Option("--warm-up", min=0, max=10_000, help="Number of runs before those that are measured.")
+    ] = 3,
+    passes: Annotated[bool, typer.Option("--passes", help="Print a line per pass instead of per node.")] = False,
     compare: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Compare with what --json printed before.")
+        Path | None, typer.Option(metavar="FILE", help="Compare with an earlier output of bench --json.")
     ] = None,
     fail_over: Annotated[
-        str | None, typer.Option(metavar="1.2", help="Exit with 1 if something takes more times as long as that.")
+        str | None,
+        typer.Option(
+            metavar="1.2",
+            help="Exit with 1 if a pass or the whole takes more than this many times as long as in --compare.",
+        ),
     ] = None,
-    precision: Annotated[str | None, typer.Option(metavar="half|float", help="Precision of intermediates.")] = None,
+    precision: Annotated[
+        str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes.")
+    ] = None,
     form: Form = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
-    """Measure what each node and pass takes on this device: the median of several runs after warming up.
+    """Measure how long each node takes.
 
-    Nodes that were fused into one pass have one time together.
+    Prints the median of several runs on this device, after warm-up runs. Nodes that are fused into one pass are
+    measured together.
     """
     from ..errors import UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.baseline import compare_with_baseline
-    from ..renderer.bench import measure_graph as measured
+    from ..renderer.bench import measure_graph
 
-    limit = _limit(fail_over)
-    if limit is not None and compare is None:
-        raise UsageError("--fail-over: say what to compare with: --compare baseline.json")
-    depth = parsing.precision(precision) if precision is not None else None
-    way = parsing.form(form) if form is not None else None
-    canvas, proxy, chosen = parsing.size(size), parsing.scale(scale), parsing.frames(frame, frames)
-    whole = open_graph(graph, parsing.sets(sets))
-    report_problems(graph, whole)
-    if (code := rerun_watched(context, graph, whole, timeout)) is not None:
+    highest_ratio = _parse_ratio(fail_over)
+    if highest_ratio is not None and compare is None:
+        raise UsageError("--fail-over: name the file to compare with: --compare baseline.json")
+    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    pass_form = parsing.parse_form(form) if form is not None else None
+    canvas, proxy, named_frames = (
+        parsing.parse_size(size),
+        parsing.parse_scale(scale),
+        parsing.parse_frame_options(frame, frames),
+    )
+    opened_graph = open_graph(graph, parsing.parse_sets(sets))
+    report_problems(graph, opened_graph)
+    if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
-    bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
-    at = chosen or (LazyResourceProvider().find_frames(whole, bindings)[0],)
-    renderer = Renderer(open_device(way), budget=0)
-    request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
-    with show_progress(renderer, len(at)) as work:
-        timings = measured(renderer, whole, request, at, repeats, warm_up, work.step)
-    if not timings.passes:
-        raise UsageError(f"{graph}: there is nothing to measure: its outputs are made without a single pass")
-    comparison = compare_with_baseline(timings, compare) if compare else None
-    slower = comparison.slower(limit) if comparison and limit is not None else ()
+    bindings, targets = (
+        resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
+        parsing.find_targets(opened_graph, node),
+    )
+    measured_frames = named_frames or (LazyResourceProvider().find_frames(opened_graph, bindings)[0],)
+    renderer = Renderer(open_device(pass_form), budget=0)
+    request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
+    with show_progress(renderer, len(measured_frames)) as batch:
+        benchmark = measure_graph(renderer, opened_graph, request, measured_frames, repeats, warm_up, batch.step)
+    if not benchmark.passes:
+        raise UsageError(f"{graph}: there is nothing to measure: the graph needs no pass")
+    comparison = compare_with_baseline(benchmark, compare) if compare else None
+    slower = comparison.slower(highest_ratio) if comparison and highest_ratio is not None else ()
     if as_json:
-        print_json(_as_json(graph, timings, renderer.device.description, at, comparison, slower))
+        print_json(_benchmark_facts(graph, benchmark, renderer.device.description, measured_frames, comparison, slower))
     else:
-        _print(timings, passes, renderer.device.target.software, repeats)
+        _print_benchmark(benchmark, passes, renderer.device.target.software, repeats)
         if comparison:
-            _print_compared(comparison, slower, limit, renderer.device.description)
+            _print_comparison(comparison, slower, highest_ratio, renderer.device.description)
     return 1 if slower else 0
 
 
-def _limit(text: str | None) -> float | None:
-    """`1.2` or `1.2x`. Raises UsageError."""
+def _parse_ratio(text: str | None) -> float | None:
+    """The ratio from `1.2` or `1.2x`; None without a text. Raises UsageError."""
     from ..errors import UsageError
 
     if text is None:
@@ -109,67 +127,74 @@ def _limit(text: str | None) -> float | None:
     except ValueError:
         ratio = math.nan
     if not 0.0 < ratio < math.inf:
-        raise UsageError(f"--fail-over {text}: write how many times as long is too long, such as 1.2")
+        raise UsageError(f"--fail-over {text}: write a ratio above 0, such as 1.2 for 20 % slower")
     return ratio
 
 
-def _print(timings: Benchmark, by_pass: bool, software: bool, repeats: int) -> None:
+def _print_benchmark(benchmark: Benchmark, by_pass: bool, software: bool, repeats: int) -> None:
     from ..compiler.explain import format_bytes
     from ..renderer.bench import group_by_nodes
 
     if by_pass:
         rows = [
-            (" + ".join(one.functions) + f"  [{', '.join(one.nodes)}]", one.median, one.read, one.written)
-            for one in sorted(timings.passes, key=lambda one: -one.median)
+            (" + ".join(share.functions) + f"  [{', '.join(share.nodes)}]", share.median, share.read, share.written)
+            for share in sorted(benchmark.passes, key=lambda share: -share.median)
         ]
     else:
-        rows = [(_together(one), one.median, one.read, one.written) for one in group_by_nodes(timings.passes)]
-    block, wide = _block(), min(60, max(len(row[0]) for row in rows))
-    most = max(row[1] for row in rows)
+        rows = [
+            (_describe_share(share), share.median, share.read, share.written)
+            for share in group_by_nodes(benchmark.passes)
+        ]
+    bar_letter, label_width = _bar_letter(), min(60, max(len(row[0]) for row in rows))
+    longest = max(row[1] for row in rows)
     for label, seconds, read, written in rows:
-        bar = block * max(1, round(_BAR * seconds / most))
-        text = label if len(label) <= wide else f"{label[: wide - 3]}..."
+        bar = bar_letter * max(1, round(_BAR * seconds / longest))
+        short_label = label if len(label) <= label_width else f"{label[: label_width - 3]}..."
         print(
-            f"{text:<{wide}}  {seconds * 1e3:9.3f} ms  {seconds / timings.median:6.1%}  {bar:<{_BAR}}  "
+            f"{short_label:<{label_width}}  {seconds * 1e3:9.3f} ms  {seconds / benchmark.median:6.1%}  {bar:<{_BAR}}  "
             f"reads {format_bytes(read):>9}, writes {format_bytes(written):>9}"
         )
-    how = "the clock around each pass" if software else "timer queries of the GPU"
-    width, height = timings.size
-    lead = f", {timings.lead} frames led up to it" if timings.lead else ""
+    method = "the clock around each pass" if software else "timer queries of the GPU"
+    width, height = benchmark.size
+    lead_note = f", {benchmark.lead} frames led up to it" if benchmark.lead else ""
     print(
-        f"{'total':<{wide}}  {timings.median * 1e3:9.3f} ms  at {width}x{height}; median of {repeats} by {how}, "
-        f"fastest {timings.fastest * 1e3:.3f} ms{lead}"
+        f"{'total':<{label_width}}  {benchmark.median * 1e3:9.3f} ms  at {width}x{height}; "
+        f"median of {repeats} by {method}, fastest {benchmark.fastest * 1e3:.3f} ms{lead_note}"
     )
     print(
-        f"{'once':<{wide}}  plan {timings.planning * 1e3:.1f} ms, {timings.programs} programs "
-        f"{timings.compiling * 1e3:.1f} ms, first run with files {timings.loading * 1e3:.1f} ms; "
-        f"{format_bytes(timings.peak_bytes)} of textures at the peak"
+        f"{'once':<{label_width}}  plan {benchmark.planning * 1e3:.1f} ms, {benchmark.programs} programs "
+        f"{benchmark.compiling * 1e3:.1f} ms, first run with files {benchmark.loading * 1e3:.1f} ms; "
+        f"{format_bytes(benchmark.peak_bytes)} of textures at the peak"
     )
 
 
-def _together(share: NodeShare) -> str:
-    """The nodes of some passes, and how many these are."""
+def _describe_share(share: NodeShare) -> str:
+    """The nodes of one share, and the number of their passes if there are several."""
     return ", ".join(share.nodes) + (f"  {share.count} passes" if share.count > 1 else "")
 
 
-def _print_compared(
-    comparison: BaselineComparison, slower: tuple[Ratio, ...], limit: float | None, device: str
+def _print_comparison(
+    comparison: BaselineComparison, slower: tuple[Ratio, ...], highest_ratio: float | None, device: str
 ) -> None:
     if comparison.device != device:
         print(f"the baseline was measured on another device: {comparison.device}")
     if comparison.gone or comparison.new:
         print(f"{comparison.new} passes are new, {comparison.gone} are gone")
-    for one in slower or sorted(comparison.ratios[1:], key=lambda one: -one.judged)[:5]:
-        print(f"  {_ratio(one)}")
-    whole = comparison.ratios[0]
-    if not slower or whole not in slower:
-        print(f"  {_ratio(whole)}")
-    if limit is not None:
-        verdict = f"{len(slower)} are slower than {limit:g}x" if slower else f"nothing is slower than {limit:g}x"
+    for ratio in slower or sorted(comparison.ratios[1:], key=lambda ratio: -ratio.judged)[:5]:
+        print(f"  {_describe_ratio(ratio)}")
+    total_ratio = comparison.ratios[0]
+    if not slower or total_ratio not in slower:
+        print(f"  {_describe_ratio(total_ratio)}")
+    if highest_ratio is not None:
+        verdict = (
+            f"{len(slower)} are slower than {highest_ratio:g}x"
+            if slower
+            else f"nothing is slower than {highest_ratio:g}x"
+        )
         print(f"{verdict}; judged by the smaller ratio of median and fastest time, passes from 2 % of the whole on")
 
 
-def _ratio(ratio: Ratio) -> str:
+def _describe_ratio(ratio: Ratio) -> str:
     name = ", ".join(ratio.nodes) if ratio.nodes else "total"
     functions = f" ({' + '.join(ratio.functions)})" if ratio.functions else ""
     return (
@@ -178,14 +203,14 @@ def _ratio(ratio: Ratio) -> str:
     )
 
 
-def _block() -> str:
-    """What bars are made of, as far as the terminal can show it."""
+def _bar_letter() -> str:
+    """The character of bars: a block if the terminal can show it, else #."""
     return "\N{FULL BLOCK}" if (sys.stdout.encoding or "").lower().startswith("utf") else "#"
 
 
-def _as_json(
+def _benchmark_facts(
     graph: Path,
-    timings: Benchmark,
+    benchmark: Benchmark,
     device: str,
     frames: tuple[int, ...],
     comparison: BaselineComparison | None,
@@ -196,40 +221,40 @@ def _as_json(
     report: dict[str, Any] = {
         "graph": str(graph),
         "device": device,
-        "size": list(timings.size),
+        "size": list(benchmark.size),
         "frames": list(frames),
-        "repeats": len(timings.totals),
-        "median": timings.median,
-        "fastest": timings.fastest,
-        "planning": timings.planning,
-        "compiling": timings.compiling,
-        "programs": timings.programs,
-        "loading": timings.loading,
-        "peak_bytes": timings.peak_bytes,
-        "lead": timings.lead,
+        "repeats": len(benchmark.totals),
+        "median": benchmark.median,
+        "fastest": benchmark.fastest,
+        "planning": benchmark.planning,
+        "compiling": benchmark.compiling,
+        "programs": benchmark.programs,
+        "loading": benchmark.loading,
+        "peak_bytes": benchmark.peak_bytes,
+        "lead": benchmark.lead,
         "nodes": [
             {
-                "nodes": list(one.nodes),
-                "passes": one.count,
-                "median": one.median,
-                "fastest": one.fastest,
-                "share": one.median / timings.median,
-                "read_bytes": one.read,
-                "written_bytes": one.written,
+                "nodes": list(share.nodes),
+                "passes": share.count,
+                "median": share.median,
+                "fastest": share.fastest,
+                "share": share.median / benchmark.median,
+                "read_bytes": share.read,
+                "written_bytes": share.written,
             }
-            for one in group_by_nodes(timings.passes)
+            for share in group_by_nodes(benchmark.passes)
         ],
         "passes": [
             {
-                "nodes": list(one.nodes),
-                "functions": list(one.functions),
+                "nodes": list(measured.nodes),
+                "functions": list(measured.functions),
                 "number": name[2],
-                "median": one.median,
-                "fastest": one.fastest,
-                "read_bytes": one.read,
-                "written_bytes": one.written,
+                "median": measured.median,
+                "fastest": measured.fastest,
+                "read_bytes": measured.read,
+                "written_bytes": measured.written,
             }
-            for name, one in zip(identify_passes(timings.passes), timings.passes, strict=True)
+            for name, measured in zip(identify_passes(benchmark.passes), benchmark.passes, strict=True)
         ],
     }
     if comparison:
@@ -237,8 +262,8 @@ def _as_json(
             "device": comparison.device,
             "new": comparison.new,
             "gone": comparison.gone,
-            "ratios": [_ratio_facts(one) for one in comparison.ratios],
-            "slower": [_ratio_facts(one) for one in slower],
+            "ratios": [_ratio_facts(ratio) for ratio in comparison.ratios],
+            "slower": [_ratio_facts(ratio) for ratio in slower],
         }
     return report
 

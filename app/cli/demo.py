@@ -1,4 +1,4 @@
-"""`halation demo`: every preset over the sample frame."""
+"""`halation demo`: renders every preset on the sample frame."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .batch import middle_frame, open_batch
+from .batch import find_middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
 
@@ -17,7 +17,10 @@ def demo(
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
     as_json: AsJson = False,
 ) -> int:
-    """Render every preset on the sample frame, as PNG and EXR: of those that move, the frame in the middle."""
+    """Render every preset on the sample frame.
+
+    Writes each as PNG and EXR; of an animated preset it renders the frame in the middle.
+    """
     from halation.presets import paths
 
     from .. import document
@@ -25,21 +28,25 @@ def demo(
     from ..renderer.jobs.job import OutputSettings, run_job
 
     rows: list[dict[str, object]] = []
-    with open_batch(output, len(paths())) as work:
+    with open_batch(output, len(paths())) as batch:
         for path in paths():
-            work.step(path.stem)
+            batch.step(path.stem)
             started = time.perf_counter()
             graph = document.load(path)
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
             report = run_job(
-                work.renderer, graph, RenderRequest(), OutputSettings(pictures), (middle_frame(work.renderer, graph),)
+                batch.renderer,
+                graph,
+                RenderRequest(),
+                OutputSettings(pictures),
+                (find_middle_frame(batch.renderer, graph),),
             )
-            spent = time.perf_counter() - started
+            seconds = time.perf_counter() - started
             word = "pass  " if report.passes == 1 else "passes"
-            work.say(f"{path.stem:<24} {report.passes:>3} {word}  {spent:5.2f} s  {pictures[1][1]}")
+            batch.say(f"{path.stem:<24} {report.passes:>3} {word}  {seconds:5.2f} s  {pictures[1][1]}")
             written = [str(item) for item in report.written]
-            rows.append({"preset": path.stem, "seconds": round(spent, 3), "written": written})
+            rows.append({"preset": path.stem, "seconds": round(seconds, 3), "written": written})
     if as_json:
-        print_json({"device": work.device, "pictures": rows})
+        print_json({"device": batch.device, "pictures": rows})
     return 0

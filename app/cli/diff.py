@@ -1,4 +1,4 @@
-"""`halation diff`: what changed between two graphs, in the words of graphs."""
+"""`halation diff`: what changed between two graphs, by node and value."""
 
 from __future__ import annotations
 
@@ -16,75 +16,81 @@ if TYPE_CHECKING:
     from ..document.diff_merge import DifferenceLine, GraphDifference, PartChange
 
 TROUBLE = 2
-"""What `diff` makes of exit code 1, which says that there is a difference."""
+"""The exit code of errors that have 1 elsewhere, because 1 means here that the graphs differ."""
 
-_VERSION = "A graph, as JSON: a file, REV:FILE in git, or - for standard input."
+_VERSION = "The old graph: a JSON file, REV:FILE in git, or - for standard input."
 
 
 def diff(
     a: Annotated[str, typer.Argument(metavar="A", help=_VERSION)],
-    b: Annotated[str, typer.Argument(metavar="B", help="The same for what it is compared with.")],
-    layout: Annotated[bool, typer.Option("--layout", help="Tell what moved on the canvas too.")] = False,
-    render: Annotated[bool, typer.Option("--render", help="Render both, and compare the pictures too.")] = False,
+    b: Annotated[str, typer.Argument(metavar="B", help="The new graph, named in the same ways.")],
+    layout: Annotated[bool, typer.Option("--layout", help="Also list what moved on the canvas.")] = False,
+    render: Annotated[bool, typer.Option("--render", help="Also render both graphs and compare the pictures.")] = False,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="The pictures side by side, and where.")
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="FILE.png", help="Write the pictures side by side, with their differences."
+        ),
     ] = None,
     inputs: Inputs = None,
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int | None, typer.Option(help="The frame to render; by default the first of A.")] = None,
+    frame: Annotated[int | None, typer.Option(help="Render this frame; by default the first frame of A.")] = None,
     as_json: AsJson = False,
 ) -> int:
-    """Tell what changed between two graphs: 0 if nothing did, 1 if something did.
+    """Show what changed between two graphs.
 
-    Nodes, values, links, keys, ends, settings, code; groups are looked into. How a file is written makes no difference.
+    Exits with 0 if nothing changed, else with 1. Compares nodes, values, links, animation, inputs, outputs, settings
+    and code, also inside groups. The formatting of the files makes no difference.
     """
     from ..document.diff_merge import compare_graphs, describe_difference
     from ..errors import RenderError, UsageError
 
     if a == b == "-":
-        raise UsageError("- is there once: name a file as A or B")
+        raise UsageError("- can be used only once: name a file as A or B")
     if not render and (output or inputs or size or frame is not None or scale != 1.0):
-        raise UsageError("-o, -i, --size, --scale and --frame are for pictures: add --render")
+        raise UsageError("-o, -i, --size, --scale and --frame need --render")
     if output and output.suffix.lower() != ".png":
-        raise UsageError(f"-o {output}: the pictures side by side are a .png")
+        raise UsageError(f"-o {output}: pictures side by side are written as .png")
     if render and "-" in (a, b):
         raise UsageError("--render reads both graphs twice: name files instead of -")
     before, after = load_version(a), load_version(b)
     changes = compare_graphs(before, after, layout=layout)
     lines = describe_difference(changes, before, after)
-    report: dict[str, Any] = {"a": a, "b": b, "same": not changes, **as_tree(changes, lines)}
+    report: dict[str, Any] = {"a": a, "b": b, "same": not changes, **difference_facts(changes, lines)}
     if not as_json:
         print_lines(lines, is_colored())
     if render:
         from .picture_diff import render_and_compare
 
-        choices = (parsing.inputs(inputs), parsing.size(size), parsing.scale(scale), frame)
+        choices = (parsing.parse_inputs(inputs), parsing.parse_size(size), parsing.parse_scale(scale), frame)
         try:
             report["pictures"] = render_and_compare(a, b, choices, output)
         except RenderError as fault:
             fault.exit_code = TROUBLE
             raise
-        report["same"] = not changes and all(one["same"] for one in report["pictures"])
-        for one in report["pictures"] if not as_json else ():
-            sign = "=" if one["same"] else "~"
-            print(paint(f"{sign} picture {one['output']}: {one['words']}", sign, is_colored()))
+        report["same"] = not changes and all(picture["same"] for picture in report["pictures"])
+        for picture in report["pictures"] if not as_json else ():
+            sign = "=" if picture["same"] else "~"
+            print(paint(f"{sign} picture {picture['output']}: {picture['words']}", sign, is_colored()))
     if as_json:
         print_json(report)
     return 0 if report["same"] else 1
 
 
-def as_tree(changes: GraphDifference, lines: tuple[DifferenceLine, ...]) -> dict[str, Any]:
-    """A difference for machines: every change with its place, and the same lines that people read."""
+def difference_facts(changes: GraphDifference, lines: tuple[DifferenceLine, ...]) -> dict[str, Any]:
+    """A difference as JSON: every change with its place, and the lines that `diff` prints."""
     return {
-        "renamed": [{"group": list(one.group), "old": one.old, "new": one.new} for one in changes.renamed],
-        "changes": [_change(change) for change in changes.changes],
+        "renamed": [
+            {"group": list(renaming.group), "old": renaming.old, "new": renaming.new} for renaming in changes.renamed
+        ],
+        "changes": [_change_facts(change) for change in changes.changes],
         "lines": [f"{line.sign} {line.words}" for line in lines],
     }
 
 
-def _change(change: PartChange) -> dict[str, Any]:
-    """What is absent has no key."""
+def _change_facts(change: PartChange) -> dict[str, Any]:
+    """A change as JSON; a side where the part is absent has no key."""
     from ..document.diff_merge import ABSENT, to_document
 
     sides = {"before": to_document(change.before), "after": to_document(change.after)}

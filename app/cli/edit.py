@@ -12,19 +12,21 @@ from .options import Inputs, resolve_inputs
 
 
 def edit(
-    graph: Annotated[Path | None, typer.Argument(help="A graph, as JSON; none opens the start screen.")] = None,
+    graph: Annotated[
+        Path | None, typer.Argument(help="A graph file (JSON); without one the start screen opens.")
+    ] = None,
     inputs: Inputs = None,
 ) -> int:
     """Open the editor."""
     from ..errors import UsageError
 
     if graph is None and inputs:
-        raise UsageError("-i fills an input of a graph: name the graph file too")
+        raise UsageError("-i needs a graph: name the graph file too")
     bindings: dict[str, str] = {}
     if graph is not None:
         from .. import document
 
-        bindings = resolve_inputs(document.load(graph), parsing.inputs(inputs))
+        bindings = resolve_inputs(document.load(graph), parsing.parse_inputs(inputs))
     from ..editor import edit as open_editor
 
     open_editor(graph, bindings)

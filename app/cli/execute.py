@@ -1,4 +1,11 @@
-"""Running a render job: in this process, or in helpers where frames are shared or code must be watched."""
+"""Runs a render job: in this process or in helper processes.
+
+`render` builds the job from its options, and `worker` reads it as JSON from another process; both end here. A job goes
+to helper processes in two cases: `-j` shares its frames among several, or the graph has code with loops. Such code may
+run for ever, and a device that is stuck blocks its process, so only another process can end it (see watchdog.py).
+Otherwise this process renders, and loads the driver and the first pictures on other threads meanwhile: on a short
+render the start takes most of the time.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..errors import UsageError
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
-from .outcome import note, print_json
+from .outcome import print_json, print_note
 from .progress import progress_reporter
 from .watchdog import needs_watchdog
 
@@ -22,31 +29,31 @@ if TYPE_CHECKING:
 
 
 def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> int:
-    """Render what a job says and report it; the exit code. Raises the errors of `app.errors`."""
+    """Run a render job, print its report, and return the exit code. Raises HalationError."""
     from msgspec.structs import replace
 
     started = time.perf_counter()
     graph = open_graph(Path(job.graph), job.sets, job.document)
     report_problems(Path(job.graph), graph)
     if job.codec and not job.videos:
-        raise UsageError(f"--codec {job.codec}: that is for videos: write -o NAME.mp4, .mov, .mkv or .webm")
+        raise UsageError(f"--codec {job.codec}: a codec needs a video: write -o NAME.mp4, .mov, .mkv or .webm")
     if job.processes > 1 and job.videos:
-        note(f"one process renders all frames, since all are in {job.videos[0]}")
+        print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
-    watch = needs_watchdog(graph, job.timeout)
+    is_watched = needs_watchdog(graph, job.timeout)
     job = replace(job, inputs=resolve_inputs(graph, job.inputs))
-    targets = parsing.targets(graph, job.node)
-    ahead = None if watch or job.processes > 1 else _begin_loading(job, graph, targets)
-    if not job.frames and (not watch or parsing.holds_frames(job.files)):
-        job = replace(job, frames=_default_frames(job, graph))
-    if helper_jobs := _split(job, graph, targets, watch):
+    targets = parsing.find_targets(graph, job.node)
+    prefetcher = None if is_watched or job.processes > 1 else _begin_loading(job, graph, targets)
+    if not job.frames and (not is_watched or parsing.have_frame_number(job.files)):
+        job = replace(job, frames=_choose_frames(job, graph))
+    if helper_jobs := _split_among_helpers(job, graph, targets, is_watched):
         from .helpers import run_helpers
 
         total = max(1, len(job.frames))
         with progress_reporter(progress, total) as reporter:
-            report = run_helpers(helper_jobs, job.timeout if watch else 0.0, reporter, total)
+            report = run_helpers(helper_jobs, job.timeout if is_watched else 0.0, reporter, total)
     else:
-        report = _render(job, graph, targets, ahead, progress, started)
+        report = _render_here(job, graph, targets, prefetcher, progress, started)
     _print_report(report, time.perf_counter() - started, as_json)
     return 0
 
@@ -62,22 +69,25 @@ def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) ->
     return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs)
 
 
-def _default_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
-    """The frames of a job that names none."""
+def _choose_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
+    """The frames of a job that names none: all of the graph if its files can hold them, else the first."""
     from ..inputs.lazy_provider import LazyResourceProvider
 
     provider = LazyResourceProvider()
     first, last = provider.find_frames(graph, job.inputs)
-    return tuple(range(first, last + 1)) if parsing.holds_frames(job.files) else (first,)
+    return tuple(range(first, last + 1)) if parsing.have_frame_number(job.files) else (first,)
 
 
-def _split(job: RenderJob, graph: Graph, targets: Mapping[str, Port], watch: bool) -> list[RenderJob]:
-    """The jobs of helpers; none where this process renders. What watches over their code is here, not in them."""
+def _split_among_helpers(
+    job: RenderJob, graph: Graph, targets: Mapping[str, Port], is_watched: bool
+) -> list[RenderJob]:
+    """The jobs of the helper processes; none where this process renders. This process watches them, so they have no
+    time limit of their own."""
     from msgspec.structs import replace
 
     if min(job.processes, len(job.frames)) > 1 and _is_independent(job, graph, targets):
         parts = [part for start in range(job.processes) if (part := job.frames[start :: job.processes])]
-    elif watch:
+    elif is_watched:
         parts = [job.frames]
     else:
         return []
@@ -85,7 +95,7 @@ def _split(job: RenderJob, graph: Graph, targets: Mapping[str, Port], watch: boo
 
 
 def _is_independent(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> bool:
-    """True if every frame can be made without the ones before it. Raises the errors of `app.errors`."""
+    """True if each frame can be rendered without the frames before it. Raises HalationError."""
     from ..compiler import Request, compile_graph
     from ..inputs.lazy_provider import LazyResourceProvider
 
@@ -94,33 +104,33 @@ def _is_independent(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -
     provider = LazyResourceProvider()
     plan = compile_graph(graph, Request(targets, provider.bind(graph, job.inputs), frame=job.frames[0]), provider)
     for node in plan.remembering:
-        note(f"one process renders all frames: node '{node}' makes each of the one before")
+        print_note(f"one process renders all frames: node '{node}' needs the frame before each")
         break
     return not plan.memories
 
 
-def _render(
+def _render_here(
     job: RenderJob,
     graph: Graph,
     targets: Mapping[str, Port],
-    ahead: Prefetcher | None,
+    prefetcher: Prefetcher | None,
     progress: Literal["bar", "json"],
     started: float,
 ) -> dict[str, Any]:
-    """Render in this process: the report as JSON has it."""
+    """Render in this process; the report, ready for JSON."""
     from ..renderer import DEFAULT_BUDGET, Renderer, RenderRequest, open_device, open_pinned
     from ..renderer.jobs.job import OutputSettings, run_job
 
-    loaded = time.perf_counter()
+    loaded_at = time.perf_counter()
     device = open_pinned(job.memory) if job.deterministic else open_device(job.form, job.memory)
-    # A job keeps what the next frame wants; where each frame is led up to, it wants more than that of the one before.
-    led = len(job.frames) > 1 and graph.settings.preroll is not None
-    renderer = Renderer(device, budget=DEFAULT_BUDGET if led and not job.memory else 0, ahead=ahead)
-    note(renderer.device.description)
-    ready = time.perf_counter()
+    # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
+    leads_up = len(job.frames) > 1 and graph.settings.preroll is not None
+    renderer = Renderer(device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, ahead=prefetcher)
+    print_note(renderer.device.description)
+    opened_at = time.perf_counter()
     precision = "float" if job.deterministic else job.precision
     request = RenderRequest(job.inputs, targets, job.size, job.scale, precision=precision)
-    writing = OutputSettings(
+    output_settings = OutputSettings(
         job.files,
         job.view,
         job.compression,
@@ -131,13 +141,13 @@ def _render(
         job.codec,
     )
     with progress_reporter(progress, len(job.frames)) as reporter:
-        report = run_job(renderer, graph, request, writing, job.frames, resume=job.resume, progress=reporter)
-    seconds = {"load": loaded - started, "open": ready - loaded, **report.seconds}
+        report = run_job(renderer, graph, request, output_settings, job.frames, resume=job.resume, progress=reporter)
+    seconds = {"load": loaded_at - started, "open": opened_at - loaded_at, **report.seconds}
     seconds["total"] = time.perf_counter() - started
-    return _as_json(report, renderer.device.description, seconds)
+    return _report_facts(report, renderer.device.description, seconds)
 
 
-def _as_json(report: JobReport, device: str, seconds: Mapping[str, float]) -> dict[str, Any]:
+def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) -> dict[str, Any]:
     return {
         "written": [str(path) for path in report.written],
         "frames": [item.frame for item in report.frames],
@@ -152,21 +162,21 @@ def _as_json(report: JobReport, device: str, seconds: Mapping[str, float]) -> di
 
 
 def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> None:
-    """What was written, in `total` seconds: JSON on standard output, or a line for the user on standard error."""
+    """Print which files were written in `total` seconds: as JSON to standard output, or as text to standard error."""
     for path, count in report["repaired"].items():
-        note(f"{path}: {count} pixels that are not numbers were filled from their neighbors")
+        print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
     if as_json:
         print_json(report)
         return
     from ..compiler.explain import format_bytes
 
-    peak, passes, kept = format_bytes(report["peak_bytes"]), report["passes"], len(report["kept"])
-    spent = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
+    peak, passes, unchanged_count = format_bytes(report["peak_bytes"]), report["passes"], len(report["kept"])
+    cost = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
     written: Sequence[str] = report["written"]
     if len(report["frames"]) > 1:
         files = list(dict.fromkeys((written[0], written[-1])))
-        unchanged = f", {kept} kept as they were" if kept else ""
-        note(f"{' ... '.join(files)}  {len(report['frames'])} frames{unchanged}, {spent}")
+        unchanged = f", {unchanged_count} kept as they were" if unchanged_count else ""
+        print_note(f"{' ... '.join(files)}  {len(report['frames'])} frames{unchanged}, {cost}")
         return
     for path in written:
-        note(f"{path}  kept as it was" if kept else f"{path}  {spent}")
+        print_note(f"{path}  kept as it was" if unchanged_count else f"{path}  {cost}")

@@ -1,4 +1,4 @@
-"""`halation explain`: what a graph compiles to."""
+"""`halation explain`: prints the passes that a graph compiles to."""
 
 from __future__ import annotations
 
@@ -33,24 +33,25 @@ def explain(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int | None, typer.Option(help="The frame to plan; by default the first of the graph.")] = None,
+    frame: Annotated[int | None, typer.Option(help="Plan this frame; by default the first frame of the graph.")] = None,
     form: Annotated[
         str,
         typer.Option(
             metavar="fragment|compute|device",
-            help="Plan for this form of passes, or for the device that is here.",
+            help="Plan passes as fragment or as compute shaders, or as the device of this machine needs them.",
         ),
     ] = "compute",
     precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of color intermediates.")
+        str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes.")
     ] = None,
     memory: Memory = None,
-    dot: Annotated[bool, typer.Option("--dot", help="Print Graphviz.")] = False,
+    dot: Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Print passes, fused nodes, formats, slots, bytes and the peak of memory. Needs no OpenGL.
+    """Print the passes that a graph compiles to.
 
-    With --form device it says which form of passes the device here is given, and why.
+    Prints their nodes, texture formats and slots, bytes and the peak of memory. Needs no OpenGL, except for
+    --form device, which also prints which form of passes the device of this machine needs, and why.
     """
     from msgspec.structs import replace
 
@@ -60,23 +61,23 @@ def explain(
 
     if dot and as_json:
         raise UsageError("--dot and --json: choose one")
-    way, most = parsing.form_or_device(form), parsing.memory(memory)
-    depth = parsing.precision(precision) if precision is not None else None
-    opened_graph = open_graph(graph, parsing.sets(sets))
+    form_or_device, memory_limit = parsing.parse_form_or_device(form), parsing.parse_memory(memory)
+    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    opened_graph = open_graph(graph, parsing.parse_sets(sets))
     report_problems(graph, opened_graph)
-    lazy = LazyResourceProvider()
-    bindings = resolve_inputs(opened_graph, parsing.inputs(inputs))
+    provider = LazyResourceProvider()
+    bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
     request = compiler.Request(
-        parsing.targets(opened_graph, node),
-        lazy.bind(opened_graph, bindings),
-        parsing.size(size),
-        parsing.scale(scale),
-        frame if frame is not None else lazy.find_frames(opened_graph, bindings)[0],
+        parsing.find_targets(opened_graph, node),
+        provider.bind(opened_graph, bindings),
+        parsing.parse_size(size),
+        parsing.parse_scale(scale),
+        frame if frame is not None else provider.find_frames(opened_graph, bindings)[0],
     )
-    target = replace(_target(way), memory=most)
-    # As if each went into an EXR of its own.
+    target = replace(_choose_target(form_or_device), memory=memory_limit)
+    # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
-    plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
+    plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
     if as_json:
         print_json(compiler.plan_as_json(plan))
     else:
@@ -84,8 +85,8 @@ def explain(
     return 0
 
 
-def _target(form: Form | Literal["device"]) -> Target:
-    """What to plan for: the device that is here, or none."""
+def _choose_target(form: Form | Literal["device"]) -> Target:
+    """The device to plan for: that of this machine, or a null device with a form."""
     from msgspec.structs import replace
 
     if form != "device":

@@ -1,4 +1,4 @@
-"""`halation export-isf`: a graph as one shader for other programs."""
+"""`halation export-isf`: writes a graph as one shader for other programs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import typer
 
 from . import parsing
 from .options import AsJson, GraphFile, Node, Sets, SizeText, open_graph, report_problems
-from .outcome import note, print_json
+from .outcome import print_json, print_note
 
 if TYPE_CHECKING:
     from ..graph import Graph, Port
@@ -18,27 +18,32 @@ if TYPE_CHECKING:
 def export_isf(
     graph: GraphFile,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE.fs", help="The shader; by default standard output.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE.fs", help="The file to write; by default standard output."),
     ] = None,
     sets: Sets = None,
     node: Node = "",
     selection: Annotated[
-        str, typer.Option("--select", metavar="ID,ID,...", help="Only these nodes: what feeds them becomes pictures.")
+        str,
+        typer.Option(
+            "--select", metavar="ID,ID,...", help="Export only these nodes; the links into them become inputs."
+        ),
     ] = "",
     size: SizeText = None,
     as_json: AsJson = False,
 ) -> int:
-    """Write a graph as one shader in the Interactive Shader Format, for programs that play such shaders.
+    """Write a graph as one ISF shader.
 
-    Its pictures become pictures of the shader, its controls inputs. What no shader can do is listed, node by node.
+    Programs that play the Interactive Shader Format can use it. Inputs and controls of the graph become inputs of the
+    shader. If a node cannot be part of a shader, the command lists each such node with the reason.
     """
-    from ..compiler.isf import export_isf as exported
+    from ..compiler.isf import export_isf as export_shader
     from ..errors import GraphError, UsageError
     from ..inputs.lazy_provider import LazyResourceProvider
 
     if as_json and output is None:
-        raise UsageError("--json and a shader would both go to standard output: write the shader to a file with -o")
-    opened_graph = open_graph(graph, parsing.sets(sets))
+        raise UsageError("--json and the shader would both go to standard output: write the shader to a file with -o")
+    opened_graph = open_graph(graph, parsing.parse_sets(sets))
     report_problems(graph, opened_graph)
     if selection:
         from ..graph.selection import selected
@@ -47,16 +52,16 @@ def export_isf(
             opened_graph = selected(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
         except GraphError as fault:
             raise UsageError(f"--select {selection}: {fault}") from None
-    target = _target(opened_graph, node)
-    shader = exported(opened_graph, target, LazyResourceProvider(), size=parsing.size(size))
+    target = _choose_port(opened_graph, node)
+    shader = export_shader(opened_graph, target, LazyResourceProvider(), size=parsing.parse_size(size))
     if shader.reasons:
-        reasons = [f"{_owner(owner)} {why}" for owner, why in shader.reasons]
+        reasons = [f"{_name_owner(owner)} {why}" for owner, why in shader.reasons]
         for line in reasons[1:] if len(reasons) > 1 else ():
-            note(f"{graph}: {line}")
+            print_note(f"{graph}: {line}")
         more = f" (the first of {len(reasons)} reasons)" if len(reasons) > 1 else ""
         raise GraphError(f"{graph}: it cannot be written as one shader: {reasons[0]}{more}", node=shader.reasons[0][0])
     for line in shader.notes:
-        note(f"{graph}: {line}")
+        print_note(f"{graph}: {line}")
     if output is None:
         print(shader.text, end="")
     else:
@@ -68,22 +73,22 @@ def export_isf(
     return 0
 
 
-def _target(graph: Graph, node: str) -> Port:
-    """The only output of the graph, or that of a node."""
+def _choose_port(graph: Graph, node: str) -> Port:
+    """The port to export: the only output of the graph, or the one that --node names. Raises UsageError."""
     from ..errors import UsageError
 
-    targets = parsing.targets(graph, node)
+    targets = parsing.find_targets(graph, node)
     if node:
         return next(iter(targets.values()))
     from ..graph import OUTPUTS, Port
 
     if len(graph.outputs) != 1:
         names = ", ".join(graph.outputs) or "none"
-        raise UsageError(f"a shader makes one picture, and the outputs of this graph are {names}: choose by --node")
+        raise UsageError(f"a shader has one output, and the outputs of this graph are {names}: choose one with --node")
     return Port(OUTPUTS, next(iter(graph.outputs)))
 
 
-def _owner(owner: str) -> str:
+def _name_owner(owner: str) -> str:
     if not owner:
         return "it"
     return f"input '{owner.removeprefix('inputs.')}'" if owner.startswith("inputs.") else f"node '{owner}'"

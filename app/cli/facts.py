@@ -1,4 +1,4 @@
-"""What there is to say of a node type, for every page that shows one."""
+"""Describes node types, for `halation nodes` and the page of all nodes."""
 
 from __future__ import annotations
 
@@ -10,60 +10,60 @@ if TYPE_CHECKING:
     from halation.nodes import Node, Socket, Value
 
 
-def doc_of(node: type[Node]) -> str:
-    """What a node says of itself: a sentence, then where it comes from."""
+def node_doc(node: type[Node]) -> str:
+    """The docstring of a node: a sentence, then details and sources."""
     return inspect.getdoc(node) or ""
 
 
-def type_of(socket: Socket) -> str:
-    """A socket's kind, and how many numbers a Vector has."""
+def socket_type(socket: Socket) -> str:
+    """The kind of a socket; of a Vector with its number of channels."""
     return f"{socket.kind}{socket.channels if socket.kind == 'Vector' else ''}"
 
 
-def plain_text(plain: object) -> str:
-    """A value as a person writes it."""
+def format_value(plain: object) -> str:
+    """A value as a user types it."""
     if isinstance(plain, tuple):
-        return ", ".join(plain_text(part) for part in plain)
+        return ", ".join(format_value(part) for part in plain)
     if isinstance(plain, bool):
         return str(plain).lower()
     return f"{plain:g}" if isinstance(plain, float) else str(plain)
 
 
 def default_text(value: Value) -> str:
-    """The default of a value; of a long list how many entries it has."""
+    """The default of a value; of a curve, ramp or lights the number of entries."""
     default = value.default
     if isinstance(default, tuple) and value.type in ("curve", "ramp", "lights"):
         word = {"curve": "point", "ramp": "stop", "lights": "light"}[value.type]
         count = len(default) // value.length
         return f"{count} {word}{'' if count == 1 else 's'}"
-    return plain_text(default)
+    return format_value(default)
 
 
 def socket_note(socket: Socket) -> str:
-    """What there is to say of a socket, and of an input what it is without a link."""
-    optional = f"Optional: {plain_text(socket.default)} if unlinked." if socket.optional else ""
+    """The description of a socket, and of an optional input its value without a link."""
+    optional = f"Optional: {format_value(socket.default)} if unlinked." if socket.optional else ""
     return " ".join(part for part in (socket.doc, optional) if part)
 
 
 def soft_range(value: Value) -> str:
-    """From where to where a slider goes."""
+    """The range of the slider of a value."""
     return f"{value.low:g} .. {value.high:g}" if math.isfinite(value.low) and math.isfinite(value.high) else ""
 
 
 def hard_range(value: Value) -> str:
-    """What typing cannot leave."""
+    """The limits of a value, which typing cannot exceed either."""
     ends = (("at least", value.minimum), ("at most", value.maximum))
     return ", ".join(f"{word} {limit:g}" for word, limit in ends if math.isfinite(limit))
 
 
-def facts_of(node: type[Node]) -> dict[str, Any]:
-    """Everything, for machines."""
+def node_facts(node: type[Node]) -> dict[str, Any]:
+    """All facts about a node type, as JSON."""
     return {
         "id": node.id,
         "category": node.category,
         "version": node.version,
         **({"package": node.required_package} if node.required_package else {}),
-        "doc": doc_of(node),
+        "doc": node_doc(node),
         "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
         "outputs": {name: _socket_facts(output.socket) for name, output in node.outputs.items()},
         "values": {
@@ -78,12 +78,12 @@ def facts_of(node: type[Node]) -> dict[str, Any]:
             }
             for value in node.values.values()
         },
-        "plan": passes_of(node),
+        "plan": plan_facts(node),
     }
 
 
-def passes_of(node: type[Node]) -> dict[str, Any]:
-    """What a node compiles to at its defaults: its passes, with what each writes."""
+def plan_facts(node: type[Node]) -> dict[str, Any]:
+    """The passes that a node compiles to at its defaults, with what each writes."""
     from .. import compiler
     from .specimen import FULL_HD, drawable_outputs, plan_node
 
@@ -102,7 +102,7 @@ def passes_of(node: type[Node]) -> dict[str, Any]:
 
 
 def _socket_facts(socket: Socket) -> dict[str, Any]:
-    return {"type": type_of(socket), "default": socket.default, "doc": socket.doc}
+    return {"type": socket_type(socket), "default": socket.default, "doc": socket.doc}
 
 
 def _finite(low: float, high: float) -> list[float | None]:

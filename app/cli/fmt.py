@@ -1,4 +1,4 @@
-"""`halation fmt`: one canonical form, so that diffs show what changed."""
+"""`halation fmt`: rewrites graphs in one canonical format, so that diffs show only what changed."""
 
 from __future__ import annotations
 
@@ -8,24 +8,32 @@ from typing import Annotated
 
 import typer
 
-from .options import AsJson, standard_input
-from .outcome import note, print_json
+from .options import AsJson, read_standard_input
+from .outcome import print_json, print_note
 
 
 def fmt(
     graphs: Annotated[
         list[Path],
-        typer.Argument(help="Graphs, folders of them, or patterns such as 'shots/**/*.json'; - for standard input."),
+        typer.Argument(help="Graph files, folders, or patterns such as 'shots/**/*.json'; - for standard input."),
     ],
     check: Annotated[
-        bool, typer.Option("--check", help="Write nothing; exit with 1 if a file is not formatted.")
+        bool, typer.Option("--check", help="Write nothing, and exit with 1 if a file is not formatted.")
     ] = False,
     name: Annotated[
-        str, typer.Option("--stdin-name", metavar="FILE", help="The file that standard input is the text of.")
+        str,
+        typer.Option(
+            "--stdin-name",
+            metavar="FILE",
+            help="The file whose text comes from standard input: its folder is where relative paths start.",
+        ),
     ] = "",
     as_json: AsJson = False,
 ) -> int:
-    """Rewrite graphs in the canonical format; - writes to standard output."""
+    """Rewrite graph files in the canonical format.
+
+    The text of standard input (-) is written to standard output.
+    """
     from .. import document
     from ..errors import UsageError
     from ..lint.files import find_graphs
@@ -33,9 +41,11 @@ def fmt(
 
     if any(str(path) == "-" for path in graphs):
         if len(graphs) > 1 or as_json:
-            raise UsageError("- formats standard input alone, to standard output: name no files, and leave out --json")
+            raise UsageError(
+                "- cannot be combined with files or --json: standard input is formatted to standard output"
+            )
         return _format_input(name, check)
-    # All are read before one is written: a fault in the last file leaves the first as it is.
+    # All files are read before the first is written: an invalid file leaves all of them as they are.
     formatted = {path: document.dumps(document.load(path)) for path in find_graphs(graphs)}
     changed = [path for path, text in formatted.items() if path.read_bytes() != text.encode()]
     for path in changed if not check else ():
@@ -44,16 +54,16 @@ def fmt(
         print_json({"changed": [str(path) for path in changed], "checked": len(formatted), "written": not check})
     else:
         for path in changed:
-            note(f"{path}: {'would be formatted' if check else 'formatted'}")
-        note(f"{len(formatted) - len(changed)} of {len(formatted)} were formatted already")
+            print_note(f"{path}: {'would be formatted' if check else 'formatted'}")
+        print_note(f"{len(formatted) - len(changed)} of {len(formatted)} were formatted already")
     return 1 if check and changed else 0
 
 
 def _format_input(name: str, check: bool) -> int:
-    """Format standard input: what an editor of text does when it saves `name`."""
+    """Format standard input to standard output, as text editors do when they save the file `name`."""
     from .. import document
 
-    text = standard_input()
+    text = read_standard_input()
     formatted = document.dumps(document.loads(text, name or "-", str(Path(name).parent) if name else ""))
     if not check:
         sys.stdout.buffer.write(formatted.encode())

@@ -1,4 +1,4 @@
-"""`halation gallery`: contact sheets of all presets, of those that move, and of all nodes."""
+"""`halation gallery`: contact sheets of presets, animated presets and nodes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .batch import middle_frame, open_batch
+from .batch import find_middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
 
@@ -27,13 +27,13 @@ Step = Callable[[str], None]
 _COLUMNS = 6
 _WIDTH = 256
 _LETTERS = 18
-_MOMENTS = 6
-"""How many frames of a preset are shown, from the first to the last."""
+_FRAMES_SHOWN = 6
+"""Frames per animated preset, from the first to the last: as many as fit in a row of the sheet."""
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """A contact sheet: light of the display, and the names of what it shows, in order."""
+    """A contact sheet: its display colors, and the names of its pictures in order."""
 
     light: Array
     names: tuple[str, ...]
@@ -43,7 +43,11 @@ def gallery(
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
     as_json: AsJson = False,
 ) -> int:
-    """Make contact sheets of all presets, of those that move, and of all nodes at their defaults, over the sample."""
+    """Render contact sheets of presets and nodes.
+
+    Writes one sheet of all presets, one of the animated presets, and one of all nodes at their defaults, each rendered
+    on the sample frame.
+    """
     from halation.nodes import catalogue
     from halation.presets import paths
 
@@ -51,26 +55,26 @@ def gallery(
     from .specimen import drawable_outputs
 
     rows: list[dict[str, object]] = []
-    pictures = (
-        len(paths()) + len(animated_presets()) + sum(bool(drawable_outputs(node)) for node in catalogue().values())
+    picture_count = (
+        len(paths()) + len(load_animated_presets()) + sum(bool(drawable_outputs(node)) for node in catalogue().values())
     )
-    with open_batch(output, pictures) as work:
-        for name, make_sheet in (("presets", preset_sheet), ("time", time_sheet), ("nodes", node_sheet)):
-            if make_sheet is time_sheet and not animated_presets():
+    with open_batch(output, picture_count) as batch:
+        for name, make_sheet in (("presets", make_preset_sheet), ("time", make_time_sheet), ("nodes", make_node_sheet)):
+            if make_sheet is make_time_sheet and not load_animated_presets():
                 continue
             started, file = time.perf_counter(), output / f"{name}.jpg"
-            sheet = make_sheet(work.renderer, work.step)
+            sheet = make_sheet(batch.renderer, batch.step)
             write_sheet(file, sheet.light, ", ".join(sheet.names))
-            spent = time.perf_counter() - started
-            work.say(f"{name:<24} {len(sheet.names):>3} pictures  {spent:5.2f} s  {file}")
-            rows.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(spent, 3)})
+            seconds = time.perf_counter() - started
+            batch.say(f"{name:<24} {len(sheet.names):>3} pictures  {seconds:5.2f} s  {file}")
+            rows.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(seconds, 3)})
     if as_json:
-        print_json({"device": work.device, "sheets": rows})
+        print_json({"device": batch.device, "sheets": rows})
     return 0
 
 
-def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
-    """Every preset on its own sample; of those that move, the frame in the middle."""
+def make_preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
+    """The sheet of all presets on their own samples; of an animated preset the frame in the middle."""
     from halation.presets import paths
 
     from .. import document
@@ -80,25 +84,25 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     for path in paths():
         step(path.stem)
         graph = document.load(path)
-        (pictures[path.stem],) = frames_of(graph, renderer, (middle_frame(renderer, graph),)).values()
+        (pictures[path.stem],) = render_display_frames(graph, renderer, (find_middle_frame(renderer, graph),)).values()
     return Sheet(make_grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
 
 
-def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
-    """A row for every preset that moves: some of its frames, from the first to the last."""
+def make_time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
+    """The sheet of animated presets: a row for each, with frames from the first to the last."""
     from ..media.comparison.contact_sheet import make_grouped_sheet
 
     rows: dict[str, dict[str, Array]] = {}
-    for name, graph in animated_presets().items():
+    for name, graph in load_animated_presets().items():
         step(name)
         first, last = renderer.frames(graph)
-        frames = [first + round((last - first) * part / (_MOMENTS - 1)) for part in range(_MOMENTS)]
-        rows[name] = {str(frame): picture for frame, picture in frames_of(graph, renderer, frames).items()}
-    return Sheet(make_grouped_sheet(rows, _MOMENTS, _WIDTH, letters=_LETTERS), tuple(rows))
+        frames = [first + round((last - first) * part / (_FRAMES_SHOWN - 1)) for part in range(_FRAMES_SHOWN)]
+        rows[name] = {str(frame): picture for frame, picture in render_display_frames(graph, renderer, frames).items()}
+    return Sheet(make_grouped_sheet(rows, _FRAMES_SHOWN, _WIDTH, letters=_LETTERS), tuple(rows))
 
 
-def animated_presets() -> dict[str, Graph]:
-    """The presets that have frames, by name."""
+def load_animated_presets() -> dict[str, Graph]:
+    """The presets that have a range of frames, by name."""
     from halation.presets import paths
 
     from .. import document
@@ -106,21 +110,21 @@ def animated_presets() -> dict[str, Graph]:
     return {path.stem: graph for path in paths() if (graph := document.load(path)).settings.frames}
 
 
-def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
-    """What the first output of a graph is at frames, as light of the display."""
+def render_display_frames(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
+    """The first output of a graph at some frames, in display colors."""
     from ..media.comparison.contact_sheet import show_light
     from ..renderer import FrameRenderer, RenderRequest
 
     name, output = next(iter(graph.outputs.items()))
-    reel = FrameRenderer(renderer, graph, RenderRequest())
+    frame_renderer = FrameRenderer(renderer, graph, RenderRequest())
     try:
-        return {frame: show_light(reel.render(frame)[name], output.view) for frame in frames}
+        return {frame: show_light(frame_renderer.render(frame)[name], output.view) for frame in frames}
     finally:
-        reel.close()
+        frame_renderer.close()
 
 
-def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[str, ...] = ()) -> Sheet:
-    """Every node that draws, at its defaults over the sample, by category; or only these."""
+def make_node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[str, ...] = ()) -> Sheet:
+    """The sheet of all nodes that draw, or of `ids`, by category, each at its defaults on the sample."""
     from halation.nodes import catalogue
     from halation.presets import sample
 
@@ -132,14 +136,14 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
     groups: dict[str, dict[str, Array]] = {node.category: {} for node in nodes}
     for node in nodes:
         step(node.id)
-        groups[node.category][node.id] = picture_of(node, renderer, sample())
+        groups[node.category][node.id] = render_node(node, renderer, sample())
     colors = {name: category_color(name) for name in groups}
     light = make_grouped_sheet(groups, _COLUMNS, _WIDTH, letters=_LETTERS, colors=colors)
     return Sheet(light, tuple(node.id for node in nodes))
 
 
-def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
-    """What a node makes of the sample, as light of the display: its first picture, else its data made visible."""
+def render_node(node: type[Node], renderer: Renderer, sample: Path) -> Array:
+    """The first image that a node makes of the sample, else its data made visible, in display colors."""
     from halation.nodes import Kind
 
     from .specimen import CANVAS, sample_graph, show_on_sample
@@ -156,11 +160,11 @@ def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
         return make_caption(show_light(renderer.render(sample_graph(sample))["image"]), numbers)
     if graph.outputs[name].kind is Kind.COLOR:
         outputs[name] = outputs[name].repeat(CANVAS[0], axis=1).repeat(CANVAS[1], axis=0)
-    return light_of(graph.outputs[name].kind, outputs[name])
+    return to_display_light(graph.outputs[name].kind, outputs[name])
 
 
-def light_of(kind: Kind, array: Array) -> Array:
-    """An output as light of the display, which a picture that stays within 0..1 is taken to be already."""
+def to_display_light(kind: Kind, array: Array) -> Array:
+    """An output in display colors; a picture that stays within 0..1 is taken as it is."""
     from halation.nodes import Kind
 
     from ..media.comparison.contact_sheet import show_any_light, show_data, show_over_checker

@@ -1,4 +1,4 @@
-"""Git, as far as versions of graphs are in it."""
+"""Runs git, and reads versions of graphs from it."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from ..errors import DocumentError, UsageError
 
 
 def git(*words: str, folder: Path | None = None) -> str:
-    """What git says, as text. Raises UsageError with its own reason."""
-    return _run(words, folder).decode(errors="surrogateescape")
+    """Run git and return its output. Raises UsageError with the message of git."""
+    return _run_git(words, folder).decode(errors="surrogateescape")
 
 
 def repository_root(folder: Path | None = None) -> Path:
-    """The root of the repository that a folder, by default this one, is in. Raises UsageError."""
+    """The root of the repository of a folder, by default the current one. Raises UsageError."""
     return Path(git("rev-parse", "--show-toplevel", folder=folder).rstrip("\n"))
 
 
 def read_revision(source: str) -> tuple[str, str]:
     """The text of `REV:path`, and the folder where its relative paths start.
 
-    The path starts at the root of the repository, or at this folder. Raises DocumentError, UsageError.
+    The path is relative to the root of the repository, or to the current folder. Raises DocumentError, UsageError.
     """
     from ..document.limits import size_fault
 
@@ -31,18 +31,18 @@ def read_revision(source: str) -> tuple[str, str]:
     except UsageError as fault:
         raise DocumentError(source, "", f"there is no such file ({str(fault).removeprefix('git: ')})") from None
     try:
-        size = int(_run(("cat-file", "-s", name)))
+        size = int(_run_git(("cat-file", "-s", name)))
     except UsageError as fault:
         name, folder = f"{before}:./{path}", Path()
         try:
-            size = int(_run(("cat-file", "-s", name)))
+            size = int(_run_git(("cat-file", "-s", name)))
         except UsageError:
             reason = str(fault).removeprefix("git: ")
             raise DocumentError(source, "", f"there is no such file, nor such a version in git ({reason})") from None
     if fault := size_fault(max(size, 1)):
         raise DocumentError(source, "", fault)
     try:
-        text = _run(("cat-file", "blob", name)).decode("utf-8-sig")
+        text = _run_git(("cat-file", "blob", name)).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DocumentError(source, "", f"the text is not UTF-8 (byte {error.start})") from None
     except UsageError:
@@ -50,7 +50,7 @@ def read_revision(source: str) -> tuple[str, str]:
     return text, str((folder / path).parent)
 
 
-def _run(words: tuple[str, ...], folder: Path | None = None) -> bytes:
+def _run_git(words: tuple[str, ...], folder: Path | None = None) -> bytes:
     try:
         process = subprocess.run(["git", *words], cwd=folder, capture_output=True, check=False)
     except OSError:

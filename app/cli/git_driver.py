@@ -1,4 +1,4 @@
-"""`halation git-driver`: what git calls, once `halation git-setup` told it to. Other JSON is treated as text."""
+"""`halation git-driver`: git calls it for graphs after `halation git-setup`. Other JSON files are treated as text."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .outcome import note
+from .outcome import print_note
 from .versions import is_colored, paint, print_lines
 
 if TYPE_CHECKING:
     from ..graph import Graph
 
 CONFLICTS = 1
-"""What git takes for a merge that left something to be decided; ours is in place."""
+"""The exit code for a merge with conflicts, as git expects it."""
 
 
 def git_driver(
-    task: Annotated[str, typer.Argument(metavar="diff|text|merge", help="What git wants.")],
-    words: Annotated[list[str], typer.Argument(help="What git says about it.")],
+    task: Annotated[str, typer.Argument(metavar="diff|text|merge", help="What git asks for.")],
+    words: Annotated[list[str], typer.Argument(help="The arguments of git.")],
 ) -> int:
-    """What git calls for graphs; see git-setup."""
+    """Compare, print or merge graphs for git; see git-setup."""
     from ..errors import UsageError
 
     if task == "diff" and len(words) in (1, 7, 8, 9):
@@ -34,11 +34,14 @@ def git_driver(
         return _text(words[0])
     if task == "merge" and len(words) == 4:
         return _merge(*words)
-    raise UsageError(f"git-driver {task}: git calls this as git-setup tells it to; see halation git-setup --help")
+    raise UsageError(f"git-driver {task}: only git calls this command; see halation git-setup --help")
 
 
 def _diff(words: Sequence[str]) -> int:
-    """`git diff`: path, then file, hash and mode of both sides; the new path of one that moved. Git wants a 0."""
+    """`git diff`: the arguments are a path, then file, hash and mode of both sides, and the new path of a renamed file.
+
+    The exit code is 0, because git takes any other for a failure.
+    """
     from ..document.diff_merge import compare_graphs, describe_difference
     from ..graph import Graph
 
@@ -46,8 +49,8 @@ def _diff(words: Sequence[str]) -> int:
     if len(words) == 1:
         print(paint(f"graph {path}: the merge is unfinished", "@", colored))
         return 0
-    before, after = _read(words[1]), _read(words[4])
-    graphs = [_graph(text, path) if text else Graph() for text in (before, after)]
+    before, after = _read_text(words[1]), _read_text(words[4])
+    graphs = [_parse_graph(text, path) if text else Graph() for text in (before, after)]
     moved = f"{words[0]} -> {path}" if path != words[0] else path
     state = ", new" if words[2] == "." else ", deleted" if words[5] == "." else ""
     graph_before, graph_after = graphs
@@ -60,43 +63,43 @@ def _diff(words: Sequence[str]) -> int:
     lines = describe_difference(compare_graphs(graph_before, graph_after), graph_before, graph_after)
     print(paint(f"graph {moved}{state}", "@", colored))
     if not lines:
-        print("  only the layout, or how the file is written")
+        print("  only the layout or the formatting of the file")
     print_lines(lines, colored)
     return 0
 
 
 def _text(file: str) -> int:
-    """`git log -p`, `git show`: a fact on each line, which git compares."""
+    """`git log -p` and `git show`: prints the graph with one fact per line, which git compares."""
     from ..document.diff_merge import describe_graph
 
-    text = _read(file)
-    graph = _graph(text, file)
+    text = _read_text(file)
+    graph = _parse_graph(text, file)
     sys.stdout.write(text if graph is None else "".join(f"{line}\n" for line in describe_graph(graph)))
     return 0
 
 
 def _merge(base: str, ours: str, theirs: str, path: str) -> int:
-    """`git merge` and all that merges: the result goes where ours was."""
+    """`git merge`, `git rebase` and so on: merges into the file of our side."""
     from ..errors import DocumentError
     from ..resources.atomic_write import write_text_atomically
     from .merge import merge_versions, report_conflicts
 
-    if not any('"halation"' in _read(file) for file in (ours, theirs)):
+    if not any('"halation"' in _read_text(file) for file in (ours, theirs)):
         return subprocess.run(
             ["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs], check=False
         ).returncode
     try:
         merge_result = merge_versions(base, ours, theirs)
     except DocumentError as fault:
-        note(f"halation: {path}: it cannot be merged, ours is left as it was: {fault}")
+        print_note(f"halation: {path}: it cannot be merged, and our side stays as it is: {fault}")
         return CONFLICTS
     write_text_atomically(Path(ours), merge_result.text)
     report_conflicts(merge_result, path)
     return CONFLICTS if merge_result.conflicts else 0
 
 
-def _graph(text: str, name: str) -> Graph | None:
-    """The graph in a text, if there is one."""
+def _parse_graph(text: str, name: str) -> Graph | None:
+    """The graph in a text, or None if the text is no valid graph."""
     from .. import document
     from ..errors import DocumentError
 
@@ -106,5 +109,5 @@ def _graph(text: str, name: str) -> Graph | None:
         return None
 
 
-def _read(file: str) -> str:
+def _read_text(file: str) -> str:
     return Path(file).read_text(encoding="utf-8-sig", errors="replace")

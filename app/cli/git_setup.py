@@ -1,4 +1,4 @@
-"""`halation git-setup`: git shows and merges graphs by what they mean."""
+"""`halation git-setup`: makes git compare and merge graphs by node and value."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .options import AsJson
 from .outcome import print_json
 
 ATTRIBUTES = "diff=halation merge=halation"
-"""What a line of .gitattributes says of graphs."""
+"""The attributes of graphs in .gitattributes."""
 
 
 def git_setup(
@@ -22,20 +22,21 @@ def git_setup(
         list[str] | None,
         typer.Argument(
             metavar="[PATTERN]...",
-            help="Which files are graphs, as .gitattributes has it, such as '*.graph.json'; by default the JSON files "
-            "of every folder with graphs that git knows.",
+            help="Patterns of .gitattributes for graph files, such as '*.graph.json'; by default the JSON files in "
+            "every folder where git knows a graph.",
         ),
     ] = None,
     everywhere: Annotated[
-        bool, typer.Option("--global", help="Put the configuration into your own, for all repositories.")
+        bool, typer.Option("--global", help="Change the configuration of the user, for all repositories.")
     ] = False,
-    remove: Annotated[bool, typer.Option("--remove", help="Take back what this command wrote.")] = False,
+    remove: Annotated[bool, typer.Option("--remove", help="Remove what this command wrote.")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Make `git diff`, `git log -p` and `git merge` understand graphs: says what it changes, and may run again.
+    """Make git compare and merge graphs by node.
 
-    .gitattributes says which files are graphs, and belongs into the repository; the configuration says how to run
-    Halation on this machine, and each clone needs it. Other JSON files stay text.
+    Afterwards `git diff`, `git log -p` and `git merge` understand graphs. The command prints what it changes, and can
+    run again. It writes two things: .gitattributes, which names the graph files and is committed; and the configuration
+    of git, which names the Halation of this machine and is needed in each clone. Other JSON files stay text.
     """
     from ..errors import UsageError
     from .git import repository_root
@@ -44,24 +45,24 @@ def git_setup(
         root = repository_root()
     except UsageError:
         if not everywhere:
-            raise UsageError("this folder is in no git repository: go into one, or add --global") from None
+            raise UsageError("this folder is not in a git repository: change to one, or add --global") from None
         root = None
     changes = _configure("--global" if everywhere else "--local", remove)
     if root:
-        changes += _attribute(
+        changes += _change_attributes(
             root / ".gitattributes", list(patterns or ()) or _find_patterns(root), bool(patterns), remove
         )
     elif patterns:
-        raise UsageError("this folder is in no git repository: patterns go into the .gitattributes of one")
+        raise UsageError("this folder is not in a git repository: patterns are written to its .gitattributes")
     if as_json:
         print_json({"changed": changes})
     else:
-        print("\n".join(changes) if changes else "nothing is to be changed")
+        print("\n".join(changes) if changes else "nothing needs to change")
     return 0
 
 
-def settings() -> dict[str, str]:
-    """What the configuration of git says, with this Halation, wherever it is installed."""
+def git_settings() -> dict[str, str]:
+    """The configuration of git that runs this installation of Halation, by name."""
     call = f"{shlex.quote(Path(sys.executable).as_posix())} -P -m halation.cli git-driver"
     return {
         "diff.halation.command": f"{call} diff --",
@@ -72,12 +73,12 @@ def settings() -> dict[str, str]:
 
 
 def _configure(scope: str, remove: bool) -> list[str]:
-    """Write or remove the configuration; what was changed."""
+    """Write or remove the configuration; a line per change."""
     from ..errors import UsageError
     from .git import git
 
     changes: list[str] = []
-    for name, text in settings().items():
+    for name, text in git_settings().items():
         try:
             current = git("config", scope, "--get", name).rstrip("\n")
         except UsageError:  # there is none
@@ -91,12 +92,15 @@ def _configure(scope: str, remove: bool) -> list[str]:
     return changes
 
 
-def _attribute(file: Path, patterns: Sequence[str], only_these: bool, remove: bool) -> list[str]:
-    """Add or remove lines of .gitattributes; what was changed. With `given`, only the lines of these patterns go."""
+def _change_attributes(file: Path, patterns: Sequence[str], only_these: bool, remove: bool) -> list[str]:
+    """Add or remove lines of .gitattributes; a line per change.
+
+    With `only_these` only the lines of these patterns are removed, else all lines that this command wrote.
+    """
     from ..resources.atomic_write import write_text_atomically
 
     old = file.read_text(encoding="utf-8") if file.exists() else ""
-    lines, own_lines = old.splitlines(), {f"{_quote(pattern)} {ATTRIBUTES}" for pattern in patterns}
+    lines, own_lines = old.splitlines(), {f"{_quote_pattern(pattern)} {ATTRIBUTES}" for pattern in patterns}
     if remove:
         removed = [line for line in lines if line.endswith(f" {ATTRIBUTES}") and (line in own_lines or not only_these)]
         remaining = [line for line in lines if line not in removed]
@@ -112,29 +116,29 @@ def _attribute(file: Path, patterns: Sequence[str], only_these: bool, remove: bo
 
 
 def _find_patterns(root: Path) -> list[str]:
-    """Patterns for the folders that hold graphs, of all files that are tracked or may be."""
+    """A pattern for each folder with a graph among the files that git tracks or could track."""
     from .git import git
 
     names = git("ls-files", "-z", "--cached", "--others", "--exclude-standard", "--", "*.json", folder=root)
     files = (root / name for name in names.split("\0") if name)
-    return list(dict.fromkeys(_pattern(path, root) for path in _graphs(files)))
+    return list(dict.fromkeys(_folder_pattern(path, root) for path in _select_graphs(files)))
 
 
-def _graphs(files: Iterable[Path]) -> list[Path]:
+def _select_graphs(files: Iterable[Path]) -> list[Path]:
     from ..lint.files import is_graph
 
     return [path for path in files if path.is_file() and is_graph(path)]
 
 
-def _pattern(path: Path, root: Path) -> str:
-    """All JSON files beside a graph."""
+def _folder_pattern(path: Path, root: Path) -> str:
+    """The pattern of all JSON files in the folder of a graph."""
     folder = path.relative_to(root).parent.as_posix()
     escaped = "".join(f"\\{letter}" if letter in "*?[\\" else letter for letter in folder)
     return "/*.json" if folder == "." else f"/{escaped}/*.json"
 
 
-def _quote(pattern: str) -> str:
-    """A pattern as .gitattributes has it: white space needs quotes."""
+def _quote_pattern(pattern: str) -> str:
+    """A pattern as .gitattributes needs it: in quotes if it has white space."""
     if not any(letter.isspace() or letter == '"' for letter in pattern):
         return pattern
     return '"' + pattern.replace("\\", "\\\\").replace('"', '\\"') + '"'

@@ -1,8 +1,8 @@
-"""Render jobs in helper processes: the frames of one are shared among several, or code that may never end is watched.
+"""Runs render jobs in helper processes, which share the frames of a job or run code that may never end.
 
-Each helper reads a `RenderJob` as JSON, renders with a device of its own, and reports in lines of JSON, which this
-process shows as if it rendered itself. Where code of the graph could keep a device for ever, each helper has a watchdog
-here: one that is stuck is ended, and so are the others.
+Each helper is a `halation worker`: it reads a `RenderJob` as JSON, renders with a device of its own, and reports in
+lines of JSON, which this process shows as if it rendered itself. If code of the graph could run for ever, each helper
+has a watchdog here: when one helper is stuck, it is killed and the others are stopped.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any
 
 from .. import errors
 from ..errors import HalationError
-from .outcome import note
-from .watchdog import LOOK, Watchdog
+from .outcome import print_note
+from .watchdog import CHECK_INTERVAL, Watchdog
 
 if TYPE_CHECKING:
     from ..renderer.jobs.render_job import RenderJob
@@ -32,34 +32,36 @@ if TYPE_CHECKING:
 def run_helpers(jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int) -> dict[str, Any]:
     """Render each job in a process of its own, and join their reports; `total` is how many frames they have together.
 
-    A helper whose code takes longer than `timeout` seconds is ended; with 0 none is. Raises HalationError with the
-    sentence and exit code of the first one that fails; the others are stopped.
+    A helper whose code takes longer than `timeout` seconds is killed; 0 means no limit. Raises HalationError with the
+    message and exit code of the first helper that fails; the others are stopped.
     """
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        crew = _Crew(jobs, timeout, progress, total, Path(folder))
-        return join_reports(crew.run())
+        pool = _HelperPool(jobs, timeout, progress, total, Path(folder))
+        return join_reports(pool.run())
 
 
 def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """What several processes did together. Each has textures of its own, so their bytes are added."""
-    joined = dict(reports[0])
+    """One report from those of several processes. Each has textures of its own, so their bytes are added."""
+    total = dict(reports[0])
     for report in reports[1:]:
         for name in ("written", "frames", "kept"):
-            joined[name] = [*joined[name], *report[name]]
+            total[name] = [*total[name], *report[name]]
         for name in ("passes", "programs", "peak_bytes"):
-            joined[name] += report[name]
-        joined["repaired"] = {**joined["repaired"], **report["repaired"]}
-        joined["seconds"] = {name: max(spent, report["seconds"][name]) for name, spent in joined["seconds"].items()}
+            total[name] += report[name]
+        total["repaired"] = {**total["repaired"], **report["repaired"]}
+        total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
     if len(reports) == 1:
-        return joined
-    order = sorted(range(len(joined["frames"])), key=lambda place: joined["frames"][place])
-    each = len(joined["written"]) // max(1, len(order))
-    joined["written"] = [path for place in order for path in joined["written"][place * each : (place + 1) * each]]
-    return {**joined, "frames": sorted(joined["frames"]), "kept": sorted(joined["kept"])}
+        return total
+    order = sorted(range(len(total["frames"])), key=lambda place: total["frames"][place])
+    files_per_frame = len(total["written"]) // max(1, len(order))
+    total["written"] = [
+        path for place in order for path in total["written"][place * files_per_frame : (place + 1) * files_per_frame]
+    ]
+    return {**total, "frames": sorted(total["frames"]), "kept": sorted(total["kept"])}
 
 
 class _Helper:
-    """One process with its job and, if there is a time limit, its watchdog."""
+    """A process, its job and, if there is a time limit, its watchdog."""
 
     def __init__(self, job: RenderJob, watchdog: Watchdog | None, environment: Mapping[str, str]) -> None:
         from ..renderer.jobs.render_job import worker_command
@@ -76,14 +78,14 @@ class _Helper:
         )
 
     def stop(self) -> None:
-        """Ask it to end: what it has finished stays."""
+        """Ask it to end; the files that it has finished stay."""
         if self.process.poll() is None:
             with contextlib.suppress(OSError):
                 self.process.send_signal(signal.SIGINT) if sys.platform != "win32" else self.process.terminate()
 
 
-class _Crew:
-    """All helpers of one rendering, a thread that listens to each, and what they have said so far."""
+class _HelperPool:
+    """The helpers of one render, a thread that listens to each, and their reports so far."""
 
     def __init__(
         self, jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int, folder: Path
@@ -92,19 +94,19 @@ class _Crew:
         self._done, self._notes = 0, set[str]()
         self._reports: list[dict[str, Any]] = []
         self._fault: HalationError | None = None
-        environment = {**_threads(len(jobs)), **os.environ, "PYTHONIOENCODING": "utf-8"}
+        environment = {**_divide_cores(len(jobs)), **os.environ, "PYTHONIOENCODING": "utf-8"}
         self._helpers = [
             _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout) if timeout else None, environment)
             for number, job in enumerate(jobs)
         ]
-        from ..renderer.jobs.job import FrameReport  # it takes a while, so the helpers are started first
+        from ..renderer.jobs.job import FrameReport  # this import is slow, so the helpers start first
 
         self._frame_report = FrameReport
 
     def run(self) -> list[dict[str, Any]]:
-        """Wait for all of them: their reports. Raises HalationError as `run_helpers`."""
+        """Wait for all helpers and return their reports. Raises HalationError as `run_helpers`."""
         self._progress.report_helpers([helper.process.pid for helper in self._helpers])
-        threads = [threading.Thread(target=self._follow, args=(helper,), daemon=True) for helper in self._helpers]
+        threads = [threading.Thread(target=self._listen, args=(helper,), daemon=True) for helper in self._helpers]
         for thread in threads:
             thread.start()
         try:
@@ -120,12 +122,12 @@ class _Crew:
     def _wait(self, threads: Sequence[threading.Thread]) -> None:
         for thread in threads:
             while thread.is_alive():
-                thread.join(LOOK)
+                thread.join(CHECK_INTERVAL)
                 for helper in self._helpers:
                     self._check(helper)
 
     def _check(self, helper: _Helper) -> None:
-        """End a helper whose code takes too long."""
+        """Kill a helper whose code takes too long, and stop the others."""
         if helper.watchdog is None or helper.process.poll() is not None:
             return
         if fault := helper.watchdog.check():
@@ -140,28 +142,28 @@ class _Crew:
 
     # --- on the threads that listen ----------------------------------------------------------------------------------
 
-    def _follow(self, helper: _Helper) -> None:
-        """Listen to a helper until it has ended."""
+    def _listen(self, helper: _Helper) -> None:
+        """Send a helper its job and read what it writes until it ends."""
         report: dict[str, Any] = {}
         with helper.process as process:
             assert process.stdin and process.stdout and process.stderr
-            with contextlib.suppress(OSError):  # it may end before it has read everything
+            with contextlib.suppress(OSError):  # it may end before it has read all
                 process.stdin.write(helper.job.to_json())
             with contextlib.suppress(OSError):
                 process.stdin.close()
             for line in process.stderr:
                 with self._lock:
-                    self._hear(line.rstrip())
+                    self._handle_line(line.rstrip())
             with contextlib.suppress(ValueError):
                 report = json.loads(process.stdout.read())
         with self._lock:
             if process.returncode == 0:
                 self._reports.append(report)
             elif self._fault is None:
-                self._fault = _fault_of(report.get("error", {}), process.returncode)
+                self._fault = _rebuild_fault(report.get("error", {}), process.returncode)
                 self._stop()
 
-    def _hear(self, line: str) -> None:
+    def _handle_line(self, line: str) -> None:
         """One line that a helper writes: progress as JSON, or a note for the user, which is shown once."""
         with contextlib.suppress(ValueError, KeyError, TypeError):
             event = json.loads(line)
@@ -170,24 +172,24 @@ class _Crew:
                 written = tuple(Path(path) for path in event["written"])
                 report = self._frame_report(event["frame"], written, event["passes"], event["kept"])
                 self._progress.report_frame(report, self._done, self._total)
-            elif len(self._helpers) == 1:  # passes of several frames at once would only confuse
+            elif len(self._helpers) == 1:  # passes of several frames at once cannot be shown
                 self._progress.report_pass(event["frame"], event["pass"], event["passes"], event["nodes"])
             return
         if line and line not in self._notes and not line.startswith("halation: "):
             self._notes.add(line)
-            note(line)
+            print_note(line)
 
 
-def _threads(helpers: int) -> dict[str, str]:
-    """The environment that divides the cores: helpers that each used all of them would only get in each other's way."""
+def _divide_cores(helpers: int) -> dict[str, str]:
+    """Environment variables that divide the cores among the helpers; each using all of them is slower."""
     if helpers == 1:
         return {}
     threads = str(max(1, (os.cpu_count() or 1) // helpers))
     return {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}
 
 
-def _fault_of(error: Mapping[str, Any], code: int) -> HalationError:
-    """The error of a helper, of the same class if it is one of `errors`."""
+def _rebuild_fault(error: Mapping[str, Any], code: int) -> HalationError:
+    """The error that a helper reported, as an instance of the same class of `errors`."""
     kind = getattr(errors, str(error.get("kind", "")), HalationError)
     fault: HalationError = kind.__new__(kind)
     HalationError.__init__(fault, error.get("message", f"a process was ended by {code}"))

@@ -1,4 +1,4 @@
-"""`halation info`: what a picture holds, and what each of its layers is."""
+"""`halation info`: what a picture file holds, and what each of its layers is."""
 
 from __future__ import annotations
 
@@ -21,76 +21,90 @@ if TYPE_CHECKING:
 
 
 def info(
-    file: Annotated[Path, typer.Argument(help="A picture, a sequence such as shot.####.exr, or its folder.")],
+    file: Annotated[Path, typer.Argument(help="A picture, a sequence such as shot.####.exr, or the folder of one.")],
     before: Annotated[
         Path | None,
-        typer.Option(metavar="FILE", help="The same render one frame earlier: it shows which way motion points."),
+        typer.Option(
+            metavar="FILE", help="The same render one frame earlier; it shows which way motion vectors point."
+        ),
     ] = None,
     as_json: AsJson = False,
 ) -> int:
-    """Show the parts, layers and metadata of a picture, what each layer of a render is, how its data are meant, and the
-    camera."""
+    """Show layers, metadata and camera of a picture.
+
+    For a render it also shows what each layer is (color, depth, normal, ...) and the conventions of its data.
+    """
     from ..media.sequences import check_has_files, find_sequence
     from ..render_layers.analysis import analyze_render
     from ..render_layers.report import format_report
 
-    shot = find_sequence(str(file))
-    if shot is not None:
-        check_has_files(shot)
-    survey_result = analyze_render(shot.path(shot.frames[0]) if shot else file, before)
+    sequence = find_sequence(str(file))
+    if sequence is not None:
+        check_has_files(sequence)
+    analysis = analyze_render(sequence.path(sequence.frames[0]) if sequence else file, before)
     if as_json:
-        print_json({**(_shot_facts(shot) if shot else {}), **_facts(survey_result)})
+        print_json({**(_sequence_facts(sequence) if sequence else {}), **_analysis_facts(analysis)})
         return 0
-    head, gap, rest = "\n".join(format_report(survey_result)).partition("\n\n")
-    print(f"{_shot_lines(shot)}\n\n{head}" if shot else f"{head}{_neighbors(str(file))}", rest, sep=gap)
+    first_block, gap, rest = "\n".join(format_report(analysis)).partition("\n\n")
+    print(
+        f"{_format_sequence(sequence)}\n\n{first_block}"
+        if sequence
+        else f"{first_block}{_describe_neighbors(str(file))}",
+        rest,
+        sep=gap,
+    )
     return 0
 
 
-def _shot_lines(shot: FrameSequence) -> str:
-    """A sequence: how many frames, which, and what is missing between them."""
-    lines = [shot.pattern.text, f"  {_frames(shot)}"]
-    return "\n".join([*lines, f"  {shot.missing} missing: {shot.gaps_text}"] if shot.missing else lines)
+def _format_sequence(sequence: FrameSequence) -> str:
+    """Lines about a sequence: its pattern, its frames, and the frames missing between them."""
+    lines = [sequence.pattern.text, f"  {_describe_frames(sequence)}"]
+    return "\n".join([*lines, f"  {sequence.missing} missing: {sequence.gaps_text}"] if sequence.missing else lines)
 
 
-def _neighbors(path: str) -> str:
-    """A line for a picture that is one of a sequence, else nothing."""
+def _describe_neighbors(path: str) -> str:
+    """A line about the sequence that a picture is part of; empty for a single picture."""
     from ..media.sequences import find_sequence, suggest_pattern
 
     pattern = suggest_pattern(path)
-    shot = find_sequence(pattern) if pattern else None
-    return f"\n  one of {len(shot.frames)} frames of {shot.pattern.text}: {shot.frames_text}" if shot else ""
+    sequence = find_sequence(pattern) if pattern else None
+    return (
+        f"\n  one of {len(sequence.frames)} frames of {sequence.pattern.text}: {sequence.frames_text}"
+        if sequence
+        else ""
+    )
 
 
-def _frames(shot: FrameSequence) -> str:
-    count = len(shot.frames)
-    return f"{count} frame{'s' if count > 1 else ''}: {shot.frames_text}"
+def _describe_frames(sequence: FrameSequence) -> str:
+    count = len(sequence.frames)
+    return f"{count} frame{'s' if count > 1 else ''}: {sequence.frames_text}"
 
 
-def _shot_facts(shot: FrameSequence) -> dict[str, Any]:
+def _sequence_facts(sequence: FrameSequence) -> dict[str, Any]:
     return {
         "sequence": {
-            "pattern": shot.pattern.text,
-            "count": len(shot.frames),
-            "first": shot.frames[0],
-            "last": shot.frames[-1],
-            "frames": list(shot.frames),
-            "gaps": [list(gap) for gap in shot.gaps],
-            "missing": shot.missing,
+            "pattern": sequence.pattern.text,
+            "count": len(sequence.frames),
+            "first": sequence.frames[0],
+            "last": sequence.frames[-1],
+            "frames": list(sequence.frames),
+            "gaps": [list(gap) for gap in sequence.gaps],
+            "missing": sequence.missing,
         }
     }
 
 
-def _facts(survey: RenderAnalysis) -> dict[str, Any]:
-    """Everything, for machines."""
+def _analysis_facts(analysis: RenderAnalysis) -> dict[str, Any]:
+    """All facts about a picture, as JSON."""
     from ..media.color_spaces import describe_color_spaces
 
-    header = survey.header
+    header = analysis.header
     return {
         "file": header.info.path,
         "format": header.info.format,
         "size": list(header.info.size),
-        "renderer": survey.maker.renderer,
-        "renderer_reason": survey.maker.reason,
+        "renderer": analysis.maker.renderer,
+        "renderer_reason": analysis.maker.reason,
         "parts": [
             {
                 "index": part.index,
@@ -113,11 +127,11 @@ def _facts(survey: RenderAnalysis) -> dict[str, Any]:
                 "reason": item.reason,
                 "candidates": list(item.candidates),
             }
-            for item in survey.passes
+            for item in analysis.passes
         ],
         "color_spaces": [list(row) for row in describe_color_spaces(header.info.path)],
-        "roles": {role: layer.name if (layer := survey.find_layer(role)) else None for role in survey.roles},
-        "undecided": {role: [layer.name for layer in layers] for role, layers in survey.rivals.items()},
+        "roles": {role: layer.name if (layer := analysis.find_layer(role)) else None for role in analysis.roles},
+        "undecided": {role: [layer.name for layer in layers] for role, layers in analysis.rivals.items()},
         "conventions": {
             role: {
                 "kind": rule.kind,
@@ -126,10 +140,10 @@ def _facts(survey: RenderAnalysis) -> dict[str, Any]:
                 "scale": list(rule.scale),
                 "offset": list(rule.offset),
             }
-            for role, rule in survey.conventions.items()
+            for role, rule in analysis.conventions.items()
         },
-        "camera": _camera_facts(survey.camera.camera, survey.camera.reason, survey.camera.solution),
-        "metadata": {name: _plain(value) for name, value in header.attributes.items()},
+        "camera": _camera_facts(analysis.camera.camera, analysis.camera.reason, analysis.camera.solution),
+        "metadata": {name: _make_json_safe(value) for name, value in header.attributes.items()},
     }
 
 
@@ -165,8 +179,8 @@ def _camera_facts(camera: CameraModel | None, reason: str, solved: CameraSolutio
     return facts
 
 
-def _plain(value: object) -> object:
-    """A value that JSON has words for: it knows no infinity."""
+def _make_json_safe(value: object) -> object:
+    """A value with infinities and NaN as text, because JSON has no such numbers."""
     if isinstance(value, tuple):
-        return [_plain(part) for part in value]
+        return [_make_json_safe(part) for part in value]
     return value if not isinstance(value, float) or math.isfinite(value) else str(value)

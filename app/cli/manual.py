@@ -1,4 +1,4 @@
-"""The catalogue as one Markdown page."""
+"""Writes the catalogue of nodes as one Markdown page."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from .facts import default_text, doc_of, hard_range, socket_note, soft_range, type_of
+from .facts import default_text, hard_range, node_doc, socket_note, socket_type, soft_range
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Socket, Value
@@ -20,22 +20,22 @@ photographic stops, `ratio` a factor, `count` a whole number of things, `s` seco
 """
 
 
-def page(nodes: Sequence[type[Node]]) -> str:
-    """A table of every menu, then a section for each of its nodes."""
+def catalogue_page(nodes: Sequence[type[Node]]) -> str:
+    """The page: for each menu a table, then a section per node."""
     menus: dict[str, list[type[Node]]] = {}
     for node in nodes:
         menus.setdefault(node.category, []).append(node)
     contents = ", ".join(f"[{name}](#{_slug(_menu_title(name, menu))})" for name, menu in menus.items())
     blocks = [_INTRODUCTION.format(count=len(nodes), menus=len(menus)).rstrip(), contents]
     for name, menu in menus.items():
-        blocks += [f"## {_menu_title(name, menu)}", _menu(menu)]
+        blocks += [f"## {_menu_title(name, menu)}", _menu_table(menu)]
         for node in menu:
-            blocks += _section(node)
+            blocks += _node_section(node)
     return "\n\n".join(blocks) + "\n"
 
 
 def _menu_title(name: str, menu: Sequence[type[Node]]) -> str:
-    """The name of a menu and how many nodes it has; so no menu's anchor is that of a node."""
+    """The name of a menu and its number of nodes, so that its anchor differs from those of nodes."""
     return f"{name.capitalize()} ({len(menu)})"
 
 
@@ -44,50 +44,53 @@ def _slug(heading: str) -> str:
     return re.sub(r"[^\w-]", "", heading.lower().replace(" ", "-"))
 
 
-def _menu(nodes: Iterable[type[Node]]) -> str:
+def _menu_table(nodes: Iterable[type[Node]]) -> str:
     rows = [
         (
             f"[{node.id}](#{_slug(node.id)})",
-            _prose(doc_of(node).splitlines()[0]),
-            _types(node.inputs),
-            _types({name: output.socket for name, output in node.outputs.items()}),
+            _escape_markdown(node_doc(node).splitlines()[0]),
+            _list_sockets(node.inputs),
+            _list_sockets({name: output.socket for name, output in node.outputs.items()}),
         )
         for node in nodes
     ]
     return _table(("node", "what it does", "inputs", "outputs"), rows)
 
 
-def _section(node: type[Node]) -> Iterator[str]:
+def _node_section(node: type[Node]) -> Iterator[str]:
     yield f"### {node.id}"
     if node.required_package:
-        yield _paragraph(f"From the plug-in {node.required_package.replace('==', ' ')}.")
-    for paragraph in doc_of(node).split("\n\n"):
-        yield _paragraph(paragraph)
+        yield _escape_paragraph(f"From the plug-in {node.required_package.replace('==', ' ')}.")
+    for paragraph in node_doc(node).split("\n\n"):
+        yield _escape_paragraph(paragraph)
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("input", node.inputs), ("output", outputs)):
         noted = {name: socket for name, socket in sockets.items() if socket_note(socket)}
         if noted:
-            rows = [(f"`{name}`", type_of(socket), _prose(socket_note(socket))) for name, socket in noted.items()]
+            rows = [
+                (f"`{name}`", socket_type(socket), _escape_markdown(socket_note(socket)))
+                for name, socket in noted.items()
+            ]
             yield _table((title, "type", ""), rows)
     if node.values:
-        yield _table(("value", "type", "default", "range", "limits", "unit", ""), map(_value, node.values.values()))
+        yield _table(("value", "type", "default", "range", "limits", "unit", ""), map(_value_row, node.values.values()))
 
 
-def _value(value: Value) -> tuple[str, ...]:
+def _value_row(value: Value) -> tuple[str, ...]:
     choices = ", ".join(f"`{choice}`" for choice in value.choices)
     return (
         f"`{value.name}`",
         value.type,
-        _prose(default_text(value)),
+        _escape_markdown(default_text(value)),
         soft_range(value),
         hard_range(value),
         value.unit or "",
-        _prose(". ".join(filter(None, (choices, value.doc)))),
+        _escape_markdown(". ".join(filter(None, (choices, value.doc)))),
     )
 
 
-def _types(sockets: Mapping[str, Socket]) -> str:
-    return ", ".join(f"`{name}` {type_of(socket)}" for name, socket in sockets.items())
+def _list_sockets(sockets: Mapping[str, Socket]) -> str:
+    return ", ".join(f"`{name}` {socket_type(socket)}" for name, socket in sockets.items())
 
 
 def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -95,13 +98,13 @@ def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def _paragraph(text: str) -> str:
-    """The same for text that could be taken for a list, a quotation or the line under a heading."""
-    return re.sub(r"^(\d+)(?=[.)] )|^(?=[-+=] )", r"\1\\", _prose(text))
+def _escape_paragraph(text: str) -> str:
+    """Escape a paragraph, also where its start looks like a list or the line under a heading."""
+    return re.sub(r"^(\d+)(?=[.)] )|^(?=[-+=] )", r"\1\\", _escape_markdown(text))
 
 
-def _prose(text: str) -> str:
-    """Text that Markdown shows as it is, on one line; what stands between backticks is code already."""
+def _escape_markdown(text: str) -> str:
+    """Escape a text for Markdown and put it on one line; text between backticks stays as it is."""
     parts = " ".join(text.split()).split("`")
     parts[::2] = [re.sub(r"([\\*_<>\[\]~#]|&(?=\w))", r"\\\1", part) for part in parts[::2]]
     return "`".join(parts)

@@ -1,4 +1,4 @@
-"""`halation merge`: what two people made of a graph, in one graph; and what they left to be decided."""
+"""`halation merge`: merges two versions of a graph and resolves conflicts."""
 
 from __future__ import annotations
 
@@ -10,50 +10,55 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .options import AsJson
-from .outcome import note, print_json
-from .versions import text_of
+from .outcome import print_json, print_note
+from .versions import read_version
 
 if TYPE_CHECKING:
     from ..document.diff_merge import MergedGraph, Side
     from ..graph import Graph
 
 TROUBLE = 2
-"""What `merge` makes of exit code 1, which says that something is to be decided."""
+"""The exit code of errors that have 1 elsewhere, because 1 means here that there are conflicts."""
 
 
 def merge(
     graphs: Annotated[
         list[str],
-        typer.Argument(metavar="BASE OURS THEIRS", help="Three versions: files, REV:FILE in git, or - once."),
+        typer.Argument(
+            metavar="BASE OURS THEIRS",
+            help="Three versions of a graph: files, REV:FILE in git, or - for standard input.",
+        ),
     ],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Where to write; by default standard output.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="The file to write; by default standard output."),
     ] = None,
     resolve: Annotated[
         list[str] | None,
         typer.Option(
             "--resolve",
             metavar="[PATH=]SIDE",
-            help="Decide conflicts in the graphs named: ours, theirs or base, for all or what is at PATH.",
+            help="Resolve the conflicts in the named graphs: take ours, theirs or base, for all or only at PATH.",
         ),
     ] = None,
     as_json: AsJson = False,
 ) -> int:
-    """Merge what two sides made of a graph, node by node and value by value: 1 if something is left to be decided.
+    """Merge two versions of a graph.
 
-    Conflicts stand in the graph, where ours stays in place; `check` and `render` name them until they are resolved.
+    Merges by node and value. Exits with 1 if there are conflicts: they are written into the graph, which keeps our side
+    until they are resolved, and `check` and `render` report them.
     """
     from ..errors import OutputError, UsageError
 
     try:
         if resolve:
             if output:
-                raise UsageError("--resolve changes the graphs that it is given: leave out -o")
+                raise UsageError("--resolve changes the named graphs themselves: leave out -o")
             return _resolve(graphs, resolve, as_json)
         if len(graphs) != 3:
-            raise UsageError("three versions are merged: name BASE, OURS and THEIRS; see halation merge --help")
+            raise UsageError("merging needs three versions: name BASE, OURS and THEIRS; see halation merge --help")
         if graphs.count("-") > 1:
-            raise UsageError("- is there once: name files for the others")
+            raise UsageError("- can be used only once: name files for the others")
         merge_result = merge_versions(*graphs)
         if output:
             from ..resources.atomic_write import write_text_atomically
@@ -73,34 +78,34 @@ def merge(
 
 
 def merge_versions(base: str, ours: str, theirs: str) -> MergedGraph:
-    """The merge of three versions; a base without text is an empty graph. Raises DocumentError that names the side."""
+    """Merge three versions; an empty file as base is an empty graph. Raises DocumentError that names the side."""
     from ..document.diff_merge import merge_graphs
 
-    return merge_graphs(_side(base, "base"), _side(ours, "ours"), _side(theirs, "theirs"))
+    return merge_graphs(_load_side(base, "base"), _load_side(ours, "ours"), _load_side(theirs, "theirs"))
 
 
-def _side(source: str, side: str) -> Graph:
+def _load_side(source: str, side: str) -> Graph:
     from .. import document
     from ..graph import Graph
 
-    text, folder = text_of(source)
+    text, folder = read_version(source)
     if side == "base" and not text.strip():
         return Graph()
     return document.loads(text, f"{source} ({side})", folder, follow=False)
 
 
 def report_conflicts(merge_result: MergedGraph, name: str) -> None:
-    """Name the conflicts on standard error."""
+    """Print the conflicts to standard error."""
     from ..document import loads
     from ..graph import problems
 
     for problem in problems(loads(merge_result.text, follow=False)) if merge_result.conflicts else ():
         if problem.rule.name == "unmerged":
-            note(f"{name}: {problem.sentence}")
+            print_note(f"{name}: {problem.sentence}")
 
 
 def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> int:
-    """Decide conflicts; the exit code is 1 if some are left."""
+    """Resolve conflicts in files; the exit code is 1 if some are left."""
     from .. import document
     from ..document.canonical import pretty
     from ..document.diff_merge import read_conflicts, resolve_conflicts
@@ -109,7 +114,7 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     from ..errors import UsageError
     from ..resources.atomic_write import write_text_atomically
 
-    chosen = dict(map(_choice, choices))
+    chosen = dict(map(_parse_choice, choices))
     texts: dict[Path, str] = {}
     for path in map(Path, graphs):
         try:
@@ -124,11 +129,11 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     if as_json:
         print_json({"graphs": [{"graph": path, "conflicts": open} for path, open in open_conflicts.items()]})
     for path, open in open_conflicts.items() if not as_json else ():
-        note(f"{path}: {'to be decided: ' + ', '.join(open) if open else 'nothing is left to be decided'}")
+        print_note(f"{path}: {'conflicts left: ' + ', '.join(open) if open else 'no conflict is left'}")
     return 1 if any(open_conflicts.values()) else 0
 
 
-def _choice(text: str) -> tuple[str, Side]:
+def _parse_choice(text: str) -> tuple[str, Side]:
     from ..document.diff_merge import SIDES
     from ..errors import UsageError
 

@@ -1,4 +1,4 @@
-"""`halation nodes`: the catalogue."""
+"""`halation nodes`: the catalogue of nodes."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .facts import default_text, doc_of, facts_of, hard_range, passes_of, socket_note, soft_range, type_of
+from .facts import default_text, hard_range, node_doc, node_facts, plan_facts, socket_note, socket_type, soft_range
 from .options import AsJson
 from .outcome import print_json
-from .plugins import note_refused_plugins, refused_plugins
+from .plugins import list_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Value
@@ -17,14 +17,17 @@ if TYPE_CHECKING:
 
 def nodes(
     id: Annotated[
-        str, typer.Argument(help="A node, or a file of code: FILE.fs, FILE.glsl; without one, all are listed.")
+        str, typer.Argument(help="A node, or a code file (FILE.fs, FILE.glsl); without it all nodes are listed.")
     ] = "",
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
     ] = False,
     as_json: AsJson = False,
 ) -> int:
-    """List the nodes, or show one with its sockets, values, ranges and units, and the passes that it compiles to."""
+    """List all nodes, or describe one.
+
+    The description has its sockets, values, ranges and units, and the passes that it compiles to.
+    """
     from halation.nodes import catalogue
 
     from ..errors import UsageError
@@ -38,29 +41,31 @@ def nodes(
     if markdown and (id or as_json):
         raise UsageError("--markdown prints the whole catalogue: leave out the node and --json")
     if markdown:
-        from .manual import page
+        from .manual import catalogue_page
 
-        print(page(list(classes.values())), end="")
+        print(catalogue_page(list(classes.values())), end="")
     elif as_json:
         print_json(
-            facts_of(classes[id]) if id else {"nodes": [facts_of(node) for node in classes.values()], **_refused()}
+            node_facts(classes[id])
+            if id
+            else {"nodes": [node_facts(node) for node in classes.values()], **_plugin_facts()}
         )
     elif id:
-        _page(classes[id])
+        _print_node(classes[id])
     else:
-        _list(list(classes.values()))
-        note_refused_plugins()
+        _list_nodes(list(classes.values()))
+        print_refused_plugins()
     return 0
 
 
-def _refused() -> dict[str, Any]:
-    """The plug-ins that cannot be loaded, where there are any."""
-    refused = refused_plugins()
+def _plugin_facts() -> dict[str, Any]:
+    """The plug-ins that cannot be loaded, as an entry for JSON; empty if there are none."""
+    refused = list_refused_plugins()
     return {"refused_plugins": refused} if refused else {}
 
 
 def _load_code(file: str) -> type[Node]:
-    """The node that is made of a file of code. Raises UsageError."""
+    """The node that a code file defines. Raises UsageError."""
     from ..custom_nodes import CodeFault, node_type
     from ..document.code import read_code
     from ..errors import UsageError
@@ -71,7 +76,7 @@ def _load_code(file: str) -> type[Node]:
         raise UsageError(f"{file}, {fault}" if fault.line else str(fault)) from None
 
 
-def _list(classes: list[type[Node]]) -> None:
+def _list_nodes(classes: list[type[Node]]) -> None:
     width = max(len(node.id) for node in classes)
     category = ""
     for node in classes:
@@ -79,23 +84,23 @@ def _list(classes: list[type[Node]]) -> None:
             category = node.category
             print(f"\n{category}")
         source = f" ({node.required_package.replace('==', ' ')})" if node.required_package else ""
-        print(f"  {node.id:<{width}}  {doc_of(node).splitlines()[0]}{source}")
+        print(f"  {node.id:<{width}}  {node_doc(node).splitlines()[0]}{source}")
 
 
-def _page(node: type[Node]) -> None:
+def _print_node(node: type[Node]) -> None:
     source = f", from {node.required_package.replace('==', ' ')}" if node.required_package else ""
-    print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{doc_of(node)}\n")
+    print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{node_doc(node)}\n")
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("inputs", node.inputs), ("outputs", outputs)):
         if sockets:
             print(title)
             for name, socket in sockets.items():
-                print(f"  {name:<16} {type_of(socket):<10} {socket_note(socket)}".rstrip())
+                print(f"  {name:<16} {socket_type(socket):<10} {socket_note(socket)}".rstrip())
             print()
     if node.values:
         print("values")
         for value in node.values.values():
-            print(f"  {value.name:<16} {value.type:<10} {default_text(value):<14} {_range(value)}".rstrip())
+            print(f"  {value.name:<16} {value.type:<10} {default_text(value):<14} {_describe_range(value)}".rstrip())
             if value.doc:
                 print(f"  {'':<16} {value.doc}")
         print()
@@ -105,19 +110,19 @@ def _page(node: type[Node]) -> None:
 def _print_passes(node: type[Node]) -> None:
     from ..compiler.explain import format_bytes
 
-    facts = passes_of(node)
+    facts = plan_facts(node)
     width, height = facts["size"]
     print(f"passes at these values, {width}x{height}")
     widest = max((len(item["label"]) for item in facts["passes"]), default=0)
     for index, item in enumerate(facts["passes"]):
-        surfaces = ", ".join(f"{'x'.join(map(str, one['size']))} {one['format']}" for one in item["writes"])
+        surfaces = ", ".join(f"{'x'.join(map(str, surface['size']))} {surface['format']}" for surface in item["writes"])
         print(f"  {index:<4} {item['label']:<{widest}}  {surfaces}")
     if not facts["passes"]:
-        print(f"  none: {'the picture goes through as it is' if node.inputs else 'nothing has to be drawn'}")
+        print(f"  none: {'the picture passes through unchanged' if node.inputs else 'nothing has to be drawn'}")
     print(f"  {format_bytes(facts['peak_bytes'])} of textures at the peak")
 
 
-def _range(value: Value) -> str:
+def _describe_range(value: Value) -> str:
     if value.choices:
         return " | ".join(value.choices)
     soft, hard = f"{soft_range(value)} {value.unit or ''}".strip(), hard_range(value)

@@ -1,4 +1,4 @@
-"""Flags and steps that several commands share."""
+"""Options that several commands have, and how a command opens its graph and its inputs."""
 
 from __future__ import annotations
 
@@ -13,57 +13,71 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import parsing
-from .outcome import note
+from .outcome import print_note
 
 if TYPE_CHECKING:
     from ..graph import Graph
 
 Inputs = Annotated[
     list[str] | None,
-    typer.Option("-i", "--input", metavar="NAME=FILE[:LAYER]", help="Bind an input of the graph to a picture."),
+    typer.Option("-i", "--input", metavar="NAME=FILE[:LAYER]", help="Read an input of the graph from this picture."),
 ]
 Sets = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="NODE.VALUE=X",
-        help="Set a value, or a control by its name: a number, r,g,b,a, keys as 1@1,4@24, or =expression.",
+        help="Set a value of a node, or a control by its name, to a number, a color (r,g,b,a), animation keys "
+        "(1@1,4@24: value@frame) or an =expression.",
     ),
 ]
 Node = Annotated[
-    str, typer.Option("--node", metavar="ID[.OUTPUT]", help="Take the output of this node instead of the graph's.")
+    str,
+    typer.Option(
+        "--node", metavar="ID[.OUTPUT]", help="Use the output of this node instead of the outputs of the graph."
+    ),
 ]
 SizeText = Annotated[
-    str | None, typer.Option("--size", metavar="WxH", help="Size of canvas and pictures, instead of their own.")
+    str | None,
+    typer.Option("--size", metavar="WxH", help="Use this size for the canvas and the pictures instead of their own."),
 ]
 Scale = Annotated[
-    float, typer.Option("--scale", metavar="X", help="Render a proxy: 0.5 is half size, lengths in pixels included.")
+    float,
+    typer.Option(
+        "--scale", metavar="X", help="Render a smaller proxy: 0.5 is half the size, and lengths in pixels shrink too."
+    ),
 ]
-OneFrame = Annotated[int | None, typer.Option(help="The one frame to render; by default the first of the graph.")]
+OneFrame = Annotated[int | None, typer.Option(help="Use this frame; by default the first frame of the graph.")]
 Frames = Annotated[
     str | None,
-    typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
+    typer.Option(metavar="1-24x2,40", help="Render these frames; write #### in the file name for the frame number."),
 ]
 Precision = Annotated[
-    str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
+    str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes and in EXR files.")
 ]
 Form = Annotated[
-    str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
+    str | None,
+    typer.Option(
+        metavar="fragment|compute",
+        help="Run passes as fragment or as compute shaders; by default what is faster on the device.",
+    ),
 ]
 Memory = Annotated[
     str | None,
-    typer.Option(metavar="SIZE", help="Bytes that a frame may take, as 512M or 2G: what is larger is made by tiles."),
+    typer.Option(
+        metavar="SIZE", help="Memory that one frame may use, such as 512M or 2G; a larger frame is rendered in tiles."
+    ),
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object to standard output, for scripts.")]
 Root = Annotated[
     Path | None,
-    typer.Option("--root", metavar="FOLDER", help="Read and write nothing that does not lie below this folder."),
+    typer.Option("--root", metavar="FOLDER", help="Read and write only files in this folder and below."),
 ]
-GraphFile = Annotated[Path, typer.Argument(help="A graph, as JSON; - reads it from standard input.")]
+GraphFile = Annotated[Path, typer.Argument(help="A graph file (JSON), or - for standard input.")]
 
 
 def add_root(command: Callable[..., int]) -> Callable[..., int]:
-    """The same command with the option `--root`, which holds for all files that it reads and writes.
+    """Give a command the option `--root`, which restricts all files that it reads and writes.
 
     This is the only place that adds the option and makes the sandbox, so no command can have one without the other.
     """
@@ -76,32 +90,32 @@ def add_root(command: Callable[..., int]) -> Callable[..., int]:
             return command(*args, **options)
 
     signature = inspect.signature(command, eval_str=True)
-    flag = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
-    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), flag])  # type: ignore[attr-defined]
+    root_parameter = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), root_parameter])  # type: ignore[attr-defined]
     run.__annotations__ = {**command.__annotations__, "root": Root}
     return run
 
 
 def open_graph(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "") -> Graph:
-    """A graph with the values of `--set` in it. Raises DocumentError, UsageError.
+    """Load a graph and set the values of `--set` in it. Raises DocumentError, UsageError.
 
-    For the path "-" it is the one in `document`, or in standard input if that is empty. Relative paths in it start at
+    The path "-" stands for the text `document`, or for standard input if that is empty; relative paths in it start at
     the current folder.
     """
     from ..document import load, loads
 
-    graph = loads(document or standard_input(), "-") if str(path) == "-" else load(path)
+    graph = loads(document or read_standard_input(), "-") if str(path) == "-" else load(path)
     for name, text in sets.items():
         graph = override_value(graph, name, text)
     return graph
 
 
 def override_value(graph: Graph, name: str, text: str) -> Graph:
-    """A graph with one value set as `--set` has it. Raises UsageError."""
+    """The graph with one value set to what the user typed after `--set`. Raises UsageError."""
     from ..errors import GraphError, UsageError
     from ..graph import animation_fault
 
-    value = parsing.setting(text)
+    value = parsing.parse_setting(text)
     try:
         graph = graph.override(name, value)
         for port, item in graph.animation.items():
@@ -112,8 +126,8 @@ def override_value(graph: Graph, name: str, text: str) -> Graph:
     return graph
 
 
-def standard_input() -> str:
-    """All of it. Raises DocumentError."""
+def read_standard_input() -> str:
+    """The text of standard input. Raises DocumentError if it is not UTF-8."""
     from ..errors import DocumentError
 
     try:
@@ -123,7 +137,7 @@ def standard_input() -> str:
 
 
 def resolve_inputs(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
-    """Files by the name of the input that they fill; the one named "" fills the only input. Raises UsageError."""
+    """Files by the name of the input that they fill; a file without a name fills the only input. Raises UsageError."""
     from ..errors import UsageError
     from ..graph import did_you_mean
 
@@ -144,7 +158,7 @@ def resolve_inputs(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
 
 
 def report_problems(path: Path, graph: Graph) -> None:
-    """Stop at errors, mention warnings. Raises GraphError that names the first error and counts the others."""
+    """Print the warnings of a graph. Raises GraphError that names the first error and counts the others."""
     from ..errors import GraphError
     from ..graph import problems
 
@@ -155,4 +169,4 @@ def report_problems(path: Path, graph: Graph) -> None:
         more = f" (and {len(errors) - 1} more{how})" if len(errors) > 1 else ""
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
     for problem in graph_problems:
-        note(f"{path}: {problem.sentence}")
+        print_note(f"{path}: {problem.sentence}")

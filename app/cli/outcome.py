@@ -1,4 +1,4 @@
-"""How a command ends: one sentence on standard error or one JSON object, and the right exit code."""
+"""How a command ends: an exit code, and for an error one sentence on standard error, or a JSON object under --json."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ BUG = 70
 
 EXIT_CODES = """\b
 Exit codes:
-0    done
-1    rendering or writing failed; fmt --check, diff, merge, test, reproduce or bench found something
-2    the command line makes no sense
-3    the graph is at fault; check --strict found something to warn of
+0    success
+1    rendering or writing failed; or fmt --check, diff, merge, test, reproduce or bench found a difference
+2    the command line is invalid
+3    the graph is invalid, or check --strict found warnings
 4    a picture cannot be read
-5    no usable OpenGL, a shader was refused, or the device is full
+5    OpenGL is not usable, a shader was refused, or the device has no memory left
 130  interrupted"""
 
 
 def catch_faults(command: Callable[..., int]) -> Callable[..., int]:
-    """Turn what a command raises into a sentence and an exit code; under `--json` into an object as well."""
+    """The command, with its exceptions printed and turned into exit codes (see `report_failure`)."""
 
     @functools.wraps(command)
     def run(*args: Any, **options: Any) -> int:
@@ -42,9 +42,9 @@ def catch_faults(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def report_failure(fault: BaseException, as_json: bool) -> int:
-    """Say what went wrong; the exit code for it."""
+    """Print an error, also as JSON if `as_json`, and return its exit code."""
     if isinstance(fault, BrokenPipeError):
-        # Whoever read our output has gone: that is no fault of ours, and nothing can be said to them.
+        # The program that read our output has ended, which is not an error of ours.
         _close_output()
         return BROKEN_PIPE
     if isinstance(fault, OSError) and fault.filename is None:
@@ -64,12 +64,16 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
     if isinstance(fault, HalationError):
         return type(fault).__name__, fault.exit_code, str(fault)
     if isinstance(fault, KeyboardInterrupt):
-        return "Interrupted", INTERRUPTED, "interrupted; nothing unfinished was left behind"
-    if isinstance(fault, OSError):  # one that concerns no file is of standard output
-        return "OSError", 1, f"{fault.filename or 'standard output'}: the system refuses ({fault.strerror or fault})"
+        return "Interrupted", INTERRUPTED, "interrupted; no unfinished file is left"
+    if isinstance(fault, OSError):  # an OSError without a file is of standard output
+        return (
+            "OSError",
+            1,
+            f"{fault.filename or 'standard output'}: the system reports an error: {fault.strerror or fault}",
+        )
     if isinstance(fault, MemoryError):
-        return "MemoryError", 1, "there is not enough memory: render smaller with --scale or --size"
-    if format_message := getattr(fault, "format_message", None):  # what the parser of the command line raises
+        return "MemoryError", 1, "there is not enough memory; render a smaller picture with --scale or --size"
+    if format_message := getattr(fault, "format_message", None):  # the parser of the command line raises it
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"
         text = str(format_message()).strip().rstrip(".")
@@ -79,7 +83,7 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
 
 
 def flush_output(code: int) -> int:
-    """Get the last output out; the exit code if that works, else another."""
+    """Write what is still buffered; the exit code `code`, or that of an error while writing."""
     try:
         sys.stdout.flush()
         sys.stderr.flush()
@@ -89,16 +93,16 @@ def flush_output(code: int) -> int:
 
 
 def _close_output() -> None:
-    """Send to nowhere what is still waiting to be written to standard output."""
+    """Discard what is still buffered for standard output."""
     with contextlib.suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def print_json(item: object) -> None:
-    """One JSON object on standard output."""
+    """Print a JSON object to standard output."""
     print(json.dumps(item, indent=2, ensure_ascii=False, default=str))
 
 
-def note(sentence: str) -> None:
-    """Something a person may want to know, on standard error."""
+def print_note(sentence: str) -> None:
+    """Print a sentence for the user to standard error, away from the results of the command."""
     print(sentence, file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""What is typed behind the flags."""
+"""Parses what the user typed after an option. Each function raises UsageError that names the option and the text."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 _Word = TypeVar("_Word", bound=str)
 
 
-def assignments(items: Sequence[str], flag: str) -> dict[str, str]:
-    """`name=text` pairs in order. Raises UsageError for anything else and for a name given twice."""
+def parse_assignments(items: Sequence[str], flag: str) -> dict[str, str]:
+    """Texts by name from `name=text`, in order. Raises UsageError for other texts and for a repeated name."""
     texts: dict[str, str] = {}
     for item in items:
         name, equals, text = item.partition("=")
@@ -30,9 +30,9 @@ def assignments(items: Sequence[str], flag: str) -> dict[str, str]:
     return texts
 
 
-def inputs(items: Sequence[str] | None) -> dict[str, str]:
+def parse_inputs(items: Sequence[str] | None) -> dict[str, str]:
     """Files of `-i` by the name of the input; a file without a name has the name "". Raises UsageError."""
-    files = assignments([item for item in items or () if "=" in item], "-i")
+    files = parse_assignments([item for item in items or () if "=" in item], "-i")
     for item in items or ():
         if "=" not in item:
             if "" in files:
@@ -41,12 +41,12 @@ def inputs(items: Sequence[str] | None) -> dict[str, str]:
     return files
 
 
-def sets(items: Sequence[str] | None) -> dict[str, str]:
+def parse_sets(items: Sequence[str] | None) -> dict[str, str]:
     """The texts of `--set` by what they set. Raises UsageError."""
-    return assignments(items or (), "--set")
+    return parse_assignments(items or (), "--set")
 
 
-def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
+def parse_destinations(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
     """`-o out.exr` or `-o name=out.exr` as names and files; the name of a bare path is empty."""
     files: list[tuple[str, Path]] = []
     for item in items:
@@ -59,8 +59,8 @@ def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
     return tuple(files)
 
 
-def value(text: str) -> Any:
-    """A value as typed: a number, true or false, numbers with commas between, or a word."""
+def parse_value(text: str) -> Any:
+    """A value: a number, true or false, a list of numbers with commas, or a word."""
     for candidate in (text, f"[{text}]"):
         try:
             return json.loads(candidate, parse_constant=_refuse_constant)
@@ -69,8 +69,8 @@ def value(text: str) -> Any:
     return text
 
 
-def memory(text: str | None) -> int:
-    """`512M` or `2G` as bytes; 0 where nothing is said. Raises UsageError."""
+def parse_memory(text: str | None) -> int:
+    """The bytes of `512M` or `2G`; 0 without a text, which means no limit. Raises UsageError."""
     if text is None:
         return 0
     number, unit = (text[:-1], text[-1].upper()) if text[-1:].isalpha() else (text, "")
@@ -83,35 +83,42 @@ def memory(text: str | None) -> int:
     return int(nbytes)
 
 
-def setting(text: str) -> Any:
-    """What a value is set to: a value, keys (`1@1,4@24`, `0,0@1:linear,1,.5@24`), or `=` and an expression."""
+def parse_setting(text: str) -> Any:
+    """The value of `--set`: a value, animation keys (`1@1,4@24`, `0,0@1:linear,1,.5@24`), or `=` and an expression."""
     from ..graph import Expression, Interpolation, Key, Keys
 
     if text.startswith("="):
         return Expression(text[1:].strip())
     if "@" not in text:
-        return value(text)
+        return parse_value(text)
     keys: list[Key] = []
     numbers: list[str] = []
     for part in text.split(","):
-        number, at, place = part.partition("@")
+        number, at, frame_text = part.partition("@")
         numbers.append(number)
         if at:
-            frame, _, way = place.partition(":")
-            plain = value(",".join(numbers))
+            frame, _, interpolation_text = frame_text.partition(":")
+            key_value = parse_value(",".join(numbers))
             try:
-                if not isinstance(plain, bool | int | float | list):
+                if not isinstance(key_value, bool | int | float | list):
                     raise ValueError
-                key = Key(float(frame), tuple(map(float, plain)) if isinstance(plain, list) else plain)
+                key = Key(float(frame), tuple(map(float, key_value)) if isinstance(key_value, list) else key_value)
             except (TypeError, ValueError):
-                return text  # it may be a text with such a sign in it
-            keys.append(replace(key, interpolation=_choice(way or "smooth", get_args(Interpolation), f"--set {part}:")))
+                return text  # a text may hold an @
+            keys.append(
+                replace(
+                    key,
+                    interpolation=_parse_choice(
+                        interpolation_text or "smooth", get_args(Interpolation), f"--set {part}:"
+                    ),
+                )
+            )
             numbers = []
     return text if numbers else Keys(tuple(keys))
 
 
-def frames(frame: int | None, text: str | None) -> tuple[int, ...] | None:
-    """The frames that --frame or --frames name, if any."""
+def parse_frame_options(frame: int | None, text: str | None) -> tuple[int, ...] | None:
+    """The frames that --frame or --frames name; None without either."""
     if text is None:
         return None if frame is None else (frame,)
     if frame is not None:
@@ -121,19 +128,19 @@ def frames(frame: int | None, text: str | None) -> tuple[int, ...] | None:
     return parse_frames(text)
 
 
-def holds_frames(files: Sequence[tuple[str, Path]]) -> bool:
-    """True if the name of a file has a place for the frame number, or is that of a video, which holds all frames."""
+def have_frame_number(files: Sequence[tuple[str, Path]]) -> bool:
+    """True if a file name has a place for the frame number (####), or is that of a video, which holds all frames."""
     from ..graph.frames import Pattern, is_video
 
     return any(Pattern.parse(str(path)) or is_video(str(path)) for _, path in files)
 
 
 def _refuse_constant(word: str) -> Any:
-    raise UsageError(f"--set: {word} is no value; write a finite number")
+    raise UsageError(f"--set: {word} is not a valid value; write a finite number")
 
 
-def size(text: str | None) -> tuple[int, int] | None:
-    """`960x540` as width and height."""
+def parse_size(text: str | None) -> tuple[int, int] | None:
+    """Width and height from `960x540`; None without a text."""
     if text is None:
         return None
     width, cross, height = text.lower().partition("x")
@@ -143,35 +150,35 @@ def size(text: str | None) -> tuple[int, int] | None:
     return sides[0], sides[1]
 
 
-def scale(number: float) -> float:
-    """A proxy scale in 0..1."""
+def parse_scale(number: float) -> float:
+    """The number, if it is a valid scale of a proxy: above 0 and at most 1."""
     if not 0.0 < number <= 1.0:
         raise UsageError(f"--scale {number:g}: write a number above 0 and up to 1; 0.5 renders at half size")
     return number
 
 
-def form(text: str) -> Form:
-    """How passes run."""
-    return _choice(text, ("fragment", "compute"), "--form")
+def parse_form(text: str) -> Form:
+    """The form of passes that --form names."""
+    return _parse_choice(text, ("fragment", "compute"), "--form")
 
 
-def form_or_device(text: str) -> Form | Literal["device"]:
-    """How passes run, or where to find out."""
-    return _choice(text, ("fragment", "compute", "device"), "--form")
+def parse_form_or_device(text: str) -> Form | Literal["device"]:
+    """The form of passes that --form names, or "device" for what suits this device."""
+    return _parse_choice(text, ("fragment", "compute", "device"), "--form")
 
 
-def precision(text: str) -> Precision:
-    """How exact colors are."""
-    return _choice(text, ("half", "float"), "--precision")
+def parse_precision(text: str) -> Precision:
+    """The precision that --precision names."""
+    return _parse_choice(text, ("half", "float"), "--precision")
 
 
-def progress(text: str) -> Literal["bar", "json"]:
-    """How progress is told."""
-    return _choice(text, ("bar", "json"), "--progress")
+def parse_progress(text: str) -> Literal["bar", "json"]:
+    """How to report progress, from --progress."""
+    return _parse_choice(text, ("bar", "json"), "--progress")
 
 
-def targets(graph: Graph, node: str) -> dict[str, Port]:
-    """The output of the node that --node names."""
+def find_targets(graph: Graph, node: str) -> dict[str, Port]:
+    """The port that --node names, by that name; empty without --node."""
     from ..graph import node_output
 
     try:
@@ -180,7 +187,7 @@ def targets(graph: Graph, node: str) -> dict[str, Port]:
         raise UsageError(f"--node {node}: {fault}") from None
 
 
-def _choice(text: str, choices: tuple[_Word, ...], flag: str) -> _Word:
+def _parse_choice(text: str, choices: tuple[_Word, ...], flag: str) -> _Word:
     for word in choices:
         if word == text:
             return word

@@ -1,12 +1,12 @@
-"""What commands say of plug-ins that cannot be loaded."""
+"""How commands report plug-ins that cannot be loaded."""
 
 from __future__ import annotations
 
-from .outcome import note
+from .outcome import print_note
 
 
-def refused_plugins() -> list[dict[str, str]]:
-    """Each plug-in that cannot be loaded: its package, version and fault."""
+def list_refused_plugins() -> list[dict[str, str]]:
+    """The plug-ins that cannot be loaded: package, version and fault of each."""
     from halation.nodes import plugins
 
     return [
@@ -16,7 +16,7 @@ def refused_plugins() -> list[dict[str, str]]:
     ]
 
 
-def note_refused_plugins() -> None:
-    """Say on standard error which plug-ins cannot be loaded, and why."""
-    for plugin in refused_plugins():
-        note(f"the plug-in {plugin['package']} {plugin['version']} cannot be loaded: {plugin['fault']}")
+def print_refused_plugins() -> None:
+    """Print to standard error which plug-ins cannot be loaded, and why."""
+    for plugin in list_refused_plugins():
+        print_note(f"the plug-in {plugin['package']} {plugin['version']} cannot be loaded: {plugin['fault']}")

@@ -1,4 +1,4 @@
-"""The program: commands, what they share, and how they end."""
+"""The program `halation`: its list of commands, and how each is run."""
 
 from __future__ import annotations
 
@@ -42,21 +42,21 @@ _HIDDEN = ("git-driver", "worker")
 WITHOUT_ROOT = MappingProxyType(
     {
         "edit": "the user of the editor chooses its files",
-        "demo": "it reads files of Halation only",
-        "gallery": "it reads files of Halation only",
+        "demo": "it reads no files but those of Halation",
+        "gallery": "it reads no files but those of Halation",
         "schema": "it reads no file",
         "git-setup": "it reads no graph but those of the repository, and writes the configuration of git",
         "git-driver": "git hands it files of the repository, and copies in temporary folders",
         "worker": "the render job names the root",
     }
 )
-"""Commands without `--root`, and why. All others have it: they may be given files by strangers."""
+"""Commands without `--root`, and why. All others have it, because their files may come from strangers."""
 
 
 class Commands(Mapping[str, Any]):
-    """What typer makes of the commands, by name: each is the function of its name in the module of its name.
+    """The click commands by name: each is the function of its name in the module of its name.
 
-    A module is loaded when its command is asked for.
+    A module is imported only when its command runs, so that the program starts fast.
     """
 
     def __getitem__(self, name: str) -> Any:
@@ -72,13 +72,13 @@ class Commands(Mapping[str, Any]):
 
 
 class _Group(TyperGroup):
-    """A group that knows its commands by name until one is wanted."""
+    """A group that imports a command only when it runs."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**{**options, "commands": Commands()})
 
     def list_commands(self, ctx: Any) -> list[str]:
-        """Their names, in the order of the help."""
+        """The names of the commands, in the order of the help."""
         return list(self.commands)
 
 
@@ -97,7 +97,7 @@ def main_options(
     context: typer.Context,
     version: bool = typer.Option(False, "--version", help="Print the version and stop."),
 ) -> None:
-    """What there is to say without a command."""
+    """Print the version, or the help where no command is given."""
     if version:
         print(f"halation {VERSION}")
         raise typer.Exit

@@ -1,4 +1,4 @@
-"""How far a rendering is: a bar for people, a line of JSON for machines."""
+"""Reports the progress of a render: as a bar on terminals, or as lines of JSON."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
-from .outcome import note
+from .outcome import print_note
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
@@ -22,7 +22,7 @@ _PATIENCE = 0.3
 
 @contextmanager
 def progress_reporter(kind: Literal["bar", "json"], frames: int) -> Iterator[ProgressReporter]:
-    """What a job reports to: a bar, or lines of JSON."""
+    """Open what a job reports its progress to: a bar, or lines of JSON."""
     if kind == "json":
         yield JsonLines()
         return
@@ -37,17 +37,17 @@ class JsonLines:
     """One JSON object on standard error for every pass and every frame."""
 
     def report_helpers(self, processes: Sequence[int]) -> None:
-        """Say which processes share the frames: who kills this one has to kill them too."""
-        note(json.dumps({"processes": list(processes)}))
+        """Print the ids of the processes that share the frames: who kills this process has to kill them too."""
+        print_note(json.dumps({"processes": list(processes)}))
 
     def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
-        """Say which pass is through."""
-        note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": nodes}))
+        """Print which pass has ended."""
+        print_note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": nodes}))
 
     def report_frame(self, report: FrameReport, done: int, total: int) -> None:
-        """Say which frame is there."""
+        """Print which frame has been written."""
         written = [str(path) for path in report.written]
-        note(
+        print_note(
             json.dumps(
                 {
                     "frame": report.frame,
@@ -74,22 +74,22 @@ class ProgressBar:
         self._started = time.perf_counter()
 
     def report_helpers(self, processes: Sequence[int]) -> None:
-        """A bar has nothing to say of processes."""
+        """Nothing: a bar does not show processes."""
 
     def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
-        """Show what is computed."""
+        """Show which nodes are computed."""
         if self._frames == 1:
             self._show(nodes[-1], done, total)
         else:
             self._show(f"frame {frame}  {nodes[-1]}", None, self._frames)
 
     def report_frame(self, report: FrameReport, done: int, total: int) -> None:
-        """Show how many frames are there."""
+        """Show how many frames are written."""
         if total > 1:
             self._show(f"frame {report.frame}", done, total)
 
     def close(self) -> None:
-        """Take it away."""
+        """Remove the bar."""
         if self._progress is not None:
             self._progress.stop()
 
@@ -111,4 +111,4 @@ class ProgressBar:
 
 
 ProgressReporter = JsonLines | ProgressBar
-"""What hears of frames, and of the processes that share them."""
+"""What the frames of a job, and the processes that share them, are reported to."""

@@ -1,4 +1,4 @@
-"""`halation render`: a graph in, finished pictures out."""
+"""`halation render`: renders a graph to files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .options import (
     Scale,
     Sets,
     SizeText,
-    standard_input,
+    read_standard_input,
 )
 from .watchdog import Timeout
 
@@ -32,7 +32,9 @@ def render(
     graph: GraphFile,
     output: Annotated[
         list[str],
-        typer.Option("-o", "--output", metavar="[NAME=]FILE", help="Where to write; .exr holds all outputs as layers."),
+        typer.Option(
+            "-o", "--output", metavar="[NAME=]FILE", help="The file to write; an .exr holds all outputs as layers."
+        ),
     ],
     inputs: Inputs = None,
     sets: Sets = None,
@@ -41,46 +43,59 @@ def render(
     scale: Scale = 1.0,
     frame: OneFrame = None,
     frames: Frames = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Keep frames whose files are there and would come out the same.")
-    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Skip frames whose files exist and are up to date.")] = False,
     jobs: Annotated[
-        int, typer.Option("-j", "--jobs", min=1, help="Processes that share the frames, where these are independent.")
+        int,
+        typer.Option(
+            "-j", "--jobs", min=1, help="Share the frames among this many processes, if each frame is independent."
+        ),
     ] = 1,
     precision: Precision = None,
     memory: Memory = None,
     view: Annotated[
-        str, typer.Option(help="OpenColorIO view for PNG, JPEG, TIFF, WebP and DPX; 'none' for plain sRGB.")
+        str, typer.Option(help="OpenColorIO view of PNG, JPEG, TIFF, WebP and DPX files; 'none' for plain sRGB.")
     ] = "",
-    display: Annotated[str, typer.Option(help="OpenColorIO display for those; by default that of the config.")] = "",
+    display: Annotated[
+        str, typer.Option(help="OpenColorIO display of these files; by default that of the config.")
+    ] = "",
     look: Annotated[
-        str, typer.Option(help="OpenColorIO look for those, in place of the looks of the view; 'none' for no look.")
+        str, typer.Option(help="OpenColorIO look of these files, instead of the looks of the view; 'none' for no look.")
     ] = "",
     colorspace: Annotated[
-        str, typer.Option(metavar="NAME", help="Write the numbers of a color space, such as ACEScg, into any format.")
+        str, typer.Option(metavar="NAME", help="Write colors in this color space, such as ACEScg, in any format.")
     ] = "",
     compression: Annotated[
         str, typer.Option(help="EXR compression: none, rle, zips, zip, piz, pxr24, dwaa, ...")
     ] = "zip",
     codec: Annotated[
-        str, typer.Option(help="Of videos: h264, h265, prores, prores4444, ffv1, qtrle, vp9; by default by the ending.")
+        str,
+        typer.Option(
+            help="Codec of videos: h264, h265, prores, prores4444, ffv1, qtrle or vp9; the default depends on the file."
+        ),
     ] = "",
     form: Form = None,
     deterministic: Annotated[
-        bool, typer.Option("--deterministic", help="The same bytes on every machine: the software rasterizer, pinned.")
+        bool,
+        typer.Option(
+            "--deterministic",
+            help="Give the same bytes on every machine: render with one fixed version of the software rasterizer.",
+        ),
     ] = False,
     progress: Annotated[
-        str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass and frame.")
+        str,
+        typer.Option(
+            metavar="bar|json", help="Show a bar (on terminals only), or print a JSON object per pass and frame."
+        ),
     ] = "bar",
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
     """Render a graph to files: one frame, or many.
 
-    An output whose name holds a place for the frame number (shot.####.png, shot.%04d.png) asks for all frames of the
-    graph unless some are named.
+    A file name with a place for the frame number (shot.####.png, shot.%04d.png) renders all frames of the graph, unless
+    --frame or --frames chooses some.
     """
-    form_of_passes = parsing.form(form) if form is not None else None
+    form_of_passes = parsing.parse_form(form) if form is not None else None
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     from ..renderer.jobs.render_job import RenderJob
@@ -88,18 +103,18 @@ def render(
 
     job = RenderJob(
         graph=str(graph),
-        document=standard_input() if str(graph) == "-" else "",
-        inputs=parsing.inputs(inputs),
-        sets=parsing.sets(sets),
+        document=read_standard_input() if str(graph) == "-" else "",
+        inputs=parsing.parse_inputs(inputs),
+        sets=parsing.parse_sets(sets),
         node=node,
-        size=parsing.size(size),
-        scale=parsing.scale(scale),
-        frames=parsing.frames(frame, frames) or (),
-        precision=parsing.precision(precision) if precision is not None else None,
+        size=parsing.parse_size(size),
+        scale=parsing.parse_scale(scale),
+        frames=parsing.parse_frame_options(frame, frames) or (),
+        precision=parsing.parse_precision(precision) if precision is not None else None,
         form=form_of_passes,
-        memory=parsing.memory(memory),
+        memory=parsing.parse_memory(memory),
         deterministic=deterministic,
-        destinations=tuple((name, str(path)) for name, path in parsing.paths(output)),
+        destinations=tuple((name, str(path)) for name, path in parsing.parse_destinations(output)),
         view=view,
         display=display,
         look=look,
@@ -111,4 +126,4 @@ def render(
         timeout=timeout,
         root=sandbox_root(),
     )
-    return execute(job, parsing.progress(progress), as_json)
+    return execute(job, parsing.parse_progress(progress), as_json)

@@ -1,4 +1,4 @@
-"""`halation reproduce`: a picture again, from its own header."""
+"""`halation reproduce`: renders a picture again from its own header."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .options import AsJson, report_problems
-from .outcome import note, print_json
+from .outcome import print_json, print_note
 from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
@@ -25,40 +25,56 @@ def reproduce(
     context: typer.Context,
     picture: Annotated[Path, typer.Argument(help="A picture that Halation rendered: EXR, PNG, TIFF or JPEG.")],
     output: Annotated[
-        list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Keep the rebuilt picture too.")
+        list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Also write the new picture.")
     ] = None,
     inputs: Annotated[
         list[str] | None,
-        typer.Option("-i", "--input", metavar="NAME=FILE", help="Where an input, or a file that a node reads, is now."),
+        typer.Option(
+            "-i",
+            "--input",
+            metavar="NAME=FILE",
+            help="The file of an input, or of a node that reads a file, if it has moved.",
+        ),
     ] = None,
     search: Annotated[
         list[Path] | None,
-        typer.Option("--search", metavar="DIR", help="Look for inputs below this folder, by name and by content."),
+        typer.Option(
+            "--search", metavar="DIR", help="Search moved files in this folder and below, by name and by content."
+        ),
     ] = None,
     graph: Annotated[
         Path | None,
-        typer.Option("--graph", metavar="FILE", help="Save the graph that made the picture; renders only with -o."),
+        typer.Option("--graph", metavar="FILE", help="Save the graph of the picture; without -o nothing is rendered."),
     ] = None,
     tolerance: Annotated[
         float | None,
-        typer.Option(metavar="X", min=0.0, help="How far numbers may be apart; by default 0 on the same renderer."),
+        typer.Option(
+            metavar="X",
+            min=0.0,
+            help="The largest allowed difference of a number; by default 0 if the renderer is the same.",
+        ),
     ] = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
-    """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
+    """Render a picture again from its header, and compare.
+
+    Prints what differs, and exits with 0 if the pixels are the same, else with 1.
+    """
     from ..renderer.provenance.file_finder import FileFinder, describe_missing
     from ..renderer.provenance.recipe import read_recipe
 
-    given_files = parsing.assignments(inputs or (), "-i")
+    given_files = parsing.parse_assignments(inputs or (), "-i")
     recipe = read_recipe(picture)
-    files = FileFinder(recipe, given_files, search or ()).find_all()
-    saved = _save_graph(recipe, files, graph) if graph else ""
+    located_files = FileFinder(recipe, given_files, search or ()).find_all()
+    saved_path = _save_graph(recipe, located_files, graph) if graph else ""
     if graph and not output:
         if as_json:
-            print_json({"picture": str(picture), "graph": saved, "inputs": [_input_facts(item) for item in files]})
+            print_json(
+                {"picture": str(picture), "graph": saved_path, "inputs": [_input_facts(item) for item in located_files]}
+            )
         return 0
-    if fault := describe_missing(files, picture):
+    if fault := describe_missing(located_files, picture):
         raise fault
     report_problems(picture, recipe.graph)
     if (code := rerun_watched(context, picture, recipe.graph, timeout)) is not None:
@@ -67,52 +83,52 @@ def reproduce(
     from ..renderer.provenance.reproduction import open_matching_device, reproduce
 
     renderer = Renderer(open_matching_device(recipe), budget=0)
-    note(renderer.device.description)
-    reproduction = reproduce(renderer, recipe, files, tuple(output or ()), tolerance)
+    print_note(renderer.device.description)
+    reproduction = reproduce(renderer, recipe, located_files, tuple(output or ()), tolerance)
     if as_json:
-        print_json(_as_json(recipe, files, reproduction, saved))
+        print_json(_reproduction_facts(recipe, located_files, reproduction, saved_path))
     else:
-        _print(recipe, files, reproduction)
+        _print_reproduction(recipe, located_files, reproduction)
     return 0 if reproduction.same else 1
 
 
 def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path) -> str:
-    """Save the graph with what was found in it; where to."""
+    """Save the graph with the paths of the located files; the path that it was saved to."""
     from dataclasses import replace
 
     from .. import document
     from ..graph.paths import rebased
     from ..renderer.provenance.file_finder import relink_files
 
-    whole = relink_files(recipe.graph, files)
+    linked_graph = relink_files(recipe.graph, files)
     folder = str(path.absolute().parent)
-    below = rebased(replace(whole, folder=str(recipe.path.absolute().parent)), folder)
+    moved_graph = rebased(replace(linked_graph, folder=str(recipe.path.absolute().parent)), folder)
     if str(path) == "-":
-        print(document.dumps(below), end="")
+        print(document.dumps(moved_graph), end="")
         return "-"
-    document.save(below, path)
-    note(f"{path}: the graph of {recipe.path}")
+    document.save(moved_graph, path)
+    print_note(f"{path}: the graph of {recipe.path}")
     return str(path)
 
 
-def _print(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction) -> None:
+def _print_reproduction(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction) -> None:
     proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
     print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
     for item in reproduction.differences:
         print(f"  {item.what:<9} was {item.then}, is {item.now}")
     for item in files:
         name = item.used.pattern or item.used.name
-        then = item.used.together or item.used.digest
+        old_digest = item.used.together or item.used.digest
         if item.state == "same":
             moved = f" (now {item.path})" if Path(item.path).name != name else ""
-            print(f"  input     {_name(item)}: {name}: the same{moved}")
+            print(f"  input     {_input_name(item)}: {name}: the same{moved}")
         else:
-            now = f"changed, was {then[:_SHORT]}, is {item.digest[:_SHORT]} ({item.path})"
-            print(f"  input     {_name(item)}: {name}: {now}")
+            new_state = f"changed, was {old_digest[:_SHORT]}, is {item.digest[:_SHORT]} ({item.path})"
+            print(f"  input     {_input_name(item)}: {name}: {new_state}")
     for layer in reproduction.layers:
         print(f"  pixels    {f'{layer.name}: ' if layer.name else ''}{_describe_layer(layer, reproduction.tolerance)}")
     for path in reproduction.written:
-        note(f"{path}  the rebuilt picture")
+        print_note(f"{path}  the new picture")
 
 
 def _describe_layer(layer: LayerDifference, tolerance: float) -> str:
@@ -129,14 +145,14 @@ def _describe_layer(layer: LayerDifference, tolerance: float) -> str:
     )
 
 
-def _name(item: LocatedFile) -> str:
+def _input_name(item: LocatedFile) -> str:
     return item.used.owner.removeprefix("inputs.")
 
 
 def _input_facts(item: LocatedFile) -> dict[str, Any]:
     used = item.used
     return {
-        "name": _name(item),
+        "name": _input_name(item),
         "file": used.pattern or used.name,
         "layer": used.layer,
         "state": item.state,
@@ -146,7 +162,9 @@ def _input_facts(item: LocatedFile) -> dict[str, Any]:
     }
 
 
-def _as_json(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction, saved: str) -> dict[str, Any]:
+def _reproduction_facts(
+    recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction, saved: str
+) -> dict[str, Any]:
     return {
         "picture": str(recipe.path),
         "same": reproduction.same,
@@ -160,9 +178,9 @@ def _as_json(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Repro
             {
                 "layer": layer.name,
                 "equal": layer.compared.equal,
-                "farthest": _number(layer.farthest),
-                "max_abs": _number(layer.compared.max_abs),
-                "rms": _number(layer.compared.rms),
+                "farthest": _make_json_safe(layer.farthest),
+                "max_abs": _make_json_safe(layer.compared.max_abs),
+                "rms": _make_json_safe(layer.compared.rms),
                 "failing": layer.compared.failing,
                 "fault": layer.compared.fault,
             }
@@ -173,6 +191,6 @@ def _as_json(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Repro
     }
 
 
-def _number(measure: float) -> float | None:
-    """JSON has no infinity."""
+def _make_json_safe(measure: float) -> float | None:
+    """The measure, or None for infinity, which JSON does not have."""
     return measure if measure < float("inf") else None

@@ -1,4 +1,4 @@
-"""Graphs that show one node at work: alone, to be planned, and over a picture, to be looked at."""
+"""Builds graphs around one node: to plan it alone, and to show it on the sample picture."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ NODE = "node"
 FULL_HD = (1920, 1080)
 
 BUILT_IN = ColorSettings("ocio://default")
-"""What a node compiles to is the same whatever $OCIO names."""
+"""A fixed color config, so that the plan of a node does not depend on $OCIO."""
 
 CANVAS = (480, 270)
-"""As large as the sample."""
+"""The size of the sample."""
 
 _DATA = MappingProxyType({"depth": "Depth", "ids": "Object Index"})
-"""Layers of the sample that fields of these names are for."""
+"""Layers of the sample for inputs of these names."""
 
 _ROLES = (
     "beauty",
@@ -45,33 +45,33 @@ _ROLES = (
 """Layers that a render may have."""
 
 
-class _SameSize(LazyResourceProvider):
-    """A world in which all pictures have the same size."""
+class _SamplePictures(LazyResourceProvider):
+    """A provider whose pictures all have the same size and all layers."""
 
     def __init__(self, size: Size) -> None:
         self._size = size
 
     def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
-        """There is one picture."""
+        """The file of every frame is the path itself."""
         return FrameFile(path)
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
-        """Nothing is read."""
+        """The size of every picture, without reading a file."""
         return PictureProbe(self._size, True, picture.path)
 
     def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
-        """Every layer that a node may ask for is there."""
+        """A render with every layer that a node may need."""
         mattes = tuple(f"CryptoObject{rank:02}" for rank in range(3))
         return Render({role: role for role in _ROLES}, dict.fromkeys(_ROLES, 4), mattes=(Matte("object", mattes, {}),))
 
 
 def drawable_outputs(node: type[Node]) -> tuple[str, ...]:
-    """The outputs that can be rendered: all but those that are only planned, such as cameras."""
+    """The outputs that can be rendered: all except planned ones, such as cameras."""
     return tuple(name for name, output in node.outputs.items() if not output.socket.kind.is_planned)
 
 
 def plan_node(node: type[Node], size: Size, target: Target = NULL) -> Plan:
-    """What a node compiles to at its defaults, all that it draws wanted, over pictures of that size. Needs no OpenGL.
+    """Plan all outputs of a node at its defaults, with inputs of this size. Needs no OpenGL.
 
     Raises GraphError for a node that draws nothing.
     """
@@ -89,21 +89,21 @@ def plan_node(node: type[Node], size: Size, target: Target = NULL) -> Plan:
         if not socket.single:
             pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
     targets = {name: Port(NODE, name) for name in drawable_outputs(node)}
-    return compile_graph(graph, Request(targets, pictures), _SameSize(size), target=target)
+    return compile_graph(graph, Request(targets, pictures), _SamplePictures(size), target=target)
 
 
 def show_on_sample(node: type[Node], sample: Path) -> Graph:
-    """A node at its defaults with everything that it takes to see it, its outputs those of the graph.
+    """A graph that shows a node at its defaults on the sample picture; its outputs are those of the node.
 
-    The picture is the sample's color; a picture to lay upon it is a glow. Fields are its depth, ids or luminance,
-    vectors its positions, normals or motion, or random; maps of positions stir the picture.
+    The main image is the sample's color, a second image a glow. Fields are the sample's depth, ids or luminance;
+    vectors its positions, normals or motion, or noise; an input of texture coordinates gets a swirl.
     """
     graph = Graph(settings=Settings(CANVAS)).add(NODE, node(**_path_values(node, str(sample))))
     needed = {name: socket for name, socket in node.inputs.items() if _is_needed(node, socket)}
     images = [name for name, socket in needed.items() if socket.kind is Kind.IMAGE]
-    base = "image" if "image" in images else next(reversed(images), "")
+    base_input = "image" if "image" in images else next(reversed(images), "")
     for name, socket in needed.items():
-        if socket.kind is Kind.IMAGE and name != base:
+        if socket.kind is Kind.IMAGE and name != base_input:
             graph = _link_new_node(
                 graph,
                 name,
@@ -116,52 +116,56 @@ def show_on_sample(node: type[Node], sample: Path) -> Graph:
                 second=(0.0, 0.0, 0.0, 0.0),
             )
         elif socket.kind is Kind.IMAGE:
-            graph = _link_input(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
+            graph = _link_input(graph, name, "beauty", _sample_input(Kind.IMAGE, 4, sample, "Combined"))
         elif name in _DATA:
-            graph = _link_input(graph, name, name, _layer(Kind.FIELD, 1, sample, _DATA[name]))
+            graph = _link_input(graph, name, name, _sample_input(Kind.FIELD, 1, sample, _DATA[name]))
         elif socket.kind is Kind.FIELD:
             graph = _link_new_node(graph, name, "luminance", "out")
             graph = _link_input(
-                graph, "image", "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance"
+                graph, "image", "beauty", _sample_input(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance"
             )
         elif socket.kind is Kind.VECTOR:
-            graph = _vector(graph, name, socket, sample)
+            graph = _link_vector(graph, name, socket, sample)
         elif socket.kind is Kind.CAMERA:
             graph = _link_new_node(graph, name, "solve_camera", "camera", path=str(sample))
         else:
             graph = _link_input(graph, name, name, Input(socket.kind, default=0.5))
-    # A file may not hold all that its reader could show.
+    # The file of a source may lack what its other outputs need.
     for name in drawable_outputs(node)[:1] if issubclass(node, Source) else drawable_outputs(node):
-        end = Output(node.outputs[name].socket.kind, node.outputs[name].socket.channels)
-        graph = graph.add_output(name, end).connect(Port(NODE, name), Port("outputs", name))
+        output = Output(node.outputs[name].socket.kind, node.outputs[name].socket.channels)
+        graph = graph.add_output(name, output).connect(Port(NODE, name), Port("outputs", name))
     return graph
 
 
 def sample_graph(sample: Path) -> Graph:
-    """The sample's color as it is."""
-    graph = Graph().add_input("beauty", _layer(Kind.IMAGE, 4, sample, "Combined")).add_output("image", Output())
+    """A graph whose output is the sample's color."""
+    graph = Graph().add_input("beauty", _sample_input(Kind.IMAGE, 4, sample, "Combined")).add_output("image", Output())
     return graph.connect(Port("inputs", "beauty"), Port("outputs", "image"))
 
 
 def _is_needed(node: type[Node], socket: Socket) -> bool:
-    """True if the node shows nothing of what it can do without a link to this input."""
-    idle = socket.default == 0.0 and all(other.optional for other in node.inputs.values())
-    lies = socket.kind is Kind.VECTOR and socket.name != "material"  # the sample has none of that
-    return not socket.optional or idle or lies or (socket.name == "mask" and not socket.default)
+    """True if the node has no visible effect without a link to this input."""
+    does_nothing = socket.default == 0.0 and all(input.optional for input in node.inputs.values())
+    is_absent = socket.kind is Kind.VECTOR and socket.name != "material"  # the sample has no such layer
+    return not socket.optional or does_nothing or is_absent or (socket.name == "mask" and not socket.default)
 
 
-def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
-    """Feed a vector."""
+def _link_vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
+    """Link a vector input to a layer of the sample, to noise, or to texture coordinates with a swirl."""
     if socket.channels == 3:
         key = "position" if name == "position" else "normal"
-        return _link_input(graph, name, key, _layer(Kind.VECTOR, 3, sample, key.capitalize()))
+        return _link_input(graph, name, key, _sample_input(Kind.VECTOR, 3, sample, key.capitalize()))
     if socket.channels == 4:
-        return _link_input(graph, name, "motion", _layer(Kind.VECTOR, 4, sample, "Vector"))
+        return _link_input(graph, name, "motion", _sample_input(Kind.VECTOR, 4, sample, "Vector"))
     if name not in ("st", "uv"):
         return _link_new_node(graph, name, "noise", "vector")
     graph, map = _link_new_node(graph, name, "combine_vector2", "vector"), f"{name}_combine_vector2"
-    graph = graph.add("positions", _node("combine")).add("stirred", _node("swirl")).add("parts", _node("separate"))
-    graph = graph.add("across", _node("ramp")).add("up", _node("ramp", start=(0.5, 1.0), end=(0.5, 0.0)))
+    graph = (
+        graph.add("positions", _make_node("combine"))
+        .add("stirred", _make_node("swirl"))
+        .add("parts", _make_node("separate"))
+    )
+    graph = graph.add("across", _make_node("ramp")).add("up", _make_node("ramp", start=(0.5, 1.0), end=(0.5, 0.0)))
     links = {
         "positions.red": "across.value",
         "positions.green": "up.value",
@@ -176,26 +180,26 @@ def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
 
 
 def _link_new_node(graph: Graph, name: str, kind: str, output: str, **values: Any) -> Graph:
-    """Feed an input of the node by another node."""
+    """Link an input of the node to a new node."""
     id = f"{name}_{kind}"
-    return graph.add(id, _node(kind, **values)).connect(Port(id, output), Port(NODE, name))
+    return graph.add(id, _make_node(kind, **values)).connect(Port(id, output), Port(NODE, name))
 
 
-def _link_input(graph: Graph, name: str, key: str, end: Input, id: str = NODE) -> Graph:
-    """Feed an input of a node by an input of the graph, which may be there already."""
-    graph = graph if key in graph.inputs else graph.add_input(key, end)
-    return graph.connect(Port("inputs", key), Port(id, name))
+def _link_input(graph: Graph, name: str, graph_input: str, input: Input, id: str = NODE) -> Graph:
+    """Link an input of a node to an input of the graph, which is added unless it exists."""
+    graph = graph if graph_input in graph.inputs else graph.add_input(graph_input, input)
+    return graph.connect(Port("inputs", graph_input), Port(id, name))
 
 
-def _node(kind: str, **values: Any) -> Node:
+def _make_node(kind: str, **values: Any) -> Node:
     return catalogue()[kind](**values)
 
 
-def _layer(kind: Kind, width: int, sample: Path, layer: str) -> Input:
+def _sample_input(kind: Kind, width: int, sample: Path, layer: str) -> Input:
     return Input(kind, width, str(sample), layer)
 
 
 def _path_values(node: type[Node], path: str) -> dict[str, Any]:
-    """The picture there as a value, for a node that reads pictures."""
+    """The picture as the path values of a source, else no values."""
     paths = (name for name, value in node.values.items() if value.type == "path")
     return dict.fromkeys(paths, path) if issubclass(node, Source) else {}

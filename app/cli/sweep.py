@@ -23,8 +23,8 @@ from .options import (
     report_problems,
     resolve_inputs,
 )
-from .outcome import note, print_json
-from .sweeping import axes
+from .outcome import print_json, print_note
+from .sweeping import parse_axes
 from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
@@ -34,13 +34,16 @@ if TYPE_CHECKING:
 def sweep(
     context: typer.Context,
     graph: GraphFile,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet: .png, .jpg, .tif, .webp.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet to write: .png, .jpg, .tif or .webp.")
+    ],
     sets: Annotated[
         list[str] | None,
         typer.Option(
             "--set",
             metavar="NODE.VALUE=X,Y,...",
-            help="What to sweep: 1,2,4 or 1..8/4 or 1..100/5log; * for all choices; colors and vectors with ; between.",
+            help="Render at each of these values: 1,2,4 or 1..8/4 (4 values) or 1..100/5log; * for all choices; write "
+            "; between colors or vectors.",
         ),
     ] = None,
     inputs: Inputs = None,
@@ -48,26 +51,32 @@ def sweep(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: Annotated[
-        int | None, typer.Option(help="The frame of all pictures; by default the first of the graph.")
+        int | None, typer.Option(help="Render all pictures at this frame; by default the first frame of the graph.")
     ] = None,
-    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Sweep these frames.")] = None,
-    show: Annotated[str, typer.Option("--show", metavar="NAME", help="The output to show; by default the first.")] = "",
-    view: Annotated[str, typer.Option(help="OpenColorIO view; 'none' for plain sRGB.")] = "",
+    frames: Annotated[
+        str | None, typer.Option(metavar="1-24x8", help="Render a picture at each of these frames.")
+    ] = None,
+    show: Annotated[
+        str, typer.Option("--show", metavar="NAME", help="Show this output of the graph; by default the first.")
+    ] = "",
+    view: Annotated[str, typer.Option(help="OpenColorIO view of the pictures; 'none' for plain sRGB.")] = "",
     cell: Annotated[
         int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")
     ] = 480,
-    columns: Annotated[int, typer.Option(min=0, help="Pictures side by side; by default what makes a good shape.")] = 0,
+    columns: Annotated[
+        int, typer.Option(min=0, help="Pictures per row; by default as fits the number of pictures.")
+    ] = 0,
     cells: Annotated[
-        Path | None, typer.Option("--cells", metavar="DIR", help="Write each picture alone into this folder too.")
+        Path | None, typer.Option("--cells", metavar="DIR", help="Also write each picture as a file into this folder.")
     ] = None,
-    ending: Annotated[str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")] = ".png",
+    ending: Annotated[str, typer.Option(metavar=".png|.exr|...", help="The file type of --cells.")] = ".png",
     precision: Precision = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
-    """Render a graph at many values, onto one sheet with labels.
+    """Render a graph at many values onto one sheet.
 
-    One value that is swept makes a row that wraps, two make a grid; a value that is given once is just set.
+    One swept value gives rows, two give a grid. A --set with a single value sets it for all pictures.
     """
     from halation.nodes import Kind
 
@@ -79,40 +88,47 @@ def sweep(
     from ..renderer.jobs.job import OutputSettings
 
     started = time.perf_counter()
-    depth = parsing.precision(precision) if precision is not None else None
-    chosen = parsing.frames(frame, frames) or ()
-    canvas, proxy = parsing.size(size), parsing.scale(scale)
-    whole, swept = axes(open_graph(graph), sets or (), chosen)
-    report_problems(graph, whole)
-    if (code := rerun_watched(context, graph, whole, timeout)) is not None:
+    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    named_frames = parsing.parse_frame_options(frame, frames) or ()
+    canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
+    opened_graph, sweep_axes = parse_axes(open_graph(graph), sets or (), named_frames)
+    report_problems(graph, opened_graph)
+    if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
-    bindings, targets = resolve_inputs(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
-    at = chosen[0] if chosen else LazyResourceProvider().find_frames(whole, bindings)[0]
-    name = _output(whole, show, node)
-    look = view or ("" if node else whole.outputs[name].view)
-    count = len(sweeping.list_cells(whole, swept, at))
-    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=look)
+    bindings, targets = (
+        resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
+        parsing.find_targets(opened_graph, node),
+    )
+    frame_of_all = named_frames[0] if named_frames else LazyResourceProvider().find_frames(opened_graph, bindings)[0]
+    shown_output = _choose_output(opened_graph, show, node)
+    shown_view = view or ("" if node else opened_graph.outputs[shown_output].view)
+    count = len(sweeping.list_cells(opened_graph, sweep_axes, frame_of_all))
+    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=shown_view)
     if output.suffix.casefold() in (".exr", ".hdr"):
-        raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
-    written = OutputSettings((("", cells),), view, precision=depth or "half") if cells is not None else None
-    request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
-    title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in swept)}"
-    with open_batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
-        how = sweeping.SweepRequest(request, name, look, cell, columns, written, _suffix(ending), title)
-        sheet = sweeping.render_sweep(work.renderer, whole, swept, how, at, work.step)
-        device = work.device
+        raise UsageError(f"{output}: a sheet cannot be written in this format: use .png, .jpg, .tif or .webp")
+    cell_files = (
+        OutputSettings((("", cells),), view, precision=parsed_precision or "half") if cells is not None else None
+    )
+    request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
+    title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in sweep_axes)}"
+    with open_batch(cells or output.parent, count, DEFAULT_BUDGET) as batch:
+        sweep_request = sweeping.SweepRequest(
+            request, shown_output, shown_view, cell, columns, cell_files, _add_dot(ending), title
+        )
+        sheet = sweeping.render_sweep(batch.renderer, opened_graph, sweep_axes, sweep_request, frame_of_all, batch.step)
+        device = batch.device
     metadata = {"ImageDescription": "\n".join(item.label for item in sheet.cells)}
     media.write_picture(output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata)
-    spent = time.perf_counter() - started
+    seconds = time.perf_counter() - started
     if as_json:
-        print_json(_as_json(output, sheet, device, spent))
+        print_json(_sweep_facts(output, sheet, device, seconds))
     else:
         height, width = sheet.light.shape[:2]
-        note(f"{output}  {count} pictures, {width}x{height}, {spent:.2f} s")
+        print_note(f"{output}  {count} pictures, {width}x{height}, {seconds:.2f} s")
     return 0
 
 
-def _output(graph: Graph, show: str, node: str) -> str:
+def _choose_output(graph: Graph, show: str, node: str) -> str:
     """The output to show. Raises UsageError."""
     from ..errors import UsageError
     from ..graph import did_you_mean
@@ -122,17 +138,17 @@ def _output(graph: Graph, show: str, node: str) -> str:
             raise UsageError("--show and --node: choose one")
         return node
     if not graph.outputs:
-        raise UsageError("the graph has no output to show: take a node with --node")
+        raise UsageError("the graph has no output to show: choose a node with --node")
     if show and show not in graph.outputs:
         raise UsageError(f"--show {show}: there is no output '{show}'{did_you_mean(show, graph.outputs)}")
     return show or next(iter(graph.outputs))
 
 
-def _suffix(text: str) -> str:
+def _add_dot(text: str) -> str:
     return text if text.startswith(".") else f".{text}"
 
 
-def _as_json(output: Path, sheet: Any, device: str, spent: float) -> dict[str, Any]:
+def _sweep_facts(output: Path, sheet: Any, device: str, seconds: float) -> dict[str, Any]:
     return {
         "written": str(output),
         "size": list(sheet.light.shape[1::-1]),
@@ -146,5 +162,5 @@ def _as_json(output: Path, sheet: Any, device: str, spent: float) -> dict[str, A
             }
             for place, cell in enumerate(sheet.cells)
         ],
-        "seconds": round(spent, 3),
+        "seconds": round(seconds, 3),
     }

@@ -1,4 +1,4 @@
-"""What is typed for a sweep: `blur.sigma=1,2,4`, `glow=0..1/5`, `merge.mode=*`, `fill.color=1,0,0,1;0,0,1,1`."""
+"""Parses the values of a sweep: `blur.sigma=1,2,4`, `glow=0..1/5`, `merge.mode=*`, `fill.color=1,0,0,1;0,0,1,1`."""
 
 from __future__ import annotations
 
@@ -19,44 +19,46 @@ _RANGE = re.compile(r"\s*(?P<first>[^.].*?)\.\.(?P<last>.+?)/(?P<count>[0-9]+)(?
 _MOST = 400
 
 
-def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Graph, tuple[Axis, ...]]:
-    """What is swept, rows before columns as they were typed, frames last; values that are given once are set.
+def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Graph, tuple[Axis, ...]]:
+    """The axes of a sweep in the order of the command line, frames last; and the graph with all single values set.
 
     Raises UsageError.
     """
     from ..errors import UsageError
     from ..renderer.jobs.sweep import FRAME, Axis, SweepStep, choose_labels
 
-    typed: dict[str, list[str]] = {}
+    texts_by_name: dict[str, list[str]] = {}
     for item in sets:
         name, equals, text = item.partition("=")
         if not equals or not name or not text:
             raise UsageError(f"--set {item}: write --set NAME=VALUE,VALUE,...")
-        typed.setdefault(name, []).append(text)
+        texts_by_name.setdefault(name, []).append(text)
     steps: dict[str, tuple[str, ...]] = {}
     labels = {FRAME: FRAME}
-    for name, texts in typed.items():
-        value = _value(graph, name)
+    for name, texts in texts_by_name.items():
+        value = _find_value(graph, name)
         labels[name] = (value.label or value.name) if value else name.rpartition(".")[2]
-        steps[name] = tuple(dict.fromkeys(part for text in texts for part in _parts(name, text, value)))
+        steps[name] = tuple(dict.fromkeys(part for text in texts for part in _split_settings(name, text, value)))
         if len(steps[name]) == 1:
             graph = override_value(graph, name, steps.pop(name)[0])
     if len(frames) > 1:
         steps[FRAME] = tuple(map(str, frames))
-    labels_used = choose_labels(tuple(steps), labels)
+    axis_labels = choose_labels(tuple(steps), labels)
 
-    def step(name: str, text: str) -> SweepStep:
+    def make_step(name: str, text: str) -> SweepStep:
         if name == FRAME and len(frames) > 1:
             return SweepStep(text, lambda graph: graph, int(text))
-        override_value(graph, name, text)  # what cannot be set is refused before anything is rendered
+        override_value(graph, name, text)  # refuses invalid values before anything is rendered
         return SweepStep(text, lambda graph: override_value(graph, name, text))
 
-    swept = (Axis(name, labels_used[name], tuple(step(name, text) for text in texts)) for name, texts in steps.items())
-    return graph, tuple(swept)
+    sweep_axes = (
+        Axis(name, axis_labels[name], tuple(make_step(name, text) for text in texts)) for name, texts in steps.items()
+    )
+    return graph, tuple(sweep_axes)
 
 
-def _value(graph: Graph, name: str) -> Value | None:
-    """What a name stands for; None if for nothing, which is said when it is set."""
+def _find_value(graph: Graph, name: str) -> Value | None:
+    """The value that a name stands for, or None; setting an unknown name raises an error later."""
     from ..errors import GraphError
     from ..graph import Group, declared
     from ..graph.graph import control_value
@@ -67,14 +69,14 @@ def _value(graph: Graph, name: str) -> Value | None:
             return control_value(graph, name) if name in graph.controls else None
         item = graph.node(head)
         if "." in rest:
-            return _value(item.body(), rest) if isinstance(item, Group) else None
+            return _find_value(item.body(), rest) if isinstance(item, Group) else None
         return declared(item, rest, head)
     except GraphError:
         return None
 
 
-def _parts(name: str, text: str, value: Value | None) -> Iterator[str]:
-    """The settings in a text, each as `--set` has it."""
+def _split_settings(name: str, text: str, value: Value | None) -> Iterator[str]:
+    """Split a text into the settings of a sweep, each as `render --set` takes it."""
     from ..errors import UsageError
 
     if value is not None and text.strip() == "*":
@@ -83,25 +85,25 @@ def _parts(name: str, text: str, value: Value | None) -> Iterator[str]:
         elif value.choices:
             yield from value.choices
         else:
-            raise UsageError(f"--set {name}=*: only choices and switches can be swept whole; list values or a range")
+            raise UsageError(f"--set {name}=*: * works only for choices and switches; list values or a range")
         return
-    is_list = value is not None and value.type in ("color", "vector", "matrix", "curve", "ramp", "lights")
-    plain = value is not None and value.type in ("float", "int", "bool", "choice")
-    whole = text.startswith("=") or "@" in text or not plain
+    has_numbers = value is not None and value.type in ("color", "vector", "matrix", "curve", "ramp", "lights")
+    has_one_number = value is not None and value.type in ("float", "int", "bool", "choice")
+    is_single = text.startswith("=") or "@" in text or not has_one_number
     for part in text.split(";"):
-        for one in (part,) if whole or ";" in text else part.split(","):
-            if not one.strip():
-                raise UsageError(f"--set {name}={text}: there is nothing between two separators; leave one out")
-            if value is not None and plain and (match := _RANGE.fullmatch(one)):
-                yield from _range(name, match, value.type == "int")
-            elif value is not None and is_list:
-                yield _vector(name, text, one, value)
+        for setting in (part,) if is_single or ";" in text else part.split(","):
+            if not setting.strip():
+                raise UsageError(f"--set {name}={text}: a value is missing between two separators")
+            if value is not None and has_one_number and (match := _RANGE.fullmatch(setting)):
+                yield from _expand_range(name, match, value.type == "int")
+            elif value is not None and has_numbers:
+                yield _check_vector(name, text, setting, value)
             else:
-                yield one.strip()
+                yield setting.strip()
 
 
-def _vector(name: str, text: str, numbers: str, value: Value) -> str:
-    """One list of numbers. Raises UsageError for several in a row."""
+def _check_vector(name: str, text: str, numbers: str, value: Value) -> str:
+    """Check that a text is one color, vector or matrix, not several in a row. Raises UsageError."""
     from ..errors import UsageError
 
     count = 4 if value.type == "color" else value.length
@@ -119,8 +121,8 @@ def _vector(name: str, text: str, numbers: str, value: Value) -> str:
     return numbers.strip()
 
 
-def _range(name: str, match: re.Match[str], whole: bool) -> Iterator[str]:
-    """Numbers at even distances, or at even ratios. Raises UsageError."""
+def _expand_range(name: str, match: re.Match[str], is_integer: bool) -> Iterator[str]:
+    """The numbers of a range, at even distances or, with `log`, at even ratios. Raises UsageError."""
     from ..errors import UsageError
 
     count, text = int(match["count"]), match[0].strip()
@@ -133,6 +135,6 @@ def _range(name: str, match: re.Match[str], whole: bool) -> Iterator[str]:
     if match["log"] and not (first > 0.0 and last > 0.0):
         raise UsageError(f"--set {name}={text}: even ratios need numbers above 0; leave out 'log'")
     for place in range(count):
-        part = place / (count - 1)
-        number = first * (last / first) ** part if match["log"] else first + (last - first) * part
-        yield str(round(number)) if whole else f"{float(f'{number:.4g}'):g}"
+        fraction = place / (count - 1)
+        number = first * (last / first) ** fraction if match["log"] else first + (last - first) * fraction
+        yield str(round(number)) if is_integer else f"{float(f'{number:.4g}'):g}"

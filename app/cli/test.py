@@ -1,4 +1,4 @@
-"""`halation test`: graphs against the pictures that they must give."""
+"""`halation test`: renders graphs and compares them with approved pictures."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .options import AsJson
-from .outcome import note, print_json
+from .outcome import print_json, print_note
 
 if TYPE_CHECKING:
     from ..regression.cases import Case
@@ -19,36 +19,48 @@ _MARKS = {"passed": "pass", "failed": "FAIL", "blessed": "new ", "skipped": "ski
 
 def test(
     suites: Annotated[
-        list[Path] | None, typer.Argument(help="Suites (*.suite.toml), or folders with some; by default this folder.")
+        list[Path] | None,
+        typer.Argument(help="Suite files (*.suite.toml), or folders with suites; by default the current folder."),
     ] = None,
     select: Annotated[
-        str, typer.Option("-k", "--select", metavar="EXPR", help="Only cases whose names fit: words with and, or, not.")
+        str,
+        typer.Option(
+            "-k", "--select", metavar="EXPR", help="Run only cases whose names match: words combined with and, or, not."
+        ),
     ] = "",
     update: Annotated[
-        bool, typer.Option("--update", help="Bless: write goldens that are missing or fail as they are rendered now.")
+        bool, typer.Option("--update", help="Approve the new pictures: write goldens that are missing or that fail.")
     ] = False,
     stop_early: Annotated[bool, typer.Option("-x", "--exitfirst", help="Stop at the first failure.")] = False,
-    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Processes that share the cases.")] = 1,
-    listed: Annotated[bool, typer.Option("--list", help="Print the names of the cases and render nothing.")] = False,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Share the cases among this many processes.")] = 1,
+    listed: Annotated[bool, typer.Option("--list", help="Print the names of the cases without rendering.")] = False,
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Leave pictures of failures here, as EXR and as PNG.")
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="Write pictures of failures to this folder, as EXR and PNG."),
     ] = None,
     report: Annotated[
-        Path | None, typer.Option("--report", metavar="FILE.html", help="A page to look at what differs, in one file.")
+        Path | None,
+        typer.Option(
+            "--report", metavar="FILE.html", help="Write an HTML page that shows the differences, in one file."
+        ),
     ] = None,
     junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE.xml", help="The outcome as JUnit XML, for CI servers.")
+        Path | None, typer.Option("--junit", metavar="FILE.xml", help="Write the results as JUnit XML, for CI servers.")
     ] = None,
     deterministic: Annotated[
         bool,
         typer.Option(
             "--deterministic/--no-deterministic",
-            help="Pin the software rasterizer, so that every machine gives the same bytes, or take what is there.",
+            help="Render with one fixed version of the software rasterizer, which gives the same bytes on every "
+            "machine, or with the device of this machine.",
         ),
     ] = True,
     as_json: AsJson = False,
 ) -> int:
-    """Render graphs and compare with golden pictures; see docs/testing.md for the files that say what and how."""
+    """Compare renders with golden pictures.
+
+    A suite file lists the graphs, their golden pictures and the tolerances; see docs/testing.md.
+    """
     from ..regression.selection import select_cases
     from ..regression.suites import load_suites
 
@@ -62,9 +74,13 @@ def test(
     from ..regression.results import as_json as for_machines
 
     check_report(report, junit)
-    how = RunOptions(update, out, pictures=report is not None, deterministic=deterministic)
+    options = RunOptions(update, out, pictures=report is not None, deterministic=deterministic)
     session = run_cases(
-        cases, how, jobs=jobs, stop_early=stop_early, hears=None if as_json else lambda outcome: print(_line(outcome))
+        cases,
+        options,
+        jobs=jobs,
+        stop_early=stop_early,
+        hears=None if as_json else lambda outcome: print(_format_outcome(outcome)),
     )
     if report is not None:
         write_report(session, report)
@@ -73,9 +89,9 @@ def test(
     if as_json:
         print_json(for_machines(session))
     else:
-        note(f"{session.device or 'nothing was rendered'}{'; deterministic' if session.deterministic else ''}")
+        print_note(f"{session.device or 'nothing was rendered'}{'; deterministic' if session.deterministic else ''}")
         for sentence in filter(None, (session.remark, session.summary)):
-            note(sentence)
+            print_note(sentence)
     return 1 if session.count("failed") else 0
 
 
@@ -88,8 +104,8 @@ def _list_cases(cases: tuple[Case, ...], as_json: bool) -> int:
     return 0
 
 
-def _line(outcome: Outcome) -> str:
-    """One line of what became of a case; a sentence follows where there is one to say."""
+def _format_outcome(outcome: Outcome) -> str:
+    """A line about the result of a case, and for a failure a second line with the reason."""
     from ..regression.cases import format_number
 
     worst = outcome.worst

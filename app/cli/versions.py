@@ -1,4 +1,4 @@
-"""Versions of graphs: files, standard input, revisions in git; and how what differs is printed."""
+"""Reads versions of graphs from files, standard input and git, and prints differences."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from .options import standard_input
+from .options import read_standard_input
 
 if TYPE_CHECKING:
     from ..document.diff_merge import DifferenceLine
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 _COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}
 
 
-def text_of(source: str) -> tuple[str, str]:
-    """The text of a file, of `REV:path` in git or of standard input (`-`), and where its relative paths start.
+def read_version(source: str) -> tuple[str, str]:
+    """The text of a file, of `REV:path` in git or of standard input (`-`), and the folder of its relative paths.
 
     Raises DocumentError, UsageError.
     """
@@ -26,7 +26,7 @@ def text_of(source: str) -> tuple[str, str]:
     from .git import read_revision
 
     if source == "-":
-        return standard_input(), ""
+        return read_standard_input(), ""
     path = Path(source)
     if ":" in source and not path.drive and not os.path.lexists(path):
         return read_revision(source)
@@ -34,21 +34,21 @@ def text_of(source: str) -> tuple[str, str]:
 
 
 def load_version(source: str, *, follow: bool = False, name: str = "") -> Graph:
-    """The graph there. With `follow` groups in files of their own are read too. Raises DocumentError, UsageError."""
+    """Load a version of a graph, with `follow` also the groups in other files. Raises DocumentError, UsageError."""
     from .. import document
 
-    text, folder = text_of(source)
+    text, folder = read_version(source)
     return document.loads(text, name or source, folder, follow=follow)
 
 
 def is_colored() -> bool:
-    """True where people see standard output who did not ask for plain text (https://no-color.org)."""
-    seen = sys.stdout.isatty() or os.environ.get("GIT_PAGER_IN_USE") == "true"
-    return seen and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    """True if a user reads standard output and has not asked for plain text (https://no-color.org)."""
+    reaches_user = sys.stdout.isatty() or os.environ.get("GIT_PAGER_IN_USE") == "true"
+    return reaches_user and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def print_lines(lines: Iterable[DifferenceLine], colored: bool) -> None:
-    """Print what differs: a sign and a sentence for each, changed lines of code below."""
+    """Print differences: a sign and a sentence each, with changed lines of code below."""
     for line in lines:
         print(paint(f"{line.sign} {line.words}", line.sign, colored))
         for below in line.below:
@@ -56,6 +56,6 @@ def print_lines(lines: Iterable[DifferenceLine], colored: bool) -> None:
 
 
 def paint(text: str, sign: str, colored: bool) -> str:
-    """A line in the color of its sign, with nothing in it that a terminal would obey."""
+    """A line in the color of its sign, with control characters escaped."""
     plain = "".join(letter if letter.isprintable() or letter == "\t" else ascii(letter)[1:-1] for letter in text)
     return f"\x1b[{_COLORS[sign]}m{plain}\x1b[0m" if colored and sign in _COLORS else plain

@@ -1,4 +1,4 @@
-"""`halation watch`: rendered again whenever something changes."""
+"""`halation watch`: renders again whenever a file of the graph changes."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .options import (
     report_problems,
     resolve_inputs,
 )
-from .outcome import INTERRUPTED, note
+from .outcome import INTERRUPTED, print_note
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -38,7 +38,7 @@ _LISTED = 3
 def watch(
     graph: GraphFile,
     output: Annotated[
-        list[str], typer.Option("-o", "--output", metavar="[NAME=]FILE", help="Where to write, as for render.")
+        list[str], typer.Option("-o", "--output", metavar="[NAME=]FILE", help="The file to write, as for render.")
     ],
     inputs: Inputs = None,
     sets: Sets = None,
@@ -48,13 +48,13 @@ def watch(
     frame: OneFrame = None,
     frames: Frames = None,
     precision: Precision = None,
-    view: Annotated[str, typer.Option(help="OpenColorIO view for pictures that are not EXR.")] = "",
-    compression: Annotated[str, typer.Option(help="EXR compression.")] = "zip",
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line for every render.")] = False,
+    view: Annotated[str, typer.Option(help="OpenColorIO view of files that are not EXR.")] = "",
+    compression: Annotated[str, typer.Option(help="EXR compression, as for render.")] = "zip",
+    as_json: Annotated[bool, typer.Option("--json", help="Print a line with a JSON object for every render.")] = False,
 ) -> int:
-    """Render, and render again whenever the graph, its groups, code, pictures or shaders change, until Ctrl-C.
+    """Render again whenever a file changes, until Ctrl-C.
 
-    What is broken is said in a sentence, and waited for.
+    Watches the graph and its groups, code, pictures and shaders. After an error it waits for the next change.
     """
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
@@ -62,61 +62,66 @@ def watch(
     from ..watch.rerendering import ContinuousRenderer
 
     if str(graph) == "-":
-        raise UsageError("-: standard input cannot be watched: name the file of a graph")
-    depth = parsing.precision(precision) if precision is not None else None
-    canvas, proxy = parsing.size(size), parsing.scale(scale)
-    files, chosen = parsing.paths(output), parsing.frames(frame, frames)
+        raise UsageError("-: standard input cannot be watched: name a graph file")
+    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
+    destinations, named_frames = parsing.parse_destinations(output), parsing.parse_frame_options(frame, frames)
     renderer = Renderer(open_device())
-    note(renderer.device.description)
+    print_note(renderer.device.description)
 
-    def load() -> Graph:
-        graph_now = open_graph(graph, parsing.sets(sets))
+    def load_graph() -> Graph:
+        graph_now = open_graph(graph, parsing.parse_sets(sets))
         report_problems(graph, graph_now)
         return graph_now
 
     def render(graph_now: Graph, progress: JobProgress) -> JobReport:
-        bindings, targets = resolve_inputs(graph_now, parsing.inputs(inputs)), parsing.targets(graph_now, node)
-        first, last = (0, 0) if chosen else LazyResourceProvider().find_frames(graph_now, bindings)
-        every = chosen or (tuple(range(first, last + 1)) if parsing.holds_frames(files) else (first,))
-        request = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
+        bindings, targets = (
+            resolve_inputs(graph_now, parsing.parse_inputs(inputs)),
+            parsing.find_targets(graph_now, node),
+        )
+        first, last = (0, 0) if named_frames else LazyResourceProvider().find_frames(graph_now, bindings)
+        every = named_frames or (tuple(range(first, last + 1)) if parsing.have_frame_number(destinations) else (first,))
+        request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
         return run_job(
             renderer,
             graph_now,
             request,
-            OutputSettings(files, view, compression, depth or "half"),
+            OutputSettings(destinations, view, compression, parsed_precision or "half"),
             every,
             progress=progress,
         )
 
-    renderings = ContinuousRenderer(graph, lambda found: resolve_inputs(found, parsing.inputs(inputs)), load, render)
+    continuous_renderer = ContinuousRenderer(
+        graph, lambda graph_now: resolve_inputs(graph_now, parsing.parse_inputs(inputs)), load_graph, render
+    )
     has_rendered = False
     try:
-        for turn in renderings:
-            if isinstance(turn.fault, UsageError) and not has_rendered:
-                raise turn.fault  # what was typed will not change
+        for report in continuous_renderer:
+            if isinstance(report.fault, UsageError) and not has_rendered:
+                raise report.fault  # waiting cannot mend the command line
             has_rendered = True
-            _print_report_json(turn) if as_json else _print_report(turn)
+            _print_report_json(report) if as_json else _print_report(report)
     except KeyboardInterrupt:
         if not has_rendered:
             raise
-        note("halation: interrupted; nothing unfinished was left behind")  # which is how it is meant to end
+        print_note("halation: interrupted; no unfinished file is left")  # the usual end of this command
     finally:
-        renderings.close()
+        continuous_renderer.close()
     return INTERRUPTED
 
 
 def _print_report(turn: WatchReport) -> None:
-    """One line."""
+    """Print a line about one render."""
     clock = time.strftime("%H:%M:%S")
     if turn.report is None:
-        note(f"{clock}  {turn.fault}")
+        print_note(f"{clock}  {turn.fault}")
         return
     files = [str(path) for path in turn.report.written]
     written = files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
     names = [path.name for path in turn.changed]
     more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
     why = f"  ({', '.join(names[:_LISTED])}{more} changed)" if names else ""
-    note(f"{clock}  {written}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
+    print_note(f"{clock}  {written}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
 
 
 def _print_report_json(turn: WatchReport) -> None:

@@ -1,7 +1,7 @@
-"""The watchdog: code of a graph runs in a process that another one ends if the code never comes back.
+"""The watchdog: it ends a process whose graph has code that never ends.
 
-The renderer writes into a file which code begins to run and when it has ended: its heartbeat. A device that is stuck
-blocks the process that uses it, so only another process can notice.
+The renderer writes to a file, the heartbeat, before and after it runs code of a graph. A device that is stuck blocks
+the process that uses it, so another process has to read the file and kill the first one.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from ..errors import DeviceError
 if TYPE_CHECKING:
     from ..graph import Graph
 
-LOOK = 0.2
-"""Seconds between two looks at the other process: short enough that nobody notices them after the process ends."""
+CHECK_INTERVAL = 0.2
+"""Seconds between two checks of the other process: a choice, so short that the user sees no delay when it ends."""
 
 Timeout = Annotated[
     float,
@@ -33,7 +33,7 @@ Timeout = Annotated[
         "--timeout",
         min=0.0,
         metavar="SECONDS",
-        help="How long a pass of code that is written in the graph may take; 0 for no limit.",
+        help="The longest that one pass of a code node may take; 0 for no limit.",
     ),
 ]
 
@@ -48,18 +48,18 @@ class Watchdog:
 
     @property
     def environment(self) -> dict[str, str]:
-        """The variables of the environment that the process needs."""
+        """The environment variables that tell the process where to write its heartbeat."""
         from ..renderer.execution.progress_beacon import BEACON_FILE
 
         return {BEACON_FILE: str(self._file)}
 
     def check(self) -> DeviceError | None:
-        """The error to raise once code has run for too long, else None."""
-        beat = self._file.read_text(encoding="utf-8")
-        if beat != self._beat:
-            self._beat, self._since = beat, time.monotonic()
-        elif beat and time.monotonic() - self._since > self._timeout:
-            nodes = beat.partition(" ")[2]
+        """The error to raise if code has run for too long, else None."""
+        heartbeat = self._file.read_text(encoding="utf-8")
+        if heartbeat != self._beat:
+            self._beat, self._since = heartbeat, time.monotonic()
+        elif heartbeat and time.monotonic() - self._since > self._timeout:
+            nodes = heartbeat.partition(" ")[2]
             return DeviceError(
                 f"node '{nodes}': its code has not ended after {self._timeout:g} seconds, so the rendering was "
                 "stopped: look for a loop without an end, or allow more with --timeout",
@@ -69,14 +69,14 @@ class Watchdog:
 
 
 def needs_watchdog(graph: Graph, timeout: float) -> bool:
-    """True if code of the graph could run for ever, and no other process watches this one."""
+    """True if code of the graph could run for ever and no process watches this one yet."""
     from ..renderer.execution.progress_beacon import BEACON_FILE
 
     return timeout > 0.0 and not os.environ.get(BEACON_FILE) and has_loops(graph)
 
 
 def has_loops(graph: Graph) -> bool:
-    """True if a node has code with loops, or one in a group has: only those can run for ever."""
+    """True if a node, also one in a group, has code with loops: only loops can run for ever."""
     from ..custom_nodes import CustomNode
     from ..glsl import words
     from ..graph import Group
@@ -90,11 +90,11 @@ def has_loops(graph: Graph) -> bool:
 
 
 def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: float) -> int | None:
-    """Run this very command again in a process that is watched, if code of the graph could run for ever; its exit code.
+    """Run the same command in a watched process if code of the graph could run for ever, and return its exit code.
 
-    None if there is no such code, or if this is that process: then the caller goes on. `context` holds the words of the
-    command. A graph that came from standard input (`path` is "-") is handed on there. Raises DeviceError once a pass
-    has taken longer than `timeout` seconds.
+    Returns None if there is no such code, or if this is the watched process: then the caller goes on. `context` holds
+    the arguments of the command. A graph from standard input (`path` is "-") is passed on. Raises DeviceError when a
+    pass takes longer than `timeout` seconds.
     """
     if not needs_watchdog(graph, timeout):
         return None
@@ -117,7 +117,7 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
             process.stdin.close()
         while True:
             try:
-                return process.wait(LOOK)
+                return process.wait(CHECK_INTERVAL)
             except subprocess.TimeoutExpired:
                 if fault := watchdog.check():
                     process.kill()
@@ -126,7 +126,7 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
 
 @contextmanager
 def _ignore_interrupts() -> Iterator[None]:
-    """An interrupt is for the other process, which hears it too, and ends as it should."""
+    """Ignore interrupts here: the other process gets them too, and tidies up before it ends."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         yield

@@ -1,16 +1,16 @@
-"""`halation worker`: a render job that another process of Halation has sent."""
+"""`halation worker`: runs a render job for another process of Halation."""
 
 from __future__ import annotations
 
 from .execute import execute
-from .options import AsJson, standard_input
+from .options import AsJson, read_standard_input
 
 
 def worker(as_json: AsJson = True) -> int:
-    """Render the job that comes as JSON on standard input, and report in JSON."""
+    """Run the render job that is read as JSON from standard input, and report in JSON."""
     from ..renderer.jobs.render_job import RenderJob
     from ..resources.sandbox import fenced
 
-    job = RenderJob.from_json(standard_input())
+    job = RenderJob.from_json(read_standard_input())
     with fenced(job.root or None):
         return execute(job, "json", as_json)

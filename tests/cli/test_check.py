@@ -188,7 +188,7 @@ def test_folders_patterns_and_names(cli, tidy, tmp_path, monkeypatch):
     assert (result.code, result.out, result.err) == (0, "", "3 graphs: 0 errors, 0 warnings\n")
     assert cli("check", "no.json").code == cli("check", "deep/list.json").code == cli("check", "no*.json").code == 3
     (tmp_path / "empty").mkdir()
-    assert (cli("check", "empty").code, cli("check", "empty").err) == (0, "there are no graphs\n")
+    assert (cli("check", "empty").code, cli("check", "empty").err) == (0, "no graphs were found\n")
     (tmp_path / "deep" / "cut.json").write_text('{"halation": 1, "nodes": {')
     assert cli("check", "deep").code == 3
 

@@ -124,7 +124,7 @@ def test_nodes_for_machines(cli):
 
 
 def test_a_neutral_node_has_no_passes(cli):
-    assert "  none: the picture goes through as it is\n" in cli("nodes", "exposure").out
+    assert "  none: the picture passes through unchanged\n" in cli("nodes", "exposure").out
     assert "  none: nothing has to be drawn\n" in cli("nodes", "read_image").out
     assert cli("nodes", "exposure", "--json").json["plan"]["passes"] == []
 
@@ -195,7 +195,7 @@ def test_demo_renders_every_preset(cli, graphs, tmp_path, monkeypatch):
 
 def test_demo_says_where_it_cannot_write(cli, shot):
     result = cli("demo", "-o", shot / "out")
-    assert result.code == 1 and result.err.startswith(f"halation: {shot / 'out'}: the folder cannot be made (")
+    assert result.code == 1 and result.err.startswith(f"halation: {shot / 'out'}: the folder cannot be created (")
 
 
 # --- the program --------------------------------------------------------------------------------------------------

@@ -127,7 +127,7 @@ def test_interrupted_while_writing(fails, graphs, monkeypatch):
 
     monkeypatch.setattr(os, "sendfile", interrupted, raising=False)
     monkeypatch.setattr(shutil, "disk_usage", interrupted)
-    assert fails(130, "render", graphs()) == "interrupted; nothing unfinished was left behind"
+    assert fails(130, "render", graphs()) == "interrupted; no unfinished file is left"
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() != 0 or not shutil.which("mount"), reason="needs root")

@@ -232,4 +232,4 @@ def test_too_little_memory(fails, graphs, monkeypatch):
     from halation.renderer.jobs import job
 
     monkeypatch.setattr(job, "run_job", refuse)
-    assert fails(1, "render", graphs()) == "there is not enough memory: render smaller with --scale or --size"
+    assert fails(1, "render", graphs()) == "there is not enough memory; render a smaller picture with --scale or --size"

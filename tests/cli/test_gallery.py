@@ -55,7 +55,7 @@ def test_it_writes_three_sheets(cli, graphs, tmp_path, monkeypatch):
 
 def test_it_says_where_it_cannot_write(cli, shot):
     result = cli("gallery", "-o", shot / "out")
-    assert result.code == 1 and result.err.startswith(f"halation: {shot / 'out'}: the folder cannot be made (")
+    assert result.code == 1 and result.err.startswith(f"halation: {shot / 'out'}: the folder cannot be created (")
 
 
 @pytest.mark.parametrize("id", catalogue())
@@ -72,14 +72,14 @@ def test_what_a_node_makes_is_made_visible(renderer: Renderer) -> None:
     """Light through the view, what is finished as it is, data by its range, numbers in words."""
 
     def made(id: str) -> np.ndarray:
-        return gallery.picture_of(catalogue()[id], renderer, sample())
+        return gallery.render_node(catalogue()[id], renderer, sample())
 
     assert made("tone_map").mean() > 0.1
     assert np.allclose(made("ramp")[100, (0, -1)], [[0.0] * 3, [1.0] * 3], atol=0.01)
     distance = made("distance_field")
     assert distance.min() == 0.0 and distance.max() == 1.0 and np.ptp(distance, axis=2).max() == 0.0
     assert made("luminance_statistics").max() > 0.7 > 0.1 > np.median(made("luminance_statistics"))
-    assert gallery.light_of(Kind.VECTOR, np.array([[[0.0, 0.0, 1.0]]], np.float32)) == pytest.approx(
+    assert gallery.to_display_light(Kind.VECTOR, np.array([[[0.0, 0.0, 1.0]]], np.float32)) == pytest.approx(
         np.array([[[0.214, 0.214, 1.0]]]), abs=1e-3
     )
 
@@ -98,14 +98,14 @@ def compare(name: str, made: np.ndarray, where: np.ndarray) -> None:
 
 @pytest.fixture(scope="module", autouse=RENEW)
 def renewed(renderer: Renderer) -> None:
-    makers = {"nodes": gallery.node_sheet, "presets": gallery.preset_sheet, "time": gallery.time_sheet}
+    makers = {"nodes": gallery.make_node_sheet, "presets": gallery.make_preset_sheet, "time": gallery.make_time_sheet}
     for name, make in makers.items():
         sheet = make(renderer)
         write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names))
 
 
 def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> None:
-    sheet = gallery.preset_sheet(renderer)
+    sheet = gallery.make_preset_sheet(renderer)
     assert described(IMAGES / "presets.jpg") == [*sheet.names]
     compare("presets", written(sheet, tmp_path), np.ones(sheet.light.shape[:2]))
     assert (IMAGES / "presets.jpg").stat().st_size < 900_000
@@ -113,9 +113,9 @@ def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> 
 
 def test_the_sheet_of_time_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every third row is made again and compared; the others stay black."""
-    names, frames_of = described(IMAGES / "time.jpg"), gallery.frames_of
-    assert names == [*gallery.animated_presets()] and (IMAGES / "time.jpg").stat().st_size < 900_000
-    chosen = [graph for name, graph in gallery.animated_presets().items() if name in names[1::3]]
+    names, frames_of = described(IMAGES / "time.jpg"), gallery.render_display_frames
+    assert names == [*gallery.load_animated_presets()] and (IMAGES / "time.jpg").stat().st_size < 900_000
+    chosen = [graph for name, graph in gallery.load_animated_presets().items() if name in names[1::3]]
 
     def blank(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
         return dict.fromkeys(frames, np.zeros((144, 256, 3), np.float32))
@@ -125,8 +125,8 @@ def test_the_sheet_of_time_is_current(renderer: Renderer, tmp_path: Path, monkey
 
     sheets: list[gallery.Sheet] = []
     for maker in (blank, some):
-        monkeypatch.setattr(gallery, "frames_of", maker)
-        sheets.append(gallery.time_sheet(renderer))
+        monkeypatch.setattr(gallery, "render_display_frames", maker)
+        sheets.append(gallery.make_time_sheet(renderer))
     compare("time", written(sheets[1], tmp_path), (sheets[0].light != sheets[1].light).any(2))
 
 
@@ -134,7 +134,7 @@ def test_the_sheet_of_nodes_is_current(renderer: Renderer, tmp_path: Path, monke
     """It may lack nodes that are newer. Every ninth picture is made again and compared; the others stay black."""
     ids = tuple(described(IMAGES / "nodes.jpg"))
     assert {*ids} <= {*catalogue()} and (IMAGES / "nodes.jpg").stat().st_size < 1_500_000
-    picture_of, black, small = gallery.picture_of, np.zeros((270, 480, 3)), np.zeros((144, 256, 3))
+    picture_of, black, small = gallery.render_node, np.zeros((270, 480, 3)), np.zeros((144, 256, 3))
 
     def blank(node: type[Node], *rest: object) -> np.ndarray:
         return black if node.id == ids[0] else small
@@ -144,7 +144,7 @@ def test_the_sheet_of_nodes_is_current(renderer: Renderer, tmp_path: Path, monke
 
     sheets: list[gallery.Sheet] = []
     for maker in (blank, some):
-        monkeypatch.setattr(gallery, "picture_of", maker)
-        sheets.append(gallery.node_sheet(renderer, ids=ids))
+        monkeypatch.setattr(gallery, "render_node", maker)
+        sheets.append(gallery.make_node_sheet(renderer, ids=ids))
     where = (sheets[0].light != sheets[1].light).any(2)
     compare("nodes", written(sheets[1], tmp_path), where)

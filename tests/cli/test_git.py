@@ -90,11 +90,11 @@ def test_setting_up_says_what_it_changed_and_does_it_once(cli, git, repository):
     lines = (repository / ".gitattributes").read_text().splitlines()
     assert lines == ["*.exr binary", '"/my graphs/*.json" diff=halation merge=halation']
     assert git("check-attr", "merge", "my graphs/shot.json").stdout.endswith(": merge: halation\n")
-    assert cli("git-setup").out == "nothing is to be changed\n"
+    assert cli("git-setup").out == "nothing needs to change\n"
     assert len(cli("git-setup", "--remove", "--json").json["changed"]) == 5
     assert (repository / ".gitattributes").read_text() == "*.exr binary\n"
     assert (repository / ".git" / "config").read_text().split() == before.split()
-    assert cli("git-setup", "--remove").out == "nothing is to be changed\n"
+    assert cli("git-setup", "--remove").out == "nothing needs to change\n"
 
 
 def test_patterns_and_the_configuration_of_a_person(cli, git, repository, tmp_path, monkeypatch):
@@ -159,7 +159,7 @@ def test_layout_and_new_and_deleted_graphs(cli, git, branches, repository):
     path.write_text(json.dumps({**tree, "ui": {"nodes": {"light": {"x": 1, "y": 2}}}}))
     assert git("diff").stdout.splitlines() == [
         "graph my graphs/shot.json",
-        "  only the layout, or how the file is written",
+        "  only the layout or the formatting of the file",
     ]
     path.rename(path.with_name("other.json"))
     git("add", "-A")
@@ -185,7 +185,7 @@ def test_a_side_that_cannot_be_read_loses_nothing(cli, git, branches, repository
     path = repository / "my graphs" / "shot.json"
     branches(light(2.0), {"light": 3})
     found = git("merge", "theirs", code=1)
-    assert "it cannot be merged, ours is left as it was" in found.stderr
+    assert "it cannot be merged, and our side stays as it is" in found.stderr
     assert json.loads(path.read_text())["nodes"]["light"]["values"] == {"stops": 2.0}
     assert git("status", "--porcelain").stdout == 'UU "my graphs/shot.json"\n'
 

@@ -16,7 +16,7 @@ NODES = catalogue()
 
 @pytest.fixture(scope="module")
 def page() -> str:
-    return manual.page(list(NODES.values()))
+    return manual.catalogue_page(list(NODES.values()))
 
 
 @pytest.fixture(scope="module")

@@ -64,7 +64,7 @@ def test_conflicts_keep_a_graph_from_rendering_until_they_are_decided(cli, fight
 )
 def test_resolving(cli, fight, choice, stops):
     found = cli("merge", "--resolve", choice, fight)
-    assert (found.code, found.err) == (0, f"{fight}: nothing is left to be decided\n")
+    assert (found.code, found.err) == (0, f"{fight}: no conflict is left\n")
     tree = json.loads(fight.read_text())
     assert "conflicts" not in tree and tree["nodes"]["light"]["values"]["stops"] == stops
     assert cli("render", fight, "-o", fight.with_suffix(".exr")).code == 0

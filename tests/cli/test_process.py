@@ -212,7 +212,7 @@ def test_interrupting_stops_at_once_and_leaves_nothing(long, tmp_path, delay):
         running.send_signal(signal.SIGINT)
         said = running.stderr.read()
         code, spent = running.wait(), time.perf_counter() - started
-    assert (code, said) == (130, "halation: interrupted; nothing unfinished was left behind\n")
+    assert (code, said) == (130, "halation: interrupted; no unfinished file is left\n")
     assert spent < 1.0
     assert list(out.parent.iterdir()) == [out] and out.read_bytes() == b"precious"
 
@@ -245,7 +245,7 @@ def test_output_onto_a_full_disk(words):
     with Path("/dev/full").open("w") as full:
         result = subprocess.run([*HALATION, *words], stdout=full, stderr=subprocess.PIPE, text=True)
     assert result.returncode == 1
-    assert result.stderr == "halation: standard output: the system refuses (No space left on device)\n"
+    assert result.stderr == "halation: standard output: the system reports an error: No space left on device\n"
 
 
 @POSIX

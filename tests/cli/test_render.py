@@ -119,7 +119,7 @@ def test_set_a_choice_and_a_boolean(cli, graphs, out):
         ("light.stosp=1", "--set light.stosp=1: node 'light' has no value 'stosp'; did you mean 'stops'?"),
         ("light.stops=red", "--set light.stops=red: 'red' does not fit: it takes a number"),
         ("light.stops=1,2", "--set light.stops=1,2: [1, 2] does not fit: it takes a number"),
-        ("light.stops=NaN", "--set: NaN is no value; write a finite number"),
+        ("light.stops=NaN", "--set: NaN is not a valid value; write a finite number"),
         ("light.stops=1e999", "--set light.stops=1e999: inf is not a finite number"),
         ("merge.amount=1.5", "--set merge.amount=1.5: 1.5 is outside the range 0 to 1"),
         ("merge.mode=ovr", "--set merge.mode=ovr: 'ovr' is no choice"),
@@ -263,7 +263,7 @@ def test_broken_pixels_are_repaired_and_told(cli, graphs, out, tmp_path):
     file = tmp_path / "broken.exr"
     assert oiio.ImageBuf(pixels).write(str(file))
     result = cli("render", graphs(), "-i", f"beauty={file}", "-o", out)
-    assert result.code == 0 and f"{file}: 1 pixels that are not numbers" in result.err
+    assert result.code == 0 and f"{file}: 1 pixels that are not finite" in result.err
     assert read(out)[3, 4].tolist() == [1.0, 1.0, 1.0, 0.5]
 
 

@@ -147,7 +147,7 @@ def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie
             2,
             "videos are written as .mp4",
         ),
-        (("-o", "a.png", "--codec", "h264", "--frame", "1"), 2, "that is for videos"),
+        (("-o", "a.png", "--codec", "h264", "--frame", "1"), 2, "a codec needs a video"),
         (
             (
                 "-o",

@@ -72,7 +72,7 @@ def watching(graph, *words):
             yield watch
             process.send_signal(signal.SIGINT)
             said = process.stderr.read()
-            assert process.wait(PATIENCE) == 130 and said.endswith("interrupted; nothing unfinished was left behind\n")
+            assert process.wait(PATIENCE) == 130 and said.endswith("interrupted; no unfinished file is left\n")
         finally:
             process.kill()
             watch.thread.join()
