@@ -8,9 +8,9 @@ from msgspec import Struct, field
 
 from ..errors import UsageError
 from .display import check_view, find_display, find_view, to_display
-from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager, load_ocio
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager
 from .primaries import find_chromaticities
-from .transforms import Array, from_working, quantize, unpremultiply
+from .transforms import Array, convert_premultiplied, from_working, is_matrix, quantize, unpremultiply
 
 SRGB = "srgb_rec709_scene"
 _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")
@@ -121,16 +121,16 @@ class Encoding(Struct, frozen=True):
         return space
 
     def _convert(self, array: Array, target: OcioColorSpace) -> Array:
-        manager = self.manager
-        config = manager.spaces if target.own else None
-        if array.shape[2] < 4 or (config and config.isColorSpaceLinear(target.name, load_ocio().REFERENCE_SPACE_SCENE)):
-            converted = np.array(array, dtype=np.float32)
-            converted[..., :3] = from_working(converted[..., :3], target, manager)
-            return converted
-        converted = unpremultiply(array)
-        alpha = converted[..., 3:]
-        converted[..., :3] = from_working(converted[..., :3], target, manager)
-        np.multiply(converted[..., :3], alpha, out=converted[..., :3], where=alpha > 0.0)
+        manager, converted = self.manager, np.array(array, dtype=np.float32)
+        rgb, alpha = converted[..., :3], converted[..., 3:]
+
+        def convert(straight: Array) -> Array:
+            return from_working(straight, target, manager)
+
+        if alpha.shape[2] and not is_matrix(manager.make_processor(manager.working, target).createGroupTransform()):
+            converted[..., :3] = convert_premultiplied(rgb, alpha, convert)
+        else:
+            converted[..., :3] = convert(rgb)
         return converted
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from ..errors import GraphError, InputError
+from .header_space import REC709, HeaderSpace
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace
 
 AUTO = ("", "auto")
@@ -17,57 +20,84 @@ SRGB = "srgb_rec709_scene"
 _LINEAR_TAGS = ("linear", "scene_linear")
 _PROFILES = {"Display P3": "srgb_p3d65_scene", "Adobe RGB (1998)": "g22_adobergb_scene"}
 CHROMATICITIES = {
-    "lin_rec709_scene": (0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290),
+    "lin_rec709_scene": REC709,
     "lin_ap1_scene": (0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767),
     "lin_ap0_scene": (0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077, 0.32168, 0.33767),
     "lin_rec2020_scene": (0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290),
     "lin_p3d65_scene": (0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290),
+    "lin_ciexyzd65_scene": (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0),
 }
 """Linear spaces by the chromaticities of red, green, blue and white."""
 
 
+_FILM_TAGS = ("kodaklog", "cineon")
+_SAME_GAMMA = 0.01
+"""OpenImageIO names gammas with two digits (`g22_rec709_scene`), so a name may stand for half of this on each side,
+and encoders round 1 / 2.2 to five digits."""
+
+
 class ColorHints(Struct, frozen=True):
-    """What a header says of color: a tag that someone wrote, what its format means without one, an ICC profile,
-    chromaticities, and whether it holds integers."""
+    """What a header says of color: a tag, what its format means without one, an ICC profile, the exponent that
+    decodes it, chromaticities, and whether it holds integers.
+
+    `is_own_tag`: whoever made the file wrote the tag; else OpenImageIO concluded it from other fields.
+    """
 
     tag: str = ""
     usual: str = ""
     profile: str = ""
     primaries: tuple[float, ...] = ()
     integer: bool = False
+    gamma: float = 0.0
+    is_own_tag: bool = True
+
+    @property
+    def profile_space(self) -> str:
+        """The space of the ICC profile, "" for one that is not known."""
+        return _PROFILES.get(self.profile, "")
 
 
 class FileSpace(Struct, frozen=True):
-    """A color space by name, and how it is known. Without a `space` the numbers are taken as they are."""
+    """A color space by name, and how it is known. Without a `space` or `described` the numbers are taken as they are.
+
+    `described` is one that only the numbers of the header define, `warning` the rest of a sentence about what of the
+    header could not be used, "" for nothing.
+    """
 
     name: str
     reason: str
     space: OcioColorSpace | None = None
+    described: HeaderSpace | None = None
+    warning: str = ""
 
 
 def find_file_space(path: str, hints: ColorHints, managed: ColorManager, requested: str = "") -> FileSpace:
-    """The space of color in a file: what is `wanted`, what its header says, what a rule of the config says, else what
+    """The space of color in a file: what is requested, what its header says, what a rule of the config says, else what
     is usual for such files: sRGB for integers, the working space for the rest.
 
     Raises:
-        GraphError: what is wanted is unknown.
-        InputError: what the header or a rule says is unknown.
+        GraphError: what is requested is unknown.
+        InputError: the name that the author of the file wrote is unknown, or that of a rule.
     """
     if space := find_requested_space(requested, managed):
         return FileSpace(space.name, "as color_space says", space)
-    for name, reason in _read_hints(hints):
-        if name.casefold() in _LINEAR_TAGS and not (managed.is_chosen and managed.find(name)):
-            return FileSpace(managed.working.name if not managed.is_plain else LINEAR_REC709, reason)
-        if managed.is_plain and name in (LINEAR_REC709, SRGB):
-            return FileSpace(name, reason, None if name == LINEAR_REC709 else OcioColorSpace(SRGB, True))
-        space = managed.find(name)
-        if space is not None:
-            return FileSpace(name, reason, space)
-        raise InputError(
-            f"{path}: its color space '{name}' is unknown: give the input a color_space{managed.suggest_space(name)}"
-        )
+    if named := _read_name(path, hints, managed):
+        return named
+    warning = ""
+    if hints.tag and not hints.profile_space:
+        warning = f"its header says '{hints.tag}', which is no color space that is known: give the input a color_space"
+    elif hints.primaries and not hints.profile_space:
+        if (space := _read_chromaticities(hints.primaries, managed)) is not None:
+            return space
+        numbers = ", ".join(f"{number:g}" for number in hints.primaries)
+        warning = f"its chromaticities ({numbers}) are those of no colors: give the input a color_space"
     if managed.is_chosen and (space := _apply_file_rule(path, managed)):
-        return space
+        return replace(space, warning=warning)
+    return replace(_usual_space(hints, managed, bool(warning)), warning=warning)
+
+
+def _usual_space(hints: ColorHints, managed: ColorManager, is_doubtful: bool) -> FileSpace:
+    """What files of this kind are in where nobody says otherwise."""
     usual = hints.usual or (SRGB if hints.integer else "")
     if usual == SRGB:
         reason = "integers are sRGB unless someone says otherwise"
@@ -75,7 +105,8 @@ def find_file_space(path: str, hints: ColorHints, managed: ColorManager, request
     if usual and not managed.is_plain:
         return FileSpace(usual, "that is what such files hold", managed.find(usual))
     working = LINEAR_REC709 if managed.is_plain else managed.working.name
-    return FileSpace(working, "the working space, for nothing says otherwise")
+    because = "its header cannot be used" if is_doubtful else "nothing says otherwise"
+    return FileSpace(working, f"the working space, for {because}")
 
 
 def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | None:
@@ -88,16 +119,52 @@ def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | N
     return space
 
 
-def _read_hints(hints: ColorHints) -> list[tuple[str, str]]:
-    """The name that the header gives, the strongest first, with the reason."""
-    if hints.profile in _PROFILES:
-        return [(_PROFILES[hints.profile], f"its ICC profile is {hints.profile}")]
-    if hints.tag:
-        return [(hints.tag, "its header says so")]
+def _read_name(path: str, hints: ColorHints, managed: ColorManager) -> FileSpace | None:
+    """The space that the header names; None if it names none, or one that only OpenImageIO concluded and nobody knows.
+
+    Raises:
+        InputError: the author of the file wrote a name that is unknown.
+    """
+    name, reason = hints.tag, "its header says so"
+    if profile_space := hints.profile_space:
+        name, reason = profile_space, f"its ICC profile is {hints.profile}"
+    elif hints.gamma and not _names_gamma(name, hints.gamma) and name != LINEAR_REC709:
+        described = HeaderSpace(gamma=hints.gamma)
+        return FileSpace(described.name, "its gamma", described=described) if described.is_valid else None
+    elif name.casefold() in _FILM_TAGS and managed.find(name) is None:
+        return FileSpace(HeaderSpace(is_film=True).name, reason, described=HeaderSpace(is_film=True))
+    if not name:
+        return None
+    if name.casefold() in _LINEAR_TAGS and not (managed.is_chosen and managed.find(name)):
+        return FileSpace(managed.working.name if not managed.is_plain else LINEAR_REC709, reason)
+    if managed.is_plain and name in (LINEAR_REC709, SRGB):
+        return FileSpace(name, reason, None if name == LINEAR_REC709 else OcioColorSpace(SRGB, True))
+    if (space := managed.find(name)) is not None:
+        return FileSpace(name, reason, space)
+    if hints.is_own_tag:
+        raise InputError(
+            f"{path}: its color space '{name}' is unknown: give the input a color_space{managed.suggest_space(name)}"
+        )
+    return None
+
+
+def _names_gamma(name: str, gamma: float) -> bool:
+    """True for names such as `g22_rec709_scene` whose exponent is this one."""
+    match = re.match(r"g(\d)(\d)_", name)
+    return match is not None and abs(int(match[1]) + int(match[2]) / 10.0 - gamma) < _SAME_GAMMA
+
+
+def _read_chromaticities(primaries: tuple[float, ...], managed: ColorManager) -> FileSpace | None:
+    """The linear space of these primaries and white: one that has a name, else a matrix; None for impossible ones."""
+    reason = "its chromaticities"
     for name, gamut in CHROMATICITIES.items():
-        if len(hints.primaries) == 8 and np.allclose(hints.primaries[:6], gamut[:6], atol=1e-3):
-            return [(name, "its chromaticities")]
-    return []
+        if len(primaries) == 8 and np.allclose(primaries, gamut, atol=1e-3):
+            if managed.is_plain and name == LINEAR_REC709:
+                return FileSpace(name, reason)
+            if (space := managed.find(name)) is not None:
+                return FileSpace(name, reason, space)
+    described = HeaderSpace(tuple(float(number) for number in primaries))
+    return FileSpace(described.name, reason, described=described) if described.is_valid else None
 
 
 def _apply_file_rule(path: str, managed: ColorManager) -> FileSpace | None:

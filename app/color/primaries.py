@@ -9,6 +9,7 @@ import numpy as np
 from halation.nodes import ColorSettings
 
 from .file_space import CHROMATICITIES
+from .header_space import primaries_to_xyz
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager, load_studio_config
 
 if TYPE_CHECKING:
@@ -62,9 +63,3 @@ def _luminance_weights(to_rec709: np.ndarray) -> tuple[float, ...]:
         if np.allclose(to_rec709, to_rec709_by_name.T, atol=_MATRIX_TOLERANCE):
             return tuple(primaries_to_xyz(gamut)[1].tolist())
     return tuple((primaries_to_xyz(CHROMATICITIES[LINEAR_REC709])[1] @ to_rec709).tolist())
-
-
-def primaries_to_xyz(gamut: tuple[float, ...]) -> np.ndarray:
-    """The matrix to CIE XYZ of primaries by their chromaticities, white being (1, 1, 1) (SMPTE RP 177)."""
-    points = np.array([(x / y, 1.0, (1.0 - x - y) / y) for x, y in zip(gamut[::2], gamut[1::2], strict=True)]).T
-    return points[:, :3] * np.linalg.solve(points[:, :3], points[:, 3])

@@ -5,6 +5,7 @@ OpenColorIO is imported when a file needs it: sRGB into linear Rec.709, the comm
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Any, Literal
 
@@ -15,17 +16,55 @@ from .file_space import FileSpace
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_ocio
 
 _LARGEST = 65504.0
+_LEAST_ALPHA = float(np.finfo(np.float32).tiny)
+"""Below it alpha has lost bits. OpenImageIO's colorconvert draws the line there, too."""
 
 Array = np.ndarray
 
 
 def is_in_working_space(file_space: FileSpace, manager: ColorManager) -> bool:
     """True where the numbers of a file are used as they are."""
+    if file_space.described is not None:
+        return False
     return (
         file_space.space is None
         or file_space.space.data
         or (not manager.is_plain and file_space.space == manager.working)
     )
+
+
+def is_linear(file_space: FileSpace, manager: ColorManager) -> bool:
+    """True where a file is brought into the working space by a matrix: then it does not matter whether alpha has been
+    applied to its color."""
+    if file_space.described is not None:
+        return file_space.described.is_linear
+    if file_space.space is None or (not manager.is_chosen and _is_srgb(file_space.space)):
+        return file_space.space is None
+    return is_matrix(_make_reading_group(manager, file_space.space))
+
+
+def is_matrix(group: Any) -> bool:
+    """True for a group of transforms that are matrices without offset."""
+    return all(isinstance(part, load_ocio().MatrixTransform) and not any(part.getOffset()) for part in group)
+
+
+def convert_premultiplied(rgb: Array, alpha: Array, convert: Callable[[Array], Array]) -> Array:
+    """Premultiplied colors [h, w, 3] through a change of color with a curve, float32.
+
+    The curve is that of straight color, so alpha is divided out and applied again. Where that cannot be done, color is
+    converted as it stands: where alpha is 0 and color is light without cover (a glow), where alpha is negative, and
+    where dividing by a tiny alpha leads out of what the curve or 32-bit floats can hold.
+    """
+    divisible = alpha > _LEAST_ALPHA
+    straight = np.array(rgb, np.float32)
+    with np.errstate(over="ignore", invalid="ignore"):
+        np.divide(straight, alpha, out=straight, where=divisible)
+        converted = convert(straight)
+        np.multiply(converted, alpha, out=converted, where=divisible)
+    lost = divisible[..., 0] & ~np.isfinite(converted).all(axis=-1) & np.isfinite(rgb).all(axis=-1)
+    if lost.any():
+        converted[lost] = convert(np.array(rgb[lost], np.float32)[None])[0]
+    return converted
 
 
 def to_working(rgb: Array, file_space: FileSpace, manager: ColorManager) -> Array:
@@ -38,6 +77,9 @@ def to_working(rgb: Array, file_space: FileSpace, manager: ColorManager) -> Arra
     """
     if is_in_working_space(file_space, manager):
         return np.ascontiguousarray(to_float(rgb), dtype=np.float32)
+    if file_space.described is not None:
+        light = file_space.described.to_rec709(to_float(rgb))
+        return light if manager.is_plain else _convert_to_working(light, rgb, manager, _find_rec709(manager))
     assert file_space.space is not None
     if not manager.is_chosen and _is_srgb(file_space.space):
         has_table = rgb.dtype == np.uint8 or rgb.dtype == np.uint16
@@ -76,7 +118,8 @@ def unpremultiply(array: Array) -> Array:
     rgb = pixels[..., :3]
     if pixels.shape[2] == 4:
         alpha = pixels[..., 3:]
-        np.divide(rgb, alpha, out=rgb, where=alpha > 0.0)
+        with np.errstate(over="ignore"):
+            np.divide(rgb, alpha, out=rgb, where=alpha > 0.0)
     np.clip(rgb, -_LARGEST, _LARGEST, out=rgb)
     return pixels
 
@@ -101,8 +144,22 @@ def _convert_to_working(light: Array, source_array: Array, manager: ColorManager
 @lru_cache(maxsize=256)
 def _make_reading_processor(manager: ColorManager, space: OcioColorSpace) -> Any:
     """From a space to the working space."""
-    source = manager.find(space.name) if space.name == LINEAR_REC709 else space
-    return _make_exact(manager.make_processor(source or space, manager.working))
+    return _make_exact(manager.make_processor(_find_named(manager, space), manager.working))
+
+
+@lru_cache(maxsize=256)
+def _make_reading_group(manager: ColorManager, space: OcioColorSpace) -> Any:
+    """The transforms from a space to the working space."""
+    return manager.make_processor(_find_named(manager, space), manager.working).createGroupTransform()
+
+
+def _find_named(manager: ColorManager, space: OcioColorSpace) -> OcioColorSpace:
+    return (manager.find(space.name) if space.name == LINEAR_REC709 else None) or space
+
+
+def _find_rec709(manager: ColorManager) -> OcioColorSpace:
+    """Linear Rec.709, of the config or brought into it."""
+    return manager.find(LINEAR_REC709) or OcioColorSpace("Linear Rec.709 (sRGB)", False)
 
 
 def _make_exact(processor: Any) -> Any:

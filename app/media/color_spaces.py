@@ -32,7 +32,7 @@ def find_layer_spaces(
         for layer in info.layers:
             if not layer.is_data:
                 picture.seek_subimage(layer.part, 0)
-                hints = read_color_hints(picture.spec(), info.format, layer.format.startswith("uint"))
+                hints = read_color_hints(picture.spec(), info.format, layer.format)
                 spaces[layer.full_name] = find_file_space(str(path), hints, get_color_manager(color), space)
     return spaces
 

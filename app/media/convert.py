@@ -12,13 +12,22 @@ import OpenImageIO as oiio
 from halation.nodes import ColorSettings, Kind
 from msgspec import Struct, field
 
-from ..color.file_space import find_file_space
+from ..color.file_space import FileSpace, find_file_space
 from ..color.management import get_color_manager
-from ..color.transforms import Array, is_in_working_space, to_float, to_working
+from ..color.transforms import (
+    Array,
+    convert_premultiplied,
+    is_in_working_space,
+    is_linear,
+    to_float,
+    to_working,
+)
 from .layers import ImageInfo, Layer
-from .pictures.color_hints import read_color_hints
-from .pictures.finite import find_non_finite, has_non_finite
+from .pictures.color_hints import has_straight_alpha, read_color_hints
+from .pictures.finite import fill_non_finite, find_non_finite, has_non_finite
+from .pictures.open import read_orientation
 
+_LARGEST_COUNT = 2**32 - 1
 _ALPHA_NAMES = ("a", "alpha")
 _RGBA_LAYOUTS = {(*"rgb", alpha) for alpha in _ALPHA_NAMES}
 
@@ -45,12 +54,13 @@ class Pixels(Struct, frozen=True):
     """A contiguous [height, width, channels] array; row 0 is the top.
 
     `half` says that 16 bits hold it without loss (the dtype is then float16), `repaired` how many pixels were not
-    finite in the file and were replaced.
+    finite in the file and were replaced, `warning` the rest of a sentence about what of the header could not be used.
     """
 
     array: Array
     half: bool
     repaired: int
+    warning: str = ""
 
 
 def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Pixels:
@@ -59,9 +69,10 @@ def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.
     The order matters: what is not finite is repaired among the pixels that the file has, before the display window
     surrounds them with zeros.
     """
-    is_color = request.wants_color and not layer.is_data
+    is_color, warning = request.wants_color and not layer.is_data, ""
     if is_color:
-        array = _to_light(block, layer, request, spec, info)
+        array, space = _to_light(block, layer, request, spec, info)
+        warning = space.warning
     elif request.wants_color:
         rgb, alpha = _split_alpha(block, layer)
         array = _join_rgba(to_float(rgb), None if alpha is None else to_float(alpha))
@@ -70,8 +81,8 @@ def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.
         array = _fit_width(to_float(block[..., :width]), width)
     array, repaired = _repair(np.ascontiguousarray(array), is_color)
     array = _place_in_display_window(array, spec)
-    array = np.ascontiguousarray(_turn_upright(array, spec.get_int_attribute("Orientation", 1)))
-    return Pixels(array, array.dtype == np.float16, repaired)
+    array = np.ascontiguousarray(_turn_upright(array, read_orientation(spec)))
+    return Pixels(array, array.dtype == np.float16, repaired, warning)
 
 
 def select_channels(block: Array, indices: Sequence[int], first: int) -> Array:
@@ -82,32 +93,39 @@ def select_channels(block: Array, indices: Sequence[int], first: int) -> Array:
     return block[..., places]
 
 
-def _to_light(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Array:
-    """Premultiplied RGBA in the working space.
+def _to_light(
+    block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo
+) -> tuple[Array, FileSpace]:
+    """Premultiplied RGBA in the working space, and the space that the file was in.
 
     A file stores color either straight or multiplied by alpha after encoding. Encoding is not linear, so the second
-    has to be divided out before it is undone, and alpha is applied to linear color in the end.
+    has to be divided out before it is undone, and alpha is applied to linear color in the end. Where nothing but a
+    matrix is between the two, the order does not matter, and nothing is divided.
     """
     manager = get_color_manager(request.color)
-    hints = read_color_hints(spec, info.format, block.dtype.kind in "ui")
+    hints = read_color_hints(spec, info.format, layer.format)
     space = find_file_space(info.path, hints, manager, request.space)
-    is_straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
+    is_straight = has_straight_alpha(spec, info.format)
     keeps_numbers = is_in_working_space(space, manager)
+    if block.dtype == np.uint32:
+        block = (block / np.float64(_LARGEST_COUNT)).astype(np.float32)
     if keeps_numbers and not is_straight and tuple(map(str.casefold, layer.channels)) in _RGBA_LAYOUTS:
-        return to_float(block)
+        return to_float(block), space
     rgb, alpha = _split_alpha(block, layer)
     if alpha is not None:
         alpha = to_float(alpha)
     if keeps_numbers:
         rgb = to_float(rgb)
-    elif alpha is None or is_straight:
+    elif alpha is None or is_straight or is_linear(space, manager):
         rgb = to_working(rgb, space, manager)
     else:
-        rgb = np.divide(to_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
-        rgb = to_working(rgb, space, manager) * alpha
+        rgb = to_float(rgb)
+        is_empty = (alpha == 0.0) & (rgb == 0.0).all(axis=2, keepdims=True)  # some curves give light for a code of 0
+        rgb = convert_premultiplied(rgb, alpha, lambda straight: to_working(straight, space, manager))
+        rgb = np.where(is_empty, np.float32(0.0), rgb)
     if alpha is not None and is_straight:
         rgb = rgb * alpha
-    return _join_rgba(rgb, alpha)
+    return _join_rgba(rgb, alpha), space
 
 
 def _split_alpha(block: Array, layer: Layer) -> tuple[Array, Array | None]:
@@ -144,18 +162,15 @@ def _fit_width(array: Array, width: int) -> Array:
 def _repair(array: Array, is_color: bool) -> tuple[Array, int]:
     """The array without broken pixels, and how many there were.
 
-    Color takes the mean of its finite neighbors (OpenImageIO, fixNonFinite BOX3); in data a NaN becomes 0 and
-    infinity, the background of many depth passes, stays.
+    Color takes the mean of its finite neighbors; in data a NaN becomes 0 and infinity, the background of many depth
+    passes, stays.
     """
     if not has_non_finite(array):
         return array, 0
-    if not is_color:
-        nan = np.isnan(array)
-        return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())
-    # one thread: a repaired neighbor counts as finite, so the order decides the result
-    fixed = oiio.ImageBufAlgo.fixNonFinite(oiio.ImageBuf(array), oiio.NONFINITE_BOX3, nthreads=1)
-    repaired = int(find_non_finite(array).any(axis=2).sum())
-    return np.asarray(fixed.get_pixels("half" if array.dtype == np.float16 else "float")), repaired
+    if is_color:
+        return fill_non_finite(array), int(find_non_finite(array).any(axis=2).sum())
+    nan = np.isnan(array)
+    return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())
 
 
 def _place_in_display_window(array: Array, spec: oiio.ImageSpec) -> Array:

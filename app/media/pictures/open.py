@@ -19,7 +19,15 @@ from ..limits import check_size
 COLOR_TAG = "halation:colorspace"
 """The attribute that names the color space in formats that have no word for it."""
 
-_DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
+_DTYPES = {
+    "half": "float16",
+    "uint8": "uint8",
+    "uint16": "uint16",
+    "uint": "uint32",
+    "int8": "int8",
+    "int16": "int16",
+    "int": "int32",
+}
 _BY_ROWS = ("openexr", "tiff")
 """Formats that need not be decoded from their beginning."""
 
@@ -70,8 +78,15 @@ def describe_picture(picture: oiio.ImageInput, path: str) -> ImageInfo:
             parts.append(_read_channels(index, spec))
             is_whole = is_whole and _is_whole(spec)
         index += 1
+    picture.geterror()  # that there is no further part
     format = picture.format_name()
     return ImageInfo(path, size, group_channels(parts), fingerprint(path), format, is_whole and format in _BY_ROWS)
+
+
+def read_orientation(spec: oiio.ImageSpec) -> int:
+    """How the picture is turned (TIFF 6.0, tag 274): 1 to 8, 1 for upright and for numbers that mean nothing."""
+    orientation = spec.get_int_attribute("Orientation", 1)
+    return orientation if 1 <= orientation <= 8 else 1
 
 
 def read_color_tag(spec: oiio.ImageSpec) -> str:
@@ -108,10 +123,10 @@ def _read_channels(index: int, spec: oiio.ImageSpec) -> ChannelPart:
 def _upright_size(spec: oiio.ImageSpec) -> Size:
     """Width and height of the display window, as it is seen."""
     width, height = spec.full_width or spec.width, spec.full_height or spec.height
-    return (height, width) if spec.get_int_attribute("Orientation", 1) > 4 else (width, height)
+    return (height, width) if read_orientation(spec) > 4 else (width, height)
 
 
 def _is_whole(spec: oiio.ImageSpec) -> bool:
     """True if there are pixels for all of the display window and nothing else, and it is upright."""
     display = (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height)
-    return (spec.x, spec.y, spec.width, spec.height) == display and spec.get_int_attribute("Orientation", 1) == 1
+    return (spec.x, spec.y, spec.width, spec.height) == display and read_orientation(spec) == 1

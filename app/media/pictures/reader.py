@@ -14,8 +14,17 @@ from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
 from .open import describe_fault, describe_picture, open_picture
 
-DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
-"""The formats that OpenImageIO decodes as they are; all others become 32-bit floats."""
+_DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16"}
+
+
+def choose_decoding(layer: Layer, info: ImageInfo) -> str:
+    """The format that OpenImageIO decodes a layer as: its own, or 32-bit floats, in which integers fill 0..1.
+
+    32-bit integers in an EXR are ids and counts, whose every bit may matter.
+    """
+    if layer.format == "uint32" and info.format == "openexr":
+        return "uint"
+    return _DECODED_AS.get(layer.format, "float")
 
 
 def read_picture_layers(path: str, requests: Sequence[LayerRequest]) -> list[Pixels]:
@@ -37,20 +46,20 @@ def decode_layers(picture: oiio.ImageInput, info: ImageInfo, layers: Sequence[La
     rows of all channels, so a second reading would decompress all of it again.
     """
     spans: dict[tuple[int, str], list[int]] = {}
-    for layer in layers:
-        spans.setdefault((layer.part, layer.format), []).extend(layer.indices)
+    keys = [(layer.part, choose_decoding(layer, info)) for layer in layers]
+    for key, layer in zip(keys, layers, strict=True):
+        spans.setdefault(key, []).extend(layer.indices)
     blocks: dict[tuple[int, str], Array] = {}
     for (part, format), indices in spans.items():
         check_memory(info.path, info.size, max(indices) + 1 - min(indices))
         try:
-            block = picture.read_image(part, 0, min(indices), max(indices) + 1, DECODED_AS.get(format, "float"))
+            block = picture.read_image(part, 0, min(indices), max(indices) + 1, format)
         except (MemoryError, ValueError) as error:
             width, height = info.size
             raise InputError(f"{info.path}: {width}x{height} pixels do not fit into memory") from error
         if block is None:
             raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
         blocks[part, format] = np.asarray(block)
-    keys = [(layer.part, layer.format) for layer in layers]
     return [
         select_channels(blocks[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)
     ]

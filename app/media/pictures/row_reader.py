@@ -9,23 +9,23 @@ from msgspec.structs import replace
 from ...color.transforms import Array
 from ...errors import InputError
 from ..convert import LayerRequest, Pixels, convert_layer, select_channels
-from ..layers import Layer, find_layer
+from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
 from .finite import find_non_finite, has_non_finite
 from .open import describe_fault, describe_picture, open_picture
-from .reader import DECODED_AS
+from .reader import choose_decoding
 
 _MORE_ROWS = 16
-"""Rows that are read at a time above the first one, until its repair can be known. Such rows are rare, and 16 is the
+"""Rows that are read at a time above and below, until a repair can be known. Such rows are rare, and 16 is the
 block of scan lines in EXR files with ZIP compression (OpenEXR file layout): fewer would decode the same block again."""
 
 
 def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
     """Rows `first` to before `end` of what `read_layer` returns, of a file that can be read by rows (`by_rows`).
 
-    A pixel that is not finite is repaired from its neighbors, from the top down, and a repaired pixel counts as a
-    finite neighbor. So the repair of a row depends on the row above wherever that has such pixels too: rows above are
-    added until one has none, which is where the repair of the whole picture would have begun anew.
+    A pixel that is not finite is repaired from its neighbors, and a repaired pixel counts as a finite neighbor. So the
+    repair of a row depends on the rows around it wherever those have such pixels too: rows above and below are added
+    until one has none, over which no repair reaches.
 
     Raises:
         InputError: as `read_layer`.
@@ -39,11 +39,15 @@ def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
             raise InputError(f"{path}: the file has changed since the rendering began: render again")
         is_color = request.wants_color and not layer.is_data
         top, bottom = max(first - 1, 0), min(end + 1, info.size[1])
-        block = _decode_rows(picture, spec, layer, path, top, bottom)
+        block = _decode_rows(picture, spec, layer, info, top, bottom)
         while is_color and top and block.dtype.kind == "f" and has_non_finite(block[:1]):
             above = max(top - _MORE_ROWS, 0)
-            block = np.concatenate([_decode_rows(picture, spec, layer, path, above, top), block])
+            block = np.concatenate([_decode_rows(picture, spec, layer, info, above, top), block])
             top = above
+        while is_color and bottom < info.size[1] and block.dtype.kind == "f" and has_non_finite(block[-1:]):
+            below = min(bottom + _MORE_ROWS, info.size[1])
+            block = np.concatenate([block, _decode_rows(picture, spec, layer, info, bottom, below)])
+            bottom = below
         pixels = convert_layer(block, layer, request, spec, info)
         rows = slice(first - top, end - top)
         repaired = _count_repaired(block[rows], is_color) if pixels.repaired else 0
@@ -51,13 +55,13 @@ def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
 
 
 def _decode_rows(
-    picture: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, path: str, first: int, end: int
+    picture: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, info: ImageInfo, first: int, end: int
 ) -> Array:
     """The channels of a layer in some rows, in the file's precision."""
-    low, high, format = min(layer.indices), max(layer.indices) + 1, DECODED_AS.get(layer.format, "float")
+    low, high, format = min(layer.indices), max(layer.indices) + 1, choose_decoding(layer, info)
     tile = spec.tile_height
     start, stop = (first // tile * tile, min(-(-end // tile) * tile, spec.height)) if tile else (first, end)
-    check_memory(path, (spec.width, stop - start), high - low)
+    check_memory(info.path, (spec.width, stop - start), high - low)
     rows = (spec.y + start, spec.y + stop)
     if tile:
         columns = (spec.x, spec.x + spec.width)
@@ -65,7 +69,7 @@ def _decode_rows(
     else:
         block = picture.read_scanlines(layer.part, 0, *rows, 0, low, high, format)
     if block is None:
-        raise InputError(f"{path}: {describe_fault(picture.geterror() or 'corrupt')}")
+        raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
     array = np.asarray(block).reshape(stop - start, spec.width, high - low)[first - start : end - start]
     return select_channels(array, layer.indices, low)
 
