@@ -157,12 +157,15 @@ def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) 
         "programs": report.programs,
         "peak_bytes": report.peak_bytes,
         "repaired": dict(report.repaired),
+        "warnings": dict(report.warnings),
         "seconds": {name: round(part, 4) for name, part in seconds.items()},
     }
 
 
 def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> None:
     """Print which files were written in `total` seconds: as JSON to standard output, or as text to standard error."""
+    for path, warning in report["warnings"].items():
+        print_note(f"{path}: {warning}")
     for path, count in report["repaired"].items():
         print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
     if as_json:

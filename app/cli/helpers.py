@@ -48,7 +48,8 @@ def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
             total[name] = [*total[name], *report[name]]
         for name in ("passes", "programs", "peak_bytes"):
             total[name] += report[name]
-        total["repaired"] = {**total["repaired"], **report["repaired"]}
+        for name in ("repaired", "warnings"):
+            total[name] = {**total[name], **report[name]}
         total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
     if len(reports) == 1:
         return total

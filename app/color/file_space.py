@@ -128,7 +128,7 @@ def _read_name(path: str, hints: ColorHints, managed: ColorManager) -> FileSpace
     name, reason = hints.tag, "its header says so"
     if profile_space := hints.profile_space:
         name, reason = profile_space, f"its ICC profile is {hints.profile}"
-    elif hints.gamma and not _names_gamma(name, hints.gamma) and name != LINEAR_REC709:
+    elif hints.gamma and not (_names_gamma(name, hints.gamma) and managed.find(name)):
         described = HeaderSpace(gamma=hints.gamma)
         return FileSpace(described.name, "its gamma", described=described) if described.is_valid else None
     elif name.casefold() in _FILM_TAGS and managed.find(name) is None:

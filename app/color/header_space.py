@@ -1,4 +1,4 @@
-"""Color spaces that a header describes by numbers instead of a name: chromaticities, a gamma, the curve of film scans."""
+"""Color spaces that a header describes by numbers: chromaticities, a gamma, or the curve of film scans."""
 
 from __future__ import annotations
 

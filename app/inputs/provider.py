@@ -42,6 +42,8 @@ class MediaProvider:
         self.prefetcher = prefetcher
         self.repaired_pixels: dict[str, int] = {}
         """How many pixels were repaired, by path."""
+        self.warnings: dict[str, str] = {}
+        """What of a header could not be used, as the rest of a sentence, by path."""
         self.describer: Callable[[str, Mapping[str, str]], Render] | None = None
         """Reads what a render holds in place of `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
@@ -136,6 +138,8 @@ class MediaProvider:
             repaired = pixels.repaired
         if pixels.repaired:
             self.repaired_pixels[path] = repaired
+        if pixels.warning:
+            self.warnings[path] = pixels.warning
         return pixels.array
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:

@@ -43,7 +43,12 @@ def describe_color_spaces(path: str | Path) -> list[tuple[str, ...]]:
         spaces = find_layer_spaces(path)
     except HalationError as error:
         return [("unknown", str(error).removeprefix(f"{path}: "))]
-    distinct = {(space.name, space.reason) for space in spaces.values()}
+    rows = {layer: _describe_space(space) for layer, space in spaces.items()}
+    distinct = set(rows.values())
     if len(distinct) == 1:
         return [*distinct]
-    return [(layer, space.name, space.reason) for layer, space in spaces.items()]
+    return [(layer, *row) for layer, row in rows.items()]
+
+
+def _describe_space(space: FileSpace) -> tuple[str, str]:
+    return space.name, f"{space.reason}; {space.warning}" if space.warning else space.reason

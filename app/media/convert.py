@@ -114,6 +114,8 @@ def _to_light(
     rgb, alpha = _split_alpha(block, layer)
     if alpha is not None:
         alpha = to_float(alpha)
+        if info.format == "bmp" and not alpha.any():  # a fourth byte that is there to fill a word
+            alpha = np.ones_like(alpha)
     if keeps_numbers:
         rgb = to_float(rgb)
     elif alpha is None or is_straight or is_linear(space, manager):

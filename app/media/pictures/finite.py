@@ -30,29 +30,32 @@ def has_non_finite(array: Array) -> bool:
 
 
 def fill_non_finite(array: Array) -> Array:
-    """Color [h, w, c] without NaN and infinity: each takes the mean of its finite neighbors, 0 if nothing is finite.
+    """Color [h, w, c] without NaN and infinity: each takes the mean of its finite neighbors, or 0 without any.
 
-    OpenImageIO goes through the picture from the top left, and what it has filled counts as finite. Two kinds of pixel
-    are left: those with nothing finite before them, and those whose neighbors are so large that their sum is infinite.
-    Going back from the bottom right, with smaller numbers, fills them.
+    The sum of large neighbors may be infinite. Then its band of rows, those between two that need no filling, is filled
+    again with smaller numbers; rows outside of it have no part in that, so a band may be read alone.
     """
     filled = _average_neighbors(array)
     if not has_non_finite(filled):
         return filled
-    backwards = _average_neighbors(np.ascontiguousarray(filled[::-1, ::-1], np.float32) * _SMALLER)[::-1, ::-1]
     most = np.float32(HALF_MAX if array.dtype == np.float16 else np.finfo(np.float32).max)
-    with np.errstate(over="ignore"):
-        means = np.nan_to_num(backwards / _SMALLER, nan=0.0, posinf=most, neginf=-most)
-    if not np.isfinite(backwards).any():
-        means = np.zeros_like(means)
-    return np.where(find_non_finite(filled), np.clip(means, -most, most).astype(array.dtype), filled)
+    is_broken = np.pad(find_non_finite(array).any(axis=(1, 2)), 1)
+    starts, ends = (np.flatnonzero(edge) for edge in (is_broken[1:] & ~is_broken[:-1], is_broken[:-1] & ~is_broken[1:]))
+    for start, end in zip(starts, ends, strict=True):
+        if has_non_finite(filled[start:end]):
+            rows = slice(max(start - 1, 0), end + 1)
+            with np.errstate(over="ignore", invalid="ignore"):
+                means = _average_neighbors(array[rows].astype(np.float32) * _SMALLER)
+                means = np.clip(means / _SMALLER, -most, most).astype(array.dtype)
+            filled[rows] = np.where(find_non_finite(array[rows]), means, array[rows])
+    return filled
 
 
 def _average_neighbors(array: Array) -> Array:
     """What is not finite as the mean of the finite ones among 8 neighbors (OpenImageIO, fixNonFinite BOX3)."""
     # one thread: a filled neighbor counts as finite, so the order decides the result
     filled = oiio.ImageBufAlgo.fixNonFinite(oiio.ImageBuf(array), oiio.NONFINITE_BOX3, nthreads=1)
-    return np.asarray(filled.get_pixels("half" if array.dtype == np.float16 else "float"))
+    return np.array(filled.get_pixels("half" if array.dtype == np.float16 else "float"))
 
 
 def to_half(array: Array) -> Array:

@@ -13,18 +13,19 @@ from ..convert import LayerRequest, Pixels, convert_layer, select_channels
 from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
 from .open import describe_fault, describe_picture, open_picture
+from .wide_integers import scale_to_unit
 
-_DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16"}
+_DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 
 
-def choose_decoding(layer: Layer, info: ImageInfo) -> str:
-    """The format that OpenImageIO decodes a layer as: its own, or 32-bit floats, in which integers fill 0..1.
-
-    32-bit integers in an EXR are ids and counts, whose every bit may matter.
-    """
-    if layer.format == "uint32" and info.format == "openexr":
-        return "uint"
+def choose_decoding(layer: Layer) -> str:
+    """The format that OpenImageIO decodes a layer as: its own, or 32-bit floats, in which integers fill 0..1."""
     return _DECODED_AS.get(layer.format, "float")
+
+
+def scale_integers(block: Array, info: ImageInfo, spec: oiio.ImageSpec) -> Array:
+    """Decoded numbers with 32-bit integers as 0..1, but for those of an EXR: they are ids and counts."""
+    return scale_to_unit(block, spec) if block.dtype == np.uint32 and info.format != "openexr" else block
 
 
 def read_picture_layers(path: str, requests: Sequence[LayerRequest]) -> list[Pixels]:
@@ -46,7 +47,7 @@ def decode_layers(picture: oiio.ImageInput, info: ImageInfo, layers: Sequence[La
     rows of all channels, so a second reading would decompress all of it again.
     """
     spans: dict[tuple[int, str], list[int]] = {}
-    keys = [(layer.part, choose_decoding(layer, info)) for layer in layers]
+    keys = [(layer.part, choose_decoding(layer)) for layer in layers]
     for key, layer in zip(keys, layers, strict=True):
         spans.setdefault(key, []).extend(layer.indices)
     blocks: dict[tuple[int, str], Array] = {}
@@ -59,7 +60,8 @@ def decode_layers(picture: oiio.ImageInput, info: ImageInfo, layers: Sequence[La
             raise InputError(f"{info.path}: {width}x{height} pixels do not fit into memory") from error
         if block is None:
             raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
-        blocks[part, format] = np.asarray(block)
+        picture.seek_subimage(part, 0)
+        blocks[part, format] = scale_integers(np.asarray(block), info, picture.spec())
     return [
         select_channels(blocks[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)
     ]

@@ -13,7 +13,7 @@ from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
 from .finite import find_non_finite, has_non_finite
 from .open import describe_fault, describe_picture, open_picture
-from .reader import choose_decoding
+from .reader import choose_decoding, scale_integers
 
 _MORE_ROWS = 16
 """Rows that are read at a time above and below, until a repair can be known. Such rows are rare, and 16 is the
@@ -58,7 +58,7 @@ def _decode_rows(
     picture: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, info: ImageInfo, first: int, end: int
 ) -> Array:
     """The channels of a layer in some rows, in the file's precision."""
-    low, high, format = min(layer.indices), max(layer.indices) + 1, choose_decoding(layer, info)
+    low, high, format = min(layer.indices), max(layer.indices) + 1, choose_decoding(layer)
     tile = spec.tile_height
     start, stop = (first // tile * tile, min(-(-end // tile) * tile, spec.height)) if tile else (first, end)
     check_memory(info.path, (spec.width, stop - start), high - low)
@@ -70,7 +70,9 @@ def _decode_rows(
         block = picture.read_scanlines(layer.part, 0, *rows, 0, low, high, format)
     if block is None:
         raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
-    array = np.asarray(block).reshape(stop - start, spec.width, high - low)[first - start : end - start]
+    array = scale_integers(np.asarray(block), info, spec).reshape(stop - start, spec.width, high - low)[
+        first - start : end - start
+    ]
     return select_channels(array, layer.indices, low)
 
 

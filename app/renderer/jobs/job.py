@@ -72,6 +72,7 @@ class JobReport(Struct, frozen=True):
     repaired: Mapping[str, int]
     videos: tuple[Path, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
+    warnings: Mapping[str, str] = field(default_factory=dict[str, str])
 
     @property
     def written(self) -> tuple[Path, ...]:
@@ -109,6 +110,7 @@ def run_job(
         dict(renderer.pictures.repaired_pixels),
         job.videos,
         job.seconds,
+        dict(renderer.pictures.warnings),
     )
 
 
