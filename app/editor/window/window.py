@@ -23,6 +23,7 @@ from .dropped_files import take_files
 from .editor import Editor
 from .frame_updater import FrameUpdater
 from .guard import draw_failure, draw_guarded, enable_error_recovery
+from .input_events import InputQueue
 from .menus import draw_menus
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .screenshot import save_screenshot
@@ -56,6 +57,7 @@ class Window:
         self._overlays: dict[str, Panel] = {}
         self._updater: FrameUpdater
         self._dropped: list[str] = []
+        self._input = InputQueue()
         self._title = ""
         self._fronted: set[str] = set()
         self._styled: tuple[Palette, float] | None = None
@@ -93,6 +95,7 @@ class Window:
         calls = params.callbacks
         calls.load_additional_fonts = self._load_fonts
         calls.post_init = self._begin
+        calls.pre_new_frame = self._input.forward
         calls.post_new_frame = self._before_panels
         calls.show_menus = self._draw_menus
         calls.show_status = self._draw_status
@@ -131,6 +134,7 @@ class Window:
         self._overlays = {name: make(self._contexts) for name, make in OVERLAYS}
         imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
         imgui.get_io().config_drag_click_to_input_text = True
+        self._input.connect(_host())
         glfw.set_drop_callback(_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
 
     def _load_fonts(self) -> None:

@@ -1,0 +1,221 @@
+"""Keys, text and the mouse from the window system to the interface, so that no chord is lost at a low frame rate.
+
+The interface library looks at its keyboard once a frame. When Ctrl+S is pressed and released between two frames, it
+sees that S went down and that Ctrl is up: the chord is lost, and S runs as a shortcut of its own. The window system
+sends the modifiers with every event, so this queue keeps each event with its modifiers and hands the events over in
+their order. It ends a frame's share where the modifiers change after a press; the rest comes with the next frame.
+
+While a text field is edited, what is typed arrives as characters alone, all of them in the next frame: the library
+takes one key at a time, and text would trail behind the hand.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache, partial
+from types import MappingProxyType
+from typing import Any
+
+from imgui_bundle import imgui
+
+import glfw  # isort: skip
+
+
+@dataclass(frozen=True)
+class InputEvent:
+    """One event of the window system."""
+
+    modifiers: frozenset[imgui.Key]
+    """The modifiers that are held after the event."""
+    presses: bool
+    """Whether the event asks for something, which the modifiers decide on: a key or a button down, text, the wheel."""
+    forward: Callable[[imgui.IO], object]
+    """Tells the interface library of the event."""
+    is_character: bool = False
+    """Whether it is typed text, or a key that only serves to type it: in a text field the text says it all."""
+    is_text: bool = False
+    """Whether it is the typed text itself."""
+    is_release: bool = False
+    """Whether it only lets a key or a button go: the modifiers do not matter to it."""
+
+
+class InputQueue:
+    """The events that the interface has not seen yet."""
+
+    def __init__(self) -> None:
+        self._events: deque[InputEvent] = deque()
+        self._held: set[imgui.Key] = set()
+        self._forwarded: frozenset[imgui.Key] = frozenset()
+
+    def __len__(self) -> int:
+        return len(self._events)
+
+    def connect(self, window: Any) -> None:
+        """Take the events of a GLFW window in place of the interface library."""
+        address = int(ctypes.cast(window, ctypes.c_void_p).value or 0)
+        glfw.set_key_callback(window, lambda _, key, code, action, bits: self.add_key(key, code, action, bits))
+        glfw.set_char_callback(window, lambda _, character: self.add_text(character))
+        glfw.set_mouse_button_callback(window, lambda _, button, action, bits: self.add_button(button, action, bits))
+        glfw.set_scroll_callback(window, lambda _, across, down: self.add_wheel(across, down))
+        glfw.set_cursor_pos_callback(window, lambda _, x, y: self.add_position(address, x, y))
+
+    def add_key(self, key: int, scancode: int, action: int, bits: int) -> None:
+        """A key went down or up; repeats are the interface library's own."""
+        if action == glfw.REPEAT:
+            return
+        is_down = action == glfw.PRESS
+        if key in _modifier_keys():
+            # Whether an event of a modifier counts the modifier itself differs between systems: the key decides.
+            (self._held.add if is_down else self._held.discard)(_modifier_keys()[key])
+            modifiers = frozenset(self._held)
+        else:
+            modifiers = self._held_with(bits)
+        name = _translate_key(key, scancode)
+        presses = is_down and key not in _modifier_keys()
+        is_shift = _modifier_keys().get(key) == imgui.Key.mod_shift
+        types = is_shift or glfw.KEY_SPACE <= key <= glfw.KEY_WORLD_2
+        is_character = types and (presses or is_shift) and modifiers <= {imgui.Key.mod_shift}
+        self._events.append(
+            InputEvent(
+                modifiers,
+                presses,
+                lambda io: io.add_key_event(name, is_down),
+                is_character=is_character,
+                is_release=not is_down and key not in _modifier_keys(),
+            )
+        )
+
+    def add_text(self, character: int) -> None:
+        """A character was typed. It comes right behind its key, whose modifiers are its own."""
+        self._events.append(
+            InputEvent(
+                self._latest, True, lambda io: io.add_input_character(character), is_character=True, is_text=True
+            )
+        )
+
+    def add_button(self, button: int, action: int, bits: int) -> None:
+        """A button of the mouse went down or up."""
+        if button >= int(imgui.MouseButton_.count):
+            return
+        is_down = action == glfw.PRESS
+        modifiers = self._held_with(bits)
+        self._events.append(InputEvent(modifiers, is_down, lambda io: io.add_mouse_button_event(button, is_down)))
+
+    def add_wheel(self, across: float, down: float) -> None:
+        """The wheel was turned."""
+        self._events.append(InputEvent(self._latest, True, lambda io: io.add_mouse_wheel_event(across, down)))
+
+    def add_position(self, window: int, x: float, y: float) -> None:
+        """The mouse moved; the interface library knows which of its windows that concerns."""
+        move = partial(imgui.backends.glfw_cursor_pos_callback, window, x, y)
+        self._events.append(InputEvent(self._latest, False, lambda _: move()))
+
+    def forward(self) -> None:
+        """Hand over a frame's share; to be called before the interface begins the frame."""
+        io, has_pressed = imgui.get_io(), False
+        while self._events:
+            event = self._events[0]
+            if event.is_character and io.want_text_input:
+                self._events.popleft()
+                if event.is_text:
+                    event.forward(io)
+                continue
+            if event.modifiers != self._forwarded and not event.is_release:
+                if has_pressed:
+                    return
+                for modifier in event.modifiers ^ self._forwarded:
+                    io.add_key_event(modifier, modifier in event.modifiers)
+                self._forwarded = event.modifiers
+            self._events.popleft().forward(io)
+            has_pressed |= event.presses
+            if event.presses and io.want_text_input:
+                return  # Enter, Tab or a click may leave the field: what follows is no text for it
+
+    @property
+    def _latest(self) -> frozenset[imgui.Key]:
+        return frozenset(self._held)
+
+    def _held_with(self, bits: int) -> frozenset[imgui.Key]:
+        """What the event itself says is held; it knows of a release that happened over another window."""
+        self._held = {modifier for bit, modifier in _BITS.items() if bits & bit}
+        return frozenset(self._held)
+
+
+_BITS: Mapping[int, imgui.Key] = MappingProxyType(
+    {
+        glfw.MOD_CONTROL: imgui.Key.mod_ctrl,
+        glfw.MOD_SHIFT: imgui.Key.mod_shift,
+        glfw.MOD_ALT: imgui.Key.mod_alt,
+        glfw.MOD_SUPER: imgui.Key.mod_super,
+    }
+)
+_SIGNS: Mapping[str, str] = MappingProxyType(
+    {
+        "`": "grave_accent",
+        "-": "minus",
+        "=": "equal",
+        "[": "left_bracket",
+        "]": "right_bracket",
+        "\\": "backslash",
+        ",": "comma",
+        ";": "semicolon",
+        "'": "apostrophe",
+        ".": "period",
+        "/": "slash",
+    }
+)
+
+
+def _translate_key(key: int, scancode: int) -> imgui.Key:
+    """The key by what the user's keyboard layout prints on it, as shortcuts are named, else by its place."""
+    if not glfw.KEY_KP_0 <= key <= glfw.KEY_KP_EQUAL:
+        label = None
+        with suppress(glfw.GLFWError):
+            label = glfw.get_key_name(key, scancode)
+        if isinstance(label, bytes):
+            label = label.decode("utf-8", "replace")
+        if label and len(label) == 1 and label.isascii():
+            name = f"_{label}" if label.isdigit() else _SIGNS.get(label, label.lower())
+            if name in imgui.Key.__members__:
+                return imgui.Key[name]
+    return _keys_by_place().get(key, imgui.Key.none)
+
+
+@cache
+def _keys_by_place() -> Mapping[int, imgui.Key]:
+    return MappingProxyType(dict(_pair_keys()))
+
+
+def _pair_keys() -> Iterator[tuple[int, imgui.Key]]:
+    """Each key of the window system with its key of the interface library: the two differ in how they spell names."""
+    arrows = {"LEFT", "RIGHT", "UP", "DOWN"}
+    for constant in (name for name in dir(glfw) if name.startswith("KEY_")):
+        name = constant.removeprefix("KEY_")
+        if name.isdigit():
+            spelling = f"_{name}"
+        elif name in arrows:
+            spelling = f"{name.lower()}_arrow"
+        elif name.startswith("KP_"):
+            spelling = "keypad" + (name[3:] if name[3:].isdigit() else f"_{name[3:].lower()}")
+        elif name.startswith("WORLD_"):
+            spelling = "oem102"
+        else:
+            spelling = name.lower().replace("control", "ctrl")
+        if spelling in imgui.Key.__members__ and spelling != "none":
+            yield getattr(glfw, constant), imgui.Key[spelling]
+
+
+@cache
+def _modifier_keys() -> Mapping[int, imgui.Key]:
+    """Both keys of each modifier."""
+    return MappingProxyType(
+        {
+            getattr(glfw, f"KEY_{side}_{name}"): modifier
+            for name, modifier in zip(("CONTROL", "SHIFT", "ALT", "SUPER"), _BITS.values(), strict=True)
+            for side in ("LEFT", "RIGHT")
+        }
+    )

@@ -1,0 +1,159 @@
+"""Input from the window system, as the interface library sees it frame by frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from halation.editor.toolkit.keys import chord
+from halation.editor.window.input_events import InputQueue
+from imgui_bundle import imgui
+
+import glfw  # isort: skip
+
+NAMES = ("Ctrl+S", "S", "Ctrl+Shift+S", "Ctrl+A", "A", "Ctrl+Z", "Z", "Alt+X", "X")
+
+
+@pytest.fixture
+def queue() -> Iterator[InputQueue]:
+    context = imgui.create_context()
+    io = imgui.get_io()
+    io.display_size = imgui.ImVec2(640.0, 480.0)
+    io.backend_flags |= int(imgui.BackendFlags_.renderer_has_textures)
+    io.set_ini_filename("")
+    queue = InputQueue()
+    frame(queue)
+    yield queue
+    imgui.destroy_context(context)
+
+
+def frame(queue: InputQueue) -> list[str]:
+    """The chords that the interface library sees pressed in one frame."""
+    queue.forward()
+    imgui.new_frame()
+    held = int(imgui.get_io().key_mods)
+    pressed = [
+        name
+        for name in NAMES
+        if imgui.is_key_pressed(imgui.Key(chord(name.rpartition("+")[2])), False)
+        and held == chord(name) - chord(name.rpartition("+")[2])
+    ]
+    imgui.end_frame()
+    return pressed
+
+
+def press(queue: InputQueue, key: int, bits: int = 0) -> None:
+    queue.add_key(key, 0, glfw.PRESS, bits)
+
+
+def release(queue: InputQueue, key: int, bits: int = 0) -> None:
+    queue.add_key(key, 0, glfw.RELEASE, bits)
+
+
+def tap_chord(queue: InputQueue, modifier: int, bit: int, key: int, modifier_first: bool) -> None:
+    press(queue, modifier)
+    press(queue, key, bit)
+    if modifier_first:
+        release(queue, modifier, bit)
+        release(queue, key)
+    else:
+        release(queue, key, bit)
+        release(queue, modifier, bit)
+
+
+@pytest.mark.parametrize("modifier_first", [False, True])
+def test_chords_between_two_frames_arrive_each_in_a_frame(queue: InputQueue, modifier_first: bool) -> None:
+    for key in (glfw.KEY_S, glfw.KEY_A, glfw.KEY_Z):
+        tap_chord(queue, glfw.KEY_LEFT_CONTROL, glfw.MOD_CONTROL, key, modifier_first)
+    tap_chord(queue, glfw.KEY_RIGHT_ALT, glfw.MOD_ALT, glfw.KEY_X, modifier_first)
+    press(queue, glfw.KEY_S)
+    release(queue, glfw.KEY_S)
+    seen = [name for _ in range(12) for name in frame(queue)]
+    assert seen == ["Ctrl+S", "Ctrl+A", "Ctrl+Z", "Alt+X", "S"]
+    assert not queue and int(imgui.get_io().key_mods) == 0
+
+
+def test_shift_joins_control(queue: InputQueue) -> None:
+    press(queue, glfw.KEY_LEFT_CONTROL)
+    press(queue, glfw.KEY_LEFT_SHIFT, glfw.MOD_CONTROL)
+    press(queue, glfw.KEY_S, glfw.MOD_CONTROL | glfw.MOD_SHIFT)
+    release(queue, glfw.KEY_LEFT_SHIFT, glfw.MOD_CONTROL | glfw.MOD_SHIFT)
+    release(queue, glfw.KEY_LEFT_CONTROL, glfw.MOD_CONTROL)
+    release(queue, glfw.KEY_S)
+    assert [name for _ in range(4) for name in frame(queue)] == ["Ctrl+Shift+S"]
+
+
+def test_what_is_typed_behind_a_chord_is_text(queue: InputQueue) -> None:
+    tap_chord(queue, glfw.KEY_LEFT_CONTROL, glfw.MOD_CONTROL, glfw.KEY_A, True)
+    for character in "xyz":
+        press(queue, ord(character.upper()))
+        queue.add_text(ord(character))
+        release(queue, ord(character.upper()))
+    assert frame(queue) == ["Ctrl+A"]
+    assert imgui.get_io().want_text_input is False
+    assert frame(queue) == ["X"] and not queue
+
+
+def test_a_click_has_the_modifiers_of_its_moment(queue: InputQueue) -> None:
+    press(queue, glfw.KEY_LEFT_SHIFT)
+    queue.add_button(0, glfw.PRESS, glfw.MOD_SHIFT)
+    queue.add_button(0, glfw.RELEASE, glfw.MOD_SHIFT)
+    release(queue, glfw.KEY_LEFT_SHIFT, glfw.MOD_SHIFT)
+    queue.add_button(0, glfw.PRESS, 0)
+    clicks = []
+    for _ in range(6):
+        frame(queue)
+        if imgui.is_mouse_clicked(0):
+            clicks.append(imgui.get_io().key_shift)
+    assert clicks == [True, False]
+
+
+def test_a_modifier_released_over_another_window_is_not_held_for_ever(queue: InputQueue) -> None:
+    press(queue, glfw.KEY_LEFT_CONTROL)
+    press(queue, glfw.KEY_S, 0)
+    assert [name for _ in range(3) for name in frame(queue)] == ["S"]
+
+
+def test_the_wheel_waits_for_its_modifiers(queue: InputQueue) -> None:
+    press(queue, glfw.KEY_A)
+    press(queue, glfw.KEY_LEFT_CONTROL)
+    queue.add_wheel(0.0, 1.0)
+    turns = []
+    for _ in range(3):
+        queue.forward()
+        imgui.new_frame()
+        turns.append((imgui.get_io().mouse_wheel, imgui.get_io().key_ctrl))
+        imgui.end_frame()
+    assert turns == [(0.0, False), (1.0, True), (0.0, True)]
+
+
+def test_text_arrives_in_one_frame_and_enter_behind_it(queue: InputQueue) -> None:
+    def edit_frame(text: str, focus: bool = False) -> tuple[bool, str]:
+        queue.forward()
+        imgui.new_frame()
+        imgui.begin("window")
+        if focus:
+            imgui.set_keyboard_focus_here()
+        has_entered, text = imgui.input_text("field", text, imgui.InputTextFlags_.enter_returns_true)
+        imgui.end()
+        imgui.end_frame()
+        return has_entered, text
+
+    for index in range(4):
+        edit_frame("", focus=index == 0)
+    assert imgui.get_io().want_text_input
+    for character in "/Tmp/My look.json":
+        shift = glfw.MOD_SHIFT if character.isupper() else 0
+        if shift:
+            press(queue, glfw.KEY_LEFT_SHIFT)
+        press(queue, ord(character.upper()), shift)
+        queue.add_text(ord(character))
+        release(queue, ord(character.upper()), shift)
+        if shift:
+            release(queue, glfw.KEY_LEFT_SHIFT, shift)
+    press(queue, glfw.KEY_ENTER)
+    release(queue, glfw.KEY_ENTER)
+    frames = [edit_frame("") for _ in range(3)]
+    assert (True, "/Tmp/My look.json") in frames[:2]
+    press(queue, glfw.KEY_S)
+    assert not imgui.get_io().want_text_input and frame(queue) == ["S"]
