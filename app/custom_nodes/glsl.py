@@ -13,20 +13,22 @@ from typing import Any, Literal, cast
 from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Pointwise, Socket, Value, Vector
 from msgspec import Struct
 
-from ..glsl import COMMENT, GlslFunction, Text, blank_comments, parse, unify_lines
+from ..glsl import COMMENT, GlslFunction, blank_comments, macro_name, parse, unify_lines, words
 from ..glsl.loops import guard_loops
 from .code import Code, CodeFault, CustomNode
 from .ending import add_ending
 from .notes import Note, read_note
 from .passes import make_passes
+from .prefixes import prefix_names
+from .securing import expand_code, guard_code
 from .values import value_of
 
 _FORBIDDEN = re.compile(
-    r"\b(main|uniform|layout|buffer|shared|discard|barrier|imageLoad|imageStore|texelFetch|texture\w*|gl_\w+)\b"
+    r"\b(main|uniform|layout|buffer|shared|discard|barrier|texelFetch|texture\w*|gl_\w+"
+    r"|image(?:Load|Store|Atomic)\w*|atomic\w+|subroutine|halation_\w+)\b"
     r"|^[ \t]*#[ \t]*(version|extension|pragma|line)\b",
     re.MULTILINE,
 )
-_DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node", "muted", "code", "text", "title"})
 KEPT = 512
@@ -48,12 +50,7 @@ def glsl_node(code: Code) -> type[CustomNode]:
     source = unify_lines(code.text)
     plain = blank_comments(source)
     text = parse("written", source, code.name)
-    if forbidden := _FORBIDDEN.search(plain):
-        forbidden_word = forbidden[1] or f"#{forbidden[2]}"
-        line = plain.count("\n", 0, forbidden.start()) + 1
-        raise CodeFault(
-            line, f"'{forbidden_word}' has no place here: pictures are parameters, read as image or image_at(pixel)"
-        )
+    _check_words(plain)
     if not text.all_functions:
         raise CodeFault(1, "there is no function in it: write one, such as vec4 tint(vec4 image) { return image; }")
     entry = text.all_functions[-1]
@@ -68,14 +65,18 @@ def glsl_node(code: Code) -> type[CustomNode]:
     outputs = {one.name: OutputSocket(_socket(one)) for one in parameters if one.out}
     if not outputs:
         outputs = {"out": OutputSocket(_picture(entry.result, Note(), entry.line, "the result"))}
-    looks = {name for name in inputs if text.words & {f"{name}_{way}" for way in ("at", "near", "size")}}
-    return _make_class(code, source, text, entry, parameters, inputs, values, outputs, bool(looks))
+    types = _list_types(inputs, values)
+    expanded = expand_code(source, _list_macros(values), types)
+    _check_words(expanded)
+    _check_entry(entry, expanded)
+    looks = bool(words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size")})
+    return _make_class(code, expanded, types, entry, parameters, inputs, values, outputs, looks)
 
 
 def _make_class(
     code: Code,
-    source: str,
-    text: Text,
+    expanded: str,
+    types: Mapping[str, str],
     entry: GlslFunction,
     parameters: tuple[_Parameter, ...],
     inputs: Mapping[str, Socket],
@@ -83,15 +84,21 @@ def _make_class(
     outputs: Mapping[str, OutputSocket],
     looks: bool,
 ) -> type[CustomNode]:
+    source = unify_lines(code.text)
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"
     function = prefix + entry.name
     edges = {one.note.edge for one in parameters if one.note.edge}
     if len(edges) > 1:
         raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
-    renamed = _prefix_names(source, text, prefix)
-    if (safe := guard_loops(renamed)) != renamed:
-        renamed = add_ending(safe, entry, prefix)
+    functions = {one.name for one in parse("written", expanded).all_functions}
+    renamed = prefix_names(expanded, functions, prefix)
+    looped = guard_loops(renamed)
+    guarded = guard_code(looped, types)
+    divides = guarded != looped
+    renamed = add_ending(guarded, entry, prefix) if looped != renamed else guarded
+    if divides:
+        renamed += '\n#include "lib/whole.glsl"\n'
     body: dict[str, Any] = {"__module__": __name__, "__doc__": _doc(source, entry), "__annotations__": {}}
     for one in parameters:
         if one.name in inputs:
@@ -119,6 +126,42 @@ def _make_class(
     node_class.code, node_class.title = code, entry.name.replace("_", " ")
     node_class.text = parse(name, renamed, code.file or f"the code of '{entry.name}'")
     return node_class
+
+
+def _check_words(code: str) -> None:
+    """Raise CodeFault for a word that code of a user may not say."""
+    if forbidden := _FORBIDDEN.search(code):
+        forbidden_word = forbidden[1] or f"#{forbidden[2]}"
+        line = code.count("\n", 0, forbidden.start()) + 1
+        raise CodeFault(
+            line, f"'{forbidden_word}' has no place here: pictures are parameters, read as image or image_at(pixel)"
+        )
+
+
+def _check_entry(entry: GlslFunction, expanded: str) -> None:
+    """Raise CodeFault where macros or conditions make another signature than the one that the text shows."""
+    functions = parse("written", expanded).all_functions
+    same = functions and functions[-1].name == entry.name
+    if not same or (functions[-1].parameters, functions[-1].outputs) != (entry.parameters, entry.outputs):
+        raise CodeFault(entry.line, f"the signature of '{entry.name}' must not depend on macros or conditions")
+
+
+def _list_macros(values: Mapping[str, Value]) -> dict[str, str]:
+    """The macros of choices, such as MODE_ADD, with their numbers."""
+    return {
+        macro_name(value.name, choice): str(number)
+        for value in values.values()
+        if value.type == "choice"
+        for number, choice in enumerate(value.choices)
+    }
+
+
+def _list_types(inputs: Mapping[str, Socket], values: Mapping[str, Value]) -> dict[str, str]:
+    """The types of what code can use without declaring it; those of functions by their names and brackets."""
+    types = {"pixel": "ivec2", "extent": "ivec2", "frame": "int", "proxy": "float"}
+    for name in inputs:
+        types |= {f"{name}_size": "ivec2", f"{name}_at()": "vec4", f"{name}_near()": "vec4"}
+    return types | {name: value.glsl for name, value in values.items() if value.glsl}
 
 
 def _parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Parameter]:
@@ -198,15 +241,6 @@ def _doc(source: str, entry: GlslFunction) -> str:
         start = block.rfind("/*")
         found = [line.strip(" *\t") for line in block[start + 2 : -2].split("\n")] if start >= 0 else []
     return "\n".join(found).strip() or "Code of this graph."
-
-
-def _prefix_names(source: str, text: Text, prefix: str) -> str:
-    """The text with names of its own for all that it defines: what it is fused with may use the same ones."""
-    plain = blank_comments(source)
-    names = {one.name for one in text.all_functions}
-    names |= {name for found in _DEFINED.finditer(plain) for name in found.groups() if name}
-    known = re.compile(rf"\b({'|'.join(sorted(map(re.escape, names), key=len, reverse=True))})\b")
-    return known.sub(lambda found: prefix + found[1], plain)
 
 
 def _entries(

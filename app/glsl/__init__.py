@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .text import COMMENT, GlslFunction, Text, blank_comments, parse, unify_lines, words
+from .text import COMMENT, GlslFunction, Text, blank_comments, macro_name, parse, unify_lines, words
 
-__all__ = ["COMMENT", "GlslFunction", "Text", "blank_comments", "parse", "unify_lines", "words"]
+__all__ = ["COMMENT", "GlslFunction", "Text", "blank_comments", "macro_name", "parse", "unify_lines", "words"]

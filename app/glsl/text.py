@@ -142,6 +142,11 @@ def parse(name: str, source: str, file: str = "") -> Text:
     )
 
 
+def macro_name(value: str, choice: str) -> str:
+    """The macro that stands for a choice in GLSL: `MODE_SOFT_LIGHT`."""
+    return "".join(letter if letter.isalnum() else "_" for letter in f"{value}_{choice}").upper()
+
+
 def words(*code: str) -> frozenset[str]:
     """Every word that stands in pieces of GLSL."""
     return frozenset(_WORD.findall(" ".join(code)))

@@ -10,7 +10,7 @@ each, with macros that give its functions and accessors a prefix.
 
 from __future__ import annotations
 
-from ...glsl import Text, words
+from ...glsl import Text, macro_name, words
 from ..library import PASS_UNIFORMS, Lines
 from ..plan import LINES_PER_FILE
 from .pass_parts import InlinedGather, PassContext, PassParts
@@ -66,11 +66,6 @@ def find_macros(text: Text, context: PassContext) -> list[tuple[str, int]]:
     choices = next((op.choices for op in context.functions if op.shader == text.name), ())
     macros = ((macro_name(name, choice), number) for name, names in choices for number, choice in enumerate(names))
     return [(name, number) for name, number in macros if name in text.words]
-
-
-def macro_name(value: str, choice: str) -> str:
-    """The macro that stands for a choice in GLSL: `MODE_SOFT_LIGHT`."""
-    return "".join(letter if letter.isalnum() else "_" for letter in f"{value}_{choice}").upper()
 
 
 def _find_lines(context: PassContext, parts: PassParts) -> Lines:

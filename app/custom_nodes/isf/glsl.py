@@ -11,14 +11,16 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 from halation.nodes import ShaderStage, ShaderText
+from halation.shaders import folder
 
-from ...glsl import blank_comments, words
+from ...glsl import words
+from ...glsl.divisions import QUOTIENT, REMAINDER
 from ...glsl.loops import COUNTER, MOST_ROUNDS, guard_loops
 from ..code import Code, CodeFault
+from ..securing import expand_code, guard_code
 from .header import PICTURES, Header
 
 _TOKEN = re.compile(r"\.?\d[\w.]*|(?P<word>[A-Za-z_]\w*)")
-_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:version|extension|line)\b[^\n]*", re.MULTILINE)
 _QUALIFIED = re.compile(r"\s+(?:in|out|varying|uniform)\b")
 _CALLED = re.compile(r"\s*\(")
 
@@ -140,6 +142,9 @@ void main() {
     gl_Position.y = -gl_Position.y;
 }"""
 
+_READERS = ("IMG_SIZE", "IMG_NORM_PIXEL", "IMG_PIXEL", "IMG_THIS_PIXEL", "IMG_THIS_NORM_PIXEL", "IMG_NORM_THIS_PIXEL")
+"""Functions of the format that return floats."""
+
 UNIFORMS: Mapping[str, str] = MappingProxyType(
     {
         "PASSINDEX": "int",
@@ -164,7 +169,11 @@ _TYPES: Mapping[str, str] = MappingProxyType(
 
 def shader_text(code: Code, header: Header) -> ShaderText:
     """The program of a shader. Raises CodeFault."""
-    fragment, vertex = (guard_loops(_translate(text, way)) for text, way in ((code.text, "in"), (code.vertex, "out")))
+    types = _list_types(header)
+    fragment, vertex = (
+        guard_code(guard_loops(_translate(expand_code(text, types=types), way)), types)
+        for text, way in ((code.text, "in"), (code.vertex, "out"))
+    )
     for text, file in ((fragment, code.name), (vertex, "its vertex shader")):
         if text.strip() and "isf_main" not in words(text):
             raise CodeFault(0, f"there is no void main() in {file}")
@@ -176,6 +185,8 @@ def shader_text(code: Code, header: Header) -> ShaderText:
         *(f"uniform sampler2D {rename_word(name)};" for name in samplers(header, used)),
     ]
     declared += [*_rectangles(header, used), f"int {COUNTER} = 0;"]
+    if used & {QUOTIENT, REMAINDER}:
+        declared.append((folder() / "lib" / "whole.glsl").read_text("utf-8"))
     where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
     where = "in vec2 isf_FragNormCoord;" if vertex.strip() else where
     top = [
@@ -214,8 +225,7 @@ def rename_word(name: str) -> str:
 
 
 def _translate(text: str, varying: str) -> str:
-    """The text with the words of today, line by line; comments are blank."""
-    plain = _DIRECTIVE.sub(lambda found: " " * len(found[0]), blank_comments(text))
+    """The text without macros with the words of today, line by line."""
 
     def word(found: re.Match[str]) -> str:
         name = found["word"]
@@ -225,13 +235,21 @@ def _translate(text: str, varying: str) -> str:
             return varying
         if name in WORDS:
             return WORDS[name]
-        if name in CALLS and _CALLED.match(plain, found.end()):
+        if name in CALLS and _CALLED.match(text, found.end()):
             return CALLS[name]
-        if name in LATER or (name in QUALIFIERS and not _QUALIFIED.match(plain, found.end())):
+        if name in LATER or (name in QUALIFIERS and not _QUALIFIED.match(text, found.end())):
             return f"isf_{name}"
         return name
 
-    return _TOKEN.sub(word, plain)
+    return _TOKEN.sub(word, text)
+
+
+def _list_types(header: Header) -> dict[str, str]:
+    """The types of what shaders can use without declaring it; those of functions by their names and brackets."""
+    types = {**UNIFORMS, **{one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}}
+    types |= {rename_word(name): glsl for name, glsl in types.items()}
+    functions = {f"{name}()": "vec4" for name in _READERS}
+    return types | functions | {"isf_FragCoord": "vec4", "isf_FragNormCoord": "vec2", "isf_FragColor": "vec4"}
 
 
 def _uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:

@@ -1,0 +1,120 @@
+"""Divisions of whole numbers have a result for every pair, and floats are divided as they stand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import Run
+from halation.custom_nodes import Code, CodeFault, node_type
+from halation.glsl.divisions import guard_divisions
+from isf_files import isf
+
+LEAST = -(2**31)
+NUMBERS = (LEAST, LEAST + 1, -7, -2, -1, 0, 1, 2, 3, 10, 2**31 - 1)
+PIXEL = {"image": np.ones((1, 1, 4), np.float32)}
+
+
+@pytest.mark.parametrize(
+    ("text", "guarded"),
+    [
+        ("int f(int a, int b) { return a / b; }", "int f(int a, int b) { return halation_quotient(a , b); }"),
+        ("n = a * 2 / b % c;", "n = halation_remainder(halation_quotient(a * 2 , b) , c);"),
+        ("n = -a / -b - c;", "n = halation_quotient(-a , -b) - c;"),
+        ("n = a - -b / c;", "n = a - halation_quotient(-b , c);"),
+        ("v.xy /= w;", "v.xy = halation_quotient(v.xy, w);"),
+        (
+            "v[i / j] %= c ? 1 : d, e;",
+            "v[halation_quotient(i , j)] = halation_remainder(v[halation_quotient(i , j)], c ? 1 : d), e;",
+        ),
+        ("x = (a + b) / f(c).y[2];", "x = halation_quotient((a + b) , f(c).y[2]);"),
+        ("return a / b;", "return halation_quotient(a , b);"),
+        ("if (c) x = a-- / ++b;", "if (c) x = halation_quotient(a-- , ++b);"),
+    ],
+)
+def test_how_divisions_are_written(text: str, guarded: str) -> None:
+    assert guard_divisions(text) == guarded
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "float f(float a, float b) { return a / b; }",
+        "vec3 a; void f(int n) { a /= float(n); a = a * 2.0 / n; a = n / (a + 1); }",
+        "int f(int n) { return n / 2 + n % 3 + n / (4 - 1); }",
+        "const int N = 4; int f(int n) { return n / N; }",
+        "ivec2 f(ivec2 n) { return n / ivec2(2, 3) + n % 2; }",
+        "struct S { float r; }; float f(S s) { return s.r / s.r; }",
+        "float f(vec4 c) { return c.r / c.g / max(c.b, 0) / dot(c, c); }",
+        "float w() { return 1.0; } float f(int n) { return n / w(); }",
+        '#include "lib/color.glsl"',
+    ],
+)
+def test_what_needs_no_guard_stays_as_it_is(text: str) -> None:
+    assert guard_divisions(text) == text
+
+
+@pytest.mark.parametrize("kind", ["int", "ivec2", "ivec3", "ivec4"])
+@pytest.mark.parametrize("folded", [True, False], ids=["constant", "at run time"])
+def test_every_pair_has_a_result(run: Run, kind: str, folded: bool) -> None:
+    """The driver computes what it can while it compiles, the device what depends on a value."""
+    lines = list[str]()
+    for a in NUMBERS:
+        for b in NUMBERS:
+            first, second = (f"{kind}({'-2147483647 - 1' if n == LEAST else n})" for n in (a, b))
+            part = "" if kind == "int" else ".y"
+            quotient, remainder = (0, 0) if b == 0 else (LEAST, 0) if (a, b) == (LEAST, -1) else _divide(a, b)
+            # The remainder of negative numbers is not defined.
+            remainder_text = f"(x % y){part} == {remainder}" if a >= 0 and b > 0 else "x % y == x % y"
+            limit = "(-2147483647 - 1)" if quotient == LEAST else str(quotient)
+            lines.append(
+                f"{{ {kind} x = {first} + zero, y = {second} + zero; {kind} z = x; z /= y;"
+                f" if (!((x / y){part} == {limit} && z == x / y && {remainder_text})) return vec4(0.0); }}"
+            )
+    chunks = [lines[start : start + 30] for start in range(0, len(lines), 30)]
+    for chunk in chunks:
+        body = "\n".join(chunk)
+        zero = "0" if folded else "int(image.r) - 1"
+        text = f"vec4 f(vec4 image) {{ int zero = {zero};\n{body}\nreturn vec4(1.0); }}"
+        assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
+
+
+def _divide(a: int, b: int) -> tuple[int, int]:
+    """As GLSL divides positive numbers, and drivers all others: towards 0."""
+    quotient = abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
+    return quotient, a - quotient * b
+
+
+@pytest.mark.parametrize("kind", ["uint", "uvec2", "uvec3"])
+def test_numbers_without_a_sign(run: Run, kind: str) -> None:
+    text = f"""vec4 f(vec4 image, int none /* = 0 */) {{
+        {kind} a = {kind}(7), b = {kind}(none), c = {kind}(none + 2);
+        return a / b == {kind}(0) && a / c == {kind}(3) && a % c == {kind}(1) && a % b == {kind}(0)
+            ? vec4(1.0) : vec4(0.0);
+    }}"""
+    assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
+
+
+def test_mixed_numbers(run: Run) -> None:
+    text = """vec4 f(vec4 image, int two /* = 2 */) {
+        ivec3 v = ivec3(8, 6, -4) / two;
+        ivec3 w = 12 / ivec3(two, 1, two + 1);
+        uint u = 9u / uint(two);
+        u %= 3u;
+        float r = float(7 / two) + 7 / float(two);
+        return v == ivec3(4, 3, -2) && w == ivec3(6, 12, 4) && u == 1u && r == 6.5 ? vec4(1.0) : vec4(0.0);
+    }"""
+    assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
+
+
+@pytest.mark.parametrize("sign", ["/", "%"])
+def test_constants_that_have_no_result_are_refused(sign: str) -> None:
+    for divisor in ("0", "-1", "(1 - 2)", "N"):
+        constant = f"const int N = -1;\nconst int A = (-2147483647 - 1) {sign} {divisor};"
+        text = f"{constant}\nvec4 f(vec4 image) {{ return image; }}"
+        with pytest.raises(CodeFault, match=r"line 2: .* divided by"):
+            node_type(Code("glsl", text))
+
+
+def test_shaders_of_the_format_are_guarded() -> None:
+    node_class = node_type(Code("isf", isf("int n = PASSINDEX; gl_FragColor = vec4(7 / n, 1.0 / TIME, 0, 1);")))
+    assert node_class.code.language == "isf"

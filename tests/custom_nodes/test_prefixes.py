@@ -1,0 +1,51 @@
+"""Helpers may be called as channels and members are."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import Run
+from halation.custom_nodes import Code, node_type
+from halation.custom_nodes.prefixes import prefix_names
+
+PICTURE = np.random.default_rng(3).random((3, 4, 4)).astype(np.float32)
+
+
+@pytest.mark.parametrize("name", ["r", "g", "x", "a", "s", "rgb", "xy", "st", "rgba", "xyzw", "stpq"])
+def test_a_helper_called_as_a_swizzle(run: Run, name: str) -> None:
+    text = f"""float {name}(float v) {{ return v * 2.0; }}
+    vec4 f(vec4 image) {{
+        vec4 {"b" if name != "b" else "c"} = vec4({name}(image.r), image . g, image
+            .b, image.rgba.a);
+        image.{name} = image.{name};
+        return {"b" if name != "b" else "c"};
+    }}"""
+    doubled = PICTURE * np.array([2, 1, 1, 1], np.float32)
+    assert np.array_equal(run(node_type(Code("glsl", text))(), {"image": PICTURE}), doubled)
+
+
+def test_a_constant_a_struct_and_its_members(run: Run) -> None:
+    text = """const int N = 2;
+    const float r = 0.5, rgb = 0.25;
+    float g = 4.0;
+    struct a { float r, g[N]; vec4 rgb; };
+    vec4 f(vec4 image) {
+        a x;
+        x.r = image.r;
+        x.g[0] = image.g;
+        x.rgb = image;
+        return vec4(x.r * r, x.g[N - 2] * g, x.rgb.b * rgb, x.rgb.a);
+    }"""
+    weighed = PICTURE * np.array([0.5, 4, 0.25, 1], np.float32)
+    assert np.array_equal(run(node_type(Code("glsl", text))(), {"image": PICTURE}), weighed)
+
+
+def test_what_is_prefixed() -> None:
+    text = (
+        "struct S { float r; S2 q[N]; }; const int N = 1, M[2] = int[2](N, 3); float g; "
+        "float r(S s) { float k; return s.r + g; }"
+    )
+    assert prefix_names(text, {"r"}, "w_") == (
+        "struct w_S { float r; S2 q[w_N]; }; const int w_N = 1, w_M[2] = int[2](w_N, 3); float w_g; "
+        "float w_r(w_S s) { float k; return s.r + w_g; }"
+    )
