@@ -100,12 +100,12 @@ class MediaProvider:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
             return PictureProbe((width, height), array.dtype.name == "float16", self._fingerprints[picture.path])
-        from ..media.layers import find_layer
+        from .layer_choice import find_input_layer
 
         if picture.within:
             _check_within(picture.path, picture.within)
         header = self.find_info(picture.path)
-        layer = find_layer(header, picture.layer)
+        layer = find_input_layer(header, picture.layer)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
         mark = _conversion_mark(picture) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name))
@@ -191,7 +191,7 @@ class MediaProvider:
                     f"bind '{name}' too"
                 )
             siblings[name] = Picture(
-                new.path, self._choose_layer(new.path, socket), socket.kind, socket.socket().channels
+                new.path, self._choose_layer(new.path, socket, is_bound=False), socket.kind, socket.socket().channels
             )
         return siblings
 
@@ -214,13 +214,13 @@ class MediaProvider:
         path, layer = split_layer(str(item))
         return Picture(path, layer or self._choose_layer(path, socket), socket.kind, socket.socket().channels)
 
-    def _choose_layer(self, path: str, socket: Input) -> str:
-        """The layer that the input asks for, if this file has it."""
+    def _choose_layer(self, path: str, socket: Input, *, is_bound: bool = True) -> str:
+        """The layer of a file that the input asks for, by name or by role."""
         from .layer_choice import choose_layer
 
-        if socket.layer and socket.kind is Kind.IMAGE:
-            return choose_layer(self.find_info(self.find_frame_file(path, 1, "nearest").path), socket)
-        return socket.layer
+        if not socket.layer:
+            return ""
+        return choose_layer(self.find_info(self.find_frame_file(path, 1, "nearest").path), socket, is_bound=is_bound)
 
 
 def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Array:

@@ -62,11 +62,12 @@ class ImageInfo(Struct, frozen=True):
     by_rows: bool = False
 
 
-def find_layer(info: ImageInfo, name: str) -> Layer:
+def find_layer(info: ImageInfo, name: str, suggest: Callable[[str], list[str]] | None = None) -> Layer:
     """The layer that `name` means: `Combined`, `ViewLayer.Combined`, `Z`, or one channel such as `Position.Z`.
 
     Letter case, blanks, `_` and `-` do not matter; "" is the first color layer. The strictest reading of a name that
     any layer fits counts: the name as it is, then normalized, then without what stands before it, then as a channel.
+    `suggest` gives names of layers that may have been meant; without it those count that are spelled alike.
 
     Raises:
         InputError: no layer, or more than one, answers to the name.
@@ -75,6 +76,22 @@ def find_layer(info: ImageInfo, name: str) -> Layer:
         raise InputError(f"{info.path}: holds no channels that can be read")
     if not name:
         return _default_layer(info.layers)
+    matches = _match_name(info, name)
+    if len(matches) > 1:
+        names = " or ".join(layer.full_name for layer in matches)
+        raise InputError(f"{info.path}: '{name}' may mean {names}: write one of them")
+    if not matches:
+        raise _unknown_layer(info, name, suggest(name) if suggest else suggest_layers(info.layers, name))
+    return matches[0]
+
+
+def has_layer(info: ImageInfo, name: str) -> bool:
+    """True if at least one layer answers to the name."""
+    return bool(_match_name(info, name))
+
+
+def _match_name(info: ImageInfo, name: str) -> list[Layer]:
+    """The layers that fit the strictest reading of a name that any fits."""
     word = normalize_name(name)
     readings: tuple[Callable[[Layer], bool], ...] = (
         lambda layer: name in (layer.full_name, layer.name),
@@ -86,12 +103,7 @@ def find_layer(info: ImageInfo, name: str) -> Layer:
     if not matches:
         channels = [channel for layer in info.layers for channel in _single_channels(layer)]
         matches = [channel for channel in channels if f".{normalize_name(channel.full_name)}".endswith("." + word)]
-    if len(matches) > 1:
-        names = " or ".join(layer.full_name for layer in matches)
-        raise InputError(f"{info.path}: '{name}' may mean {names}: write one of them")
-    if not matches:
-        raise _unknown_layer(info, name)
-    return matches[0]
+    return matches
 
 
 def suggest_layers(layers: Sequence[Layer], name: str) -> list[str]:
@@ -113,8 +125,7 @@ def split_layer(text: str) -> tuple[str, str]:
     return path, layer
 
 
-def _unknown_layer(info: ImageInfo, name: str) -> InputError:
-    suggestions = suggest_layers(info.layers, name)
+def _unknown_layer(info: ImageInfo, name: str, suggestions: Sequence[str]) -> InputError:
     hint = f"did you mean '{suggestions[0]}'? It" if suggestions else "it"
     names = ", ".join(layer.name for layer in info.layers[:_MOST_LISTED])
     rest = f" and {len(info.layers) - _MOST_LISTED} more" if len(info.layers) > _MOST_LISTED else ""

@@ -27,7 +27,7 @@ from . import evidence
 from .camera import CameraSolution, measure_camera, read_header_camera, solve_camera
 from .conventions import Convention, MotionDirection, VectorSpace, find_habit
 from .naming import PLURAL_ROLES, Role
-from .recognition import FileMaker, RenderPass, best_claims, find_maker, recognize_passes
+from .recognition import FileMaker, RenderPass, best_claims, find_maker, recognize_passes, suggest_by_role
 
 _ROLES_WITH_CONVENTIONS = (Role.DEPTH, Role.NORMAL, Role.POSITION, Role.VELOCITY)
 _AGREEMENT_PIXELS = 0.5
@@ -222,7 +222,11 @@ def _analyze_version(
     maker = find_maker(header.attributes, header.info.layers)
     views = {part.index: part.view for part in header.parts}
     passes = recognize_passes(header.info.layers, header.attributes, maker.renderer, views)
-    layers = {role: find_layer(header.info, name) for role, name in named}
+
+    def find_chosen(role: Role, name: str) -> Layer:
+        return find_layer(header.info, name, lambda unknown: suggest_by_role(passes, unknown, role))
+
+    layers = {role: find_chosen(role, name) for role, name in named}
     return RenderAnalysis(
         header, maker, passes, _analyze_version(*before, None) if before else None, MappingProxyType(layers)
     )

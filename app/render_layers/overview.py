@@ -9,12 +9,12 @@ from types import MappingProxyType
 from halation.nodes import Matte
 
 from ..errors import InputError
-from ..media.layers import find_layer, suggest_layers
+from ..media.layers import find_layer
 from .analysis import RenderAnalysis, RenderCamera, analyze_render
 from .conventions import Convention
 from .mattes import find_mattes
 from .naming import Role
-from .recognition import RenderPass, best_claims
+from .recognition import RenderPass, best_claims, suggest_by_role
 from .report import describe_maker, describe_size, format_report, join_choices, list_metadata, list_parts
 
 
@@ -92,7 +92,7 @@ def _find_faults(analysis: RenderAnalysis, named: Mapping[Role, str]) -> Iterato
         try:
             find_layer(analysis.header.info, layer)
         except InputError:
-            near = suggest_layers(analysis.header.info.layers, layer)
+            near = suggest_by_role(analysis.passes, layer, role)
             yield role, f"no layer '{layer}' in this file{f': did you mean {join_choices(near)}?' if near else ''}"
 
 

@@ -13,7 +13,7 @@ from enum import IntEnum
 from types import MappingProxyType
 
 from ..media.channels import is_depth
-from ..media.layers import Layer, normalize_name
+from ..media.layers import Layer, normalize_name, suggest_layers
 from .naming import HINTS, PATTERNS, SCHEMES, RenderProgram, Role
 
 _GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)
@@ -102,6 +102,15 @@ def recognize_passes(
     return tuple(passes)
 
 
+def find_named_role(name: str) -> Role | None:
+    """The role that a name of a layer stands for in every renderer that uses it; None for none, or several."""
+    word = normalize_name(name.rpartition(".")[2])
+    roles = {entry[0] for scheme in SCHEMES.values() if (entry := scheme.find_role(word))}
+    if not roles:
+        roles = {Role.DEPTH} if is_depth(word) else {role for role, fits in PATTERNS.items() if fits.fullmatch(word)}
+    return roles.pop() if len(roles) == 1 else None
+
+
 def best_claims(passes: Iterable[RenderPass], role: Role) -> tuple[RenderPass, ...]:
     """The passes that have the best claim to a role: several only where nothing decides between them.
 
@@ -116,6 +125,17 @@ def best_claims(passes: Iterable[RenderPass], role: Role) -> tuple[RenderPass, .
     claims = [item for item in passes if item.role is role]
     best = min(map(claim, claims), default=())
     return tuple(item for item in claims if claim(item) == best)
+
+
+def suggest_by_role(passes: Sequence[RenderPass], name: str, role: Role | None = None) -> list[str]:
+    """Layers that a name may stand for which no layer has: that of its role, or of `role`, else those that are spelled
+    like it and have no other role."""
+    role = role or find_named_role(name)
+    best = best_claims(passes, role) if role else ()
+    if len(best) == 1:
+        return [best[0].layer.name]
+    others = {item.layer.name for item in passes if item.role is not None} if role else set[str]()
+    return [near for near in suggest_layers([item.layer for item in passes], name) if near not in others]
 
 
 def _read_name(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:

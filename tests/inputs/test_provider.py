@@ -56,3 +56,74 @@ def test_what_is_bound_by_name_stays(tmp_path):
 def test_encoded_pixels_are_not_taken_for_light(dtype):
     with pytest.raises(UsageError, match=r"'dirt': uint\d+ pixels .* scene-linear floats"):
         MediaProvider().bind(GRAPH, {"dirt": np.zeros((4, 6, 3), dtype)})
+
+
+ROLES = Graph(
+    inputs={
+        "beauty": Input(Kind.IMAGE, file="sample.exr", layer="Combined"),
+        "albedo": Input(Kind.IMAGE, file="sample.exr", layer="Diffuse Color"),
+        "emission": Input(Kind.IMAGE, file="sample.exr", layer="Emission"),
+        "depth": Input(Kind.FIELD, file="sample.exr", layer="Depth"),
+        "normal": Input(Kind.VECTOR, file="sample.exr", layer="Normal"),
+    }
+)
+
+
+def render(folder, name, **layers):
+    """A multi-part EXR of one color for each layer, which is its number."""
+    shapes = {4: "RGBA", 3: "RGB", 1: "Z"}
+    arrays = {
+        layer: np.full((4, 6, width), index, np.float32) for index, (layer, width) in enumerate(layers.items(), 1)
+    }
+    path = folder / name
+    import OpenImageIO as oiio
+
+    specs = []
+    for layer, array in arrays.items():
+        spec = oiio.ImageSpec(6, 4, array.shape[2], "float")
+        spec.channelnames = tuple(f"{layer}.{letter}" for letter in shapes[array.shape[2]])
+        spec.attribute("oiio:subimagename", layer)
+        spec.attribute("BlenderMultiChannel", "Blender V2.55.1 and newer")
+        specs.append(spec)
+    file = oiio.ImageOutput.create(str(path))
+    assert file.open(str(path), tuple(specs))
+    for index, (spec, array) in enumerate(zip(specs, arrays.values(), strict=True)):
+        assert index == 0 or file.open(str(path), spec, "AppendSubimage")
+        assert file.write_image(array)
+    assert file.close()
+    return path
+
+
+def test_layers_are_found_by_role(tmp_path):
+    """Blender 4.5 has other names than 5.0; an input that only follows another one is found as well."""
+    path = render(tmp_path, "a.exr", Combined=4, DiffCol=3, Emit=3, Depth=1, Normal=3)
+    pictures = MediaProvider()
+    bound = pictures.bind(ROLES, {"beauty": path})
+    assert {name: picture.layer for name, picture in bound.items()} == {
+        "beauty": "Combined", "albedo": "DiffCol", "emission": "Emit", "depth": "Depth", "normal": "Normal"
+    }  # fmt: skip
+    assert pictures.load_pixels(pictures.bind(ROLES, {"albedo": path})["albedo"])[0, 0, 0] == 2.0
+
+
+def test_an_absent_layer_is_refused_and_its_role_suggested(tmp_path):
+    path = render(tmp_path, "a.exr", Combined=4, Emit=3, Position=3, Depth=1)
+    pictures = MediaProvider()
+    bound = pictures.bind(ROLES, {"albedo": path})
+    with pytest.raises(InputError, match="has no layer 'Diffuse Color'"):
+        pictures.probe_picture(bound["albedo"])
+    named = pictures.bind(ROLES, {"beauty": f"{path}:Emission"})["beauty"]
+    with pytest.raises(InputError, match="has no layer 'Emission': did you mean 'Emit'"):
+        pictures.probe_picture(named)
+    bare = pictures.bind(ROLES, {"beauty": f"{render(tmp_path, 'b.exr', Combined=4, Position=3)}:Emission"})["beauty"]
+    with pytest.raises(InputError, match="has no layer 'Emission': it holds"):
+        pictures.probe_picture(bare)
+
+
+def test_a_plain_picture_is_what_the_user_binds_it_to(tmp_path):
+    path = tmp_path / "plain.exr"
+    media.write_picture(path, {"": np.full((4, 6, 4), 0.5, np.float32)}, kinds={"": Kind.IMAGE})
+    pictures = MediaProvider()
+    assert pictures.load_pixels(pictures.bind(ROLES, {"albedo": path})["albedo"])[0, 0, 0] == 0.5
+    follower = pictures.bind(ROLES, {"beauty": path})["albedo"]
+    with pytest.raises(InputError, match="has no layer 'Diffuse Color'"):
+        pictures.probe_picture(follower)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from functools import lru_cache
 from hashlib import blake2b
 from pathlib import Path
@@ -67,6 +68,7 @@ def _read_parts(path: str) -> list[MeshPart]:
     """The meshes of a file where they stand."""
     import trimesh
 
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it reports what it does without
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
     try:
@@ -108,7 +110,7 @@ def _read_part(scene: Any, node: str) -> MeshPart | None:
     uvs, material = getattr(visual, "uv", None), getattr(visual, "material", None)
     return MeshPart(
         np.asarray(mesh.vertices),
-        np.asarray(mesh.vertex_normals),
+        _read_normals(mesh),
         np.asarray(mesh.faces),
         np.zeros((len(mesh.vertices), 2)) if uvs is None else np.asarray(uvs)[:, :2],
         albedo=_base_color(visual, material),
@@ -117,6 +119,26 @@ def _read_part(scene: Any, node: str) -> MeshPart | None:
         rough=_number_factor(material, "roughnessFactor", 0.6),
         is_moving=True,
     )
+
+
+def _read_normals(mesh: Any) -> Array:
+    """Normals of vertices: those of the file, else the mean of the faces around, weighted by their angles there.
+
+    What the file had is in trimesh's cache. It would average the others itself, but with scipy, which is not among the
+    libraries that Halation needs; the sums are the same, in the same order (Thuermer and Wuethrich, Computing Vertex
+    Normals from Polygonal Facets, 1998).
+    """
+    from trimesh.util import unitize
+
+    if "vertex_normals" in mesh._cache:
+        return np.asarray(mesh.vertex_normals)
+    has_area = (np.asarray(mesh.face_normals) ** 2).sum(axis=1) > 0.5
+    faces, normals, angles = (
+        np.asarray(of_faces)[has_area] for of_faces in (mesh.faces, mesh.face_normals, mesh.face_angles)
+    )
+    corners, count = faces.ravel(), len(mesh.vertices)
+    sums = [np.bincount(corners, (angles * normals[:, axis : axis + 1]).ravel(), count) for axis in range(3)]
+    return unitize(np.stack(sums, axis=1))
 
 
 def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:
