@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
 from halation import presets
 from halation.authoring.commands import Disconnect, SetValue
+from halation.editor.shared.dialogs import Question
 from halation.graph import Port
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
@@ -163,6 +165,31 @@ def test_questions_are_answered_by_click_and_key(gui, look: Path) -> None:
         assert ui.session.graph.nodes == {}
 
     gui(body, look)
+
+
+def test_enter_takes_the_answer_in_the_focus_ring(gui) -> None:
+    def body(ui) -> None:
+        answers: list[str] = []
+        names = ("Replace", "Keep both", "Cancel")
+        question = Question("Replace?", "It is there.", tuple((name, partial(answers.append, name)) for name in names))
+        for keys, answer in (
+            (["Enter"], "Replace"),
+            (["RightArrow", "Enter"], "Keep both"),
+            (["RightArrow", "RightArrow", "Enter"], "Cancel"),
+            (["RightArrow", "LeftArrow", "Enter"], "Replace"),
+            (["Tab", "Tab", "KeypadEnter"], "Cancel"),
+            (["RightArrow", "Space"], "Keep both"),
+            (["RightArrow", "Escape"], "Cancel"),
+        ):
+            answers.clear()
+            ui.editor.dialogs.question = question
+            ui.wait(3)
+            for key in keys:
+                ui.keys(key)
+            ui.wait(2)
+            assert (keys, answers) == (keys, [answer])
+
+    gui(body, PRESET)
 
 
 def test_messages_show_up_and_go_at_a_click(gui) -> None:

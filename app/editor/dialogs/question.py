@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ..shared.dialogs import Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import main_button
-from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.dialogs import backdrop, dialog, enter_pressed, escape_pressed
 from ..toolkit.places import record
 from ..toolkit.words import font
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class QuestionDialog:
-    """Answers as buttons: Enter chooses the first, Escape the last, which is the safest."""
+    """Answers as buttons: Enter chooses the one in the focus ring, else the first; Escape the last, the safest."""
 
     def __init__(self, context: DialogContext) -> None:
         self._context = context
@@ -39,7 +39,7 @@ class QuestionDialog:
             chosen = _draw_buttons(self._context, question)
             if escape_pressed():
                 chosen = len(question.answers) - 1
-            elif imgui.is_key_pressed(imgui.Key.enter, False) and not imgui.is_window_appearing():
+            elif enter_pressed() and not imgui.is_window_appearing():
                 chosen = 0
         if chosen is not None:
             self._context.dialogs.question = None
@@ -61,6 +61,8 @@ def _draw_buttons(context: DialogContext, question: Question) -> int | None:
         name, across = f"answer {index}", 0.0 if beside else -1.0
         if main_button(context, label, name, width=across) if index == 0 else imgui.button(label, (across, 0)):
             chosen = index
+        if index == 0:
+            imgui.set_item_default_focus()
         record(context, name)
         if beside and index + 1 < len(labels):
             imgui.same_line()

@@ -73,6 +73,12 @@ def dialog(
     imgui.end()
 
 
+def enter_pressed() -> bool:
+    """True if Enter was pressed for the dialog as a whole: a button in the focus ring takes Enter for itself."""
+    ringed = imgui.get_io().nav_visible and imgui.is_any_item_focused()
+    return not ringed and any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
+
+
 def escape_pressed() -> bool:
     """True if Escape was pressed in this dialog, with nothing else open in it."""
     inside = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
