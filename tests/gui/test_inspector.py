@@ -357,3 +357,25 @@ def test_values_pass_the_clipboard(gui, file) -> None:
         assert "takes a number" in ui.editor.log.entries[-1].sentence
 
     gui(body, file)
+
+
+def test_keys_go_where_the_pointer_is_after_a_slider_was_dragged(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "tone_map")
+        ui.drag(ui.at("field tone_map.exposure"), ui.at("field tone_map.exposure", (0.75, 0.5)))
+        ui.move("node tone_map", (1.3, 0.7))
+        ui.wait(2)
+        place = ui.editor.places["node tone_map"]
+        ui.wheel(-3)
+        ui.settled()
+        assert ui.editor.places["node tone_map"] != place
+        ui.keys("Home")
+        ui.settled()
+        assert ui.editor.places["node tone_map"] == pytest.approx(place, abs=1.0)
+        ui.drag(ui.at("field tone_map.exposure", (0.75, 0.5)), ui.at("field tone_map.exposure"))
+        ui.move("node tone_map", (1.3, 0.7))
+        ui.keys("Tab")
+        ui.wait(3)
+        assert "search fxaa" in ui.editor.places
+
+    gui(body, file)
