@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..errors import UsageError
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
-from .outcome import print_json, print_note
+from .outcome import flush_output, print_json, print_note, report_failure
 from .progress import progress_reporter
-from .watchdog import needs_watchdog
+from .watchdog import can_fork, needs_watchdog, run_forked
 
 if TYPE_CHECKING:
     from ..graph import Graph, Port
@@ -40,7 +40,29 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     if job.processes > 1 and job.videos:
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
-    is_watched = needs_watchdog(graph, job.timeout)
+    if job.processes == 1 and needs_watchdog(graph) and can_fork():
+        return run_forked(lambda: _execute_forked(job, graph, progress, as_json, started), job.timeout, job.memory)
+    return _execute_opened(job, graph, progress, as_json, started)
+
+
+def _execute_forked(
+    job: RenderJob, graph: Graph, progress: Literal["bar", "json"], as_json: bool, started: float
+) -> int:
+    """Run a render job in a process that does nothing else."""
+    try:
+        code = _execute_opened(job, graph, progress, as_json, started)
+    except (Exception, KeyboardInterrupt) as fault:
+        code = report_failure(fault, as_json)
+    return flush_output(code)
+
+
+def _execute_opened(
+    job: RenderJob, graph: Graph, progress: Literal["bar", "json"], as_json: bool, started: float
+) -> int:
+    """Run a render job whose graph is open."""
+    from msgspec.structs import replace
+
+    is_watched = needs_watchdog(graph)
     job = replace(job, inputs=resolve_inputs(graph, job.inputs))
     targets = parsing.find_targets(graph, job.node)
     prefetcher = None if is_watched or job.processes > 1 else _begin_loading(job, graph, targets)
@@ -51,7 +73,7 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
 
         total = max(1, len(job.frames))
         with progress_reporter(progress, total) as reporter:
-            report = run_helpers(helper_jobs, job.timeout if is_watched else 0.0, reporter, total)
+            report = run_helpers(helper_jobs, is_watched, job.timeout, reporter, total)
     else:
         report = _render_here(job, graph, targets, prefetcher, progress, started)
     _print_report(report, time.perf_counter() - started, as_json)

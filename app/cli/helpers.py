@@ -29,14 +29,16 @@ if TYPE_CHECKING:
     from .progress import ProgressReporter
 
 
-def run_helpers(jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int) -> dict[str, Any]:
+def run_helpers(
+    jobs: Sequence[RenderJob], watched: bool, timeout: float, progress: ProgressReporter, total: int
+) -> dict[str, Any]:
     """Render each job in a process of its own, and join their reports; `total` is how many frames they have together.
 
-    A helper whose code takes longer than `timeout` seconds is killed; 0 means no limit. Raises HalationError with the
-    message and exit code of the first helper that fails; the others are stopped.
+    If they are `watched`, a helper whose code takes longer than `timeout` seconds is killed; 0 means no limit. Raises
+    HalationError with the message and exit code of the first helper that fails; the others are stopped.
     """
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        pool = _HelperPool(jobs, timeout, progress, total, Path(folder))
+        pool = _HelperPool(jobs, watched, timeout, progress, total, Path(folder))
         return join_reports(pool.run())
 
 
@@ -89,7 +91,13 @@ class _HelperPool:
     """The helpers of one render, a thread that listens to each, and their reports so far."""
 
     def __init__(
-        self, jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int, folder: Path
+        self,
+        jobs: Sequence[RenderJob],
+        watched: bool,
+        timeout: float,
+        progress: ProgressReporter,
+        total: int,
+        folder: Path,
     ) -> None:
         self._progress, self._total, self._lock = progress, total, threading.Lock()
         self._done, self._notes = 0, set[str]()
@@ -97,7 +105,7 @@ class _HelperPool:
         self._fault: HalationError | None = None
         environment = {**_divide_cores(len(jobs)), **os.environ, "PYTHONIOENCODING": "utf-8"}
         self._helpers = [
-            _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout) if timeout else None, environment)
+            _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout, job.memory) if watched else None, environment)
             for number, job in enumerate(jobs)
         ]
         from ..renderer.jobs.job import FrameReport  # this import is slow, so the helpers start first
@@ -131,7 +139,7 @@ class _HelperPool:
         """Kill a helper whose code takes too long, and stop the others."""
         if helper.watchdog is None or helper.process.poll() is not None:
             return
-        if fault := helper.watchdog.check():
+        if fault := helper.watchdog.check(helper.process.pid):
             with self._lock:
                 self._fault = self._fault or fault
                 helper.process.kill()
@@ -160,6 +168,9 @@ class _HelperPool:
         with self._lock:
             if process.returncode == 0:
                 self._reports.append(report)
+            elif self._fault is None and helper.watchdog and process.returncode < 0:
+                self._fault = helper.watchdog.explain_signal(-process.returncode)
+                self._stop()
             elif self._fault is None:
                 self._fault = _rebuild_fault(report.get("error", {}), process.returncode)
                 self._stop()

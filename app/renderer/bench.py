@@ -106,7 +106,7 @@ def measure_graph(
     with renderer.device.make_current():
         for plan in plans.values():
             for one in plan.passes:
-                renderer.runner.programs.get(one)
+                renderer.runner.compile(one)
     compiling = time.perf_counter() - started
     timings: dict[int, list[Timings]] = {}
     loading = 0.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from pathlib import Path
 
 
 def available_cores() -> int:
@@ -17,3 +18,11 @@ def machine_memory() -> float:
         return math.inf
     size = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     return size if size > 0 else math.inf
+
+
+def resident_memory(process: int) -> int:
+    """Bytes of memory that a process takes; 0 where the system does not say."""
+    try:
+        return int(Path(f"/proc/{process}/statm").read_text("ascii").split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError):
+        return 0

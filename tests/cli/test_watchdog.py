@@ -92,17 +92,18 @@ def test_the_timeout_reaches_what_watches_helpers(
     """Helpers themselves get no limit: they are watched from here."""
     calls: list[tuple[list[RenderJob], float]] = []
 
-    def run_helpers(jobs: list[RenderJob], limit: float, *_: object) -> dict[str, object]:
+    def run_helpers(jobs: list[RenderJob], watched: bool, limit: float, *_: object) -> dict[str, object]:
+        assert watched
         calls.append((jobs, limit))
         raise HalationError("that is enough")
 
     monkeypatch.setattr(helpers, "run_helpers", run_helpers)
     words = ("-o", tmp_path / "o.##.exr", "--frames", "1-3", "-j", processes, "--timeout", timeout)
-    cli("render", graph(tmp_path, ENDLESS), *words) if processes > 1 or timeout else None
+    cli("render", graph(tmp_path, ENDLESS), *words)
     for jobs, limit in calls:
         assert limit == timeout and {job.timeout for job in jobs} == {0.0} and len(jobs) == processes
         assert sorted(frame for job in jobs for frame in job.frames) == [1, 2, 3]
-    assert len(calls) == (processes > 1 or timeout > 0.0)
+    assert len(calls) == 1
 
 
 def test_code_that_never_ends_stops_all_helpers(tmp_path: Path) -> None:
@@ -110,3 +111,53 @@ def test_code_that_never_ends_stops_all_helpers(tmp_path: Path) -> None:
     ended = render(graph(tmp_path, ENDLESS), "-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", 2, "--timeout", 1)
     assert ended.returncode == 5 and "its code has not ended after 1 seconds" in ended.stderr
     assert time.monotonic() - started < 60.0
+
+
+def test_the_timeout_holds_while_code_compiles(tmp_path: Path) -> None:
+    """An array that is read at places known only at run time takes minutes to compile."""
+    code = "vec4 f(vec4 image) {\n float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]);\n}"
+    started = time.monotonic()
+    ended = render(graph(tmp_path, code), "-o", tmp_path / "out.exr", "--timeout", 1, "--json")
+    assert ended.returncode == 5 and time.monotonic() - started < 30.0
+    message = json.loads(ended.stdout)["error"]["message"]
+    assert message.startswith("node 'user': its code has not ended after 1 seconds")
+
+
+def test_the_memory_limit_holds_while_code_compiles(tmp_path: Path) -> None:
+    code = "vec4 f(vec4 image) {\n float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]);\n}"
+    ended = render(graph(tmp_path, code), "-o", tmp_path / "out.exr", "--memory", "1M", "--json")
+    assert ended.returncode == 5
+    assert json.loads(ended.stdout)["error"]["message"].startswith("node 'user': its code takes more than 0.3 GiB")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
+@pytest.mark.parametrize("processes", [1, 2])
+def test_code_that_ends_its_process(tmp_path: Path, processes: int) -> None:
+    """A driver that dies takes one process with it; the other one says whose code it was."""
+    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", processes)
+    command = [*HALATION, "render", *map(str, (graph(tmp_path, ENDLESS), *words)), "--json"]
+    started = subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "TMPDIR": str(tmp_path)},
+    )
+    beats: tuple[Path, ...] = ()
+    while not any(path.read_text() for path in beats):
+        time.sleep(0.1)
+        beats = tuple(tmp_path.glob("halation-*/heartbeat*"))
+    children = Path(f"/proc/{started.pid}/task/{started.pid}/children").read_text().split()
+    busy = str(next(path for path in beats if path.read_text()))
+    os.kill(next(int(child) for child in children if processes == 1 or _heartbeat_of(child) == busy), signal.SIGSEGV)
+    printed, _ = started.communicate(timeout=60)
+    assert started.returncode == 5
+    assert json.loads(printed)["error"]["message"].startswith("node 'user': its code has ended the process (SIGSEGV)")
+
+
+def _heartbeat_of(process: str) -> str:
+    """The file that a helper writes its heartbeat to."""
+    entries = Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
+    return next(
+        (entry.partition(b"=")[2].decode() for entry in entries if entry.startswith(b"HALATION_HEARTBEAT=")), ""
+    )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 
 import numpy as np
@@ -88,19 +90,30 @@ class Executor:
 
     def measure(self, plan: Plan, render_pass: Pass, lease: Lease) -> float:
         """Execute a pass and wait for it; the seconds that it took on the device."""
-        self.programs.get(render_pass)
+        self.compile(render_pass)
         seconds = self.device.time(partial(self.execute, plan, render_pass, lease))
         self._costs.learn(plan, render_pass, seconds)
         return seconds
 
+    def compile(self, render_pass: Pass) -> None:
+        """Have the program of a pass at hand. Raises ShaderError."""
+        with self._watch(render_pass):
+            self.programs.get(render_pass)
+
     def execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
-        if not (render_pass.writers and self._beacon.watched):
+        with self._watch(render_pass):
             self._execute(plan, render_pass, lease)
+
+    @contextmanager
+    def _watch(self, render_pass: Pass) -> Iterator[None]:
+        """Announce code of users to a process that watches, for as long as the device works on it."""
+        if not (render_pass.writers and self._beacon.watched):
+            yield
             return
         self.device.finish()
         with self._beacon.announce(tuple(render_pass.writers.values())):
-            self._execute(plan, render_pass, lease)
+            yield
             self.device.finish()
 
     def _execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:

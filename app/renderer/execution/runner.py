@@ -9,7 +9,7 @@ from weakref import WeakValueDictionary
 
 from msgspec import Struct
 
-from ...compiler import Plan
+from ...compiler import Pass, Plan
 from ...errors import DeviceError, UsageError
 from ..device import Device
 from .array_pool import ArrayPool
@@ -80,6 +80,10 @@ class Runner:
         finally:
             kept.close()
         return taken
+
+    def compile(self, render_pass: Pass) -> None:
+        """Have the program of a pass at hand. Raises ShaderError."""
+        self._executor.compile(render_pass)
 
     def prepare(self, plan: Plan, given: Container[str] = ()) -> None:
         """Begin to decode what a plan will want soon; `given` are the keys of what will be there by then."""
