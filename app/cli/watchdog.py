@@ -31,6 +31,9 @@ CHECK_INTERVAL = 0.05
 """Seconds between two checks of the other process. A compiler takes at most 0.2 GB of memory in that time, measured
 with Mesa 22.3."""
 
+DEVICE_MODULE = "halation.renderer.opengl.device"
+"""Loaded where the process may have opened OpenGL, whose threads would be missing in a copy."""
+
 OWN_MEMORY = 256 << 20
 """Bytes that a driver may take for itself when it compiles, besides the limit: Mesa takes 120 MiB at first."""
 
@@ -119,7 +122,7 @@ def has_code(graph: Graph) -> bool:
 
 def can_fork() -> bool:
     """True if a copy of this process can go on in its place: nothing but its one thread works in it yet."""
-    if sys.platform != "linux" or not hasattr(os, "pidfd_open") or "moderngl" in sys.modules:
+    if sys.platform != "linux" or not hasattr(os, "pidfd_open") or DEVICE_MODULE in sys.modules:
         return False
     return len(list(Path("/proc/self/task").iterdir())) == 1
 
