@@ -125,9 +125,9 @@ def write(
 
 
 def _output(of: Graph, node: str) -> Port:
-    from .graph import node_output
+    from .graph import find_node_output
 
-    return node_output(of, node)
+    return find_node_output(of, node)
 
 
 @cache

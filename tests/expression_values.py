@@ -30,7 +30,7 @@ def value(name: str):
 
 
 def at(text: str, frame: float = 5.0):
-    return Expression(text).at(frame, (frame - 1.0) / 24.0, 24.0, value)
+    return Expression(text).evaluate(frame, (frame - 1.0) / 24.0, 24.0, value)
 
 
 def fault(text: str) -> ExpressionError:

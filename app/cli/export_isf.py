@@ -46,10 +46,10 @@ def export_isf(
     opened_graph = open_graph(graph, parsing.parse_sets(sets))
     report_problems(graph, opened_graph)
     if selection:
-        from ..graph.selection import selected
+        from ..graph.selection import select_nodes
 
         try:
-            opened_graph = selected(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
+            opened_graph = select_nodes(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
         except GraphError as fault:
             raise UsageError(f"--select {selection}: {fault}") from None
     target = _choose_port(opened_graph, node)

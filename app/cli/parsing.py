@@ -179,10 +179,10 @@ def parse_progress(text: str) -> Literal["bar", "json"]:
 
 def find_targets(graph: Graph, node: str) -> dict[str, Port]:
     """The port that --node names, by that name; empty without --node."""
-    from ..graph import node_output
+    from ..graph import find_node_output
 
     try:
-        return {node: node_output(graph, node)} if node else {}
+        return {node: find_node_output(graph, node)} if node else {}
     except GraphError as fault:
         raise UsageError(f"--node {node}: {fault}") from None
 

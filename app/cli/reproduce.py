@@ -97,12 +97,12 @@ def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path) -> s
     from dataclasses import replace
 
     from .. import document
-    from ..graph.paths import rebased
+    from ..graph.paths import rebase_paths
     from ..renderer.provenance.file_finder import relink_files
 
     linked_graph = relink_files(recipe.graph, files)
     folder = str(path.absolute().parent)
-    moved_graph = rebased(replace(linked_graph, folder=str(recipe.path.absolute().parent)), folder)
+    moved_graph = rebase_paths(replace(linked_graph, folder=str(recipe.path.absolute().parent)), folder)
     if str(path) == "-":
         print(document.dumps(moved_graph), end="")
         return "-"

@@ -29,7 +29,7 @@ from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapt_animation
 from ..graph.names import did_you_mean, name_fault
-from ..graph.values import coerce, expected
+from ..graph.values import coerce, describe_type
 from ..resources.sandbox import outside
 from . import limits, records
 from .animation import read_animation
@@ -273,7 +273,7 @@ class _BodyReader(Struct):
             if name in declared:
                 plain = coerce(declared[name], given)
                 if plain is None:
-                    fault = f"expected {expected(declared[name])}, got {word(given)}"
+                    fault = f"expected {describe_type(declared[name])}, got {word(given)}"
                     raise DocumentError(self.file, member(member(at, "values"), name), fault)
                 values[name] = plain
         if unknown := {name: given for name, given in raw.items() if name not in declared}:

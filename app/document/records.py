@@ -10,7 +10,7 @@ import msgspec
 from halation.nodes import Kind, Missing
 
 from ..errors import DocumentError
-from ..graph import Interpolation, Outside
+from ..graph import Extrapolation, Interpolation
 from .syntax import member
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
@@ -100,7 +100,7 @@ class AnimationRecord(msgspec.Struct):
     """An entry of `animation`."""
 
     keys: list[Any] | None = None
-    outside: Outside = "hold"
+    outside: Extrapolation = "hold"
     expression: str | None = None
 
 

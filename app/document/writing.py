@@ -13,7 +13,7 @@ from ..custom_nodes import CustomNode
 from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
-from ..graph.values import coerce, expected
+from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
 from .animation import describe_animation
 from .canonical import pretty
@@ -134,7 +134,7 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
 def _value(id: str, value: Value, given: object) -> Plain:
     plain = coerce(value, given)
     if plain is None:
-        raise GraphError(f"nodes.{id}.values.{value.name}: {given!r} cannot be saved; set {expected(value)}")
+        raise GraphError(f"nodes.{id}.values.{value.name}: {given!r} cannot be saved; set {describe_type(value)}")
     return plain
 
 

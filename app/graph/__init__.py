@@ -7,9 +7,9 @@ from .color import color_settings
 from .conversion import conversion, make_socket
 from .evaluate_at_frame import animation_fault, evaluate_at_frame, find_key_range, is_animated, value_at
 from .expressions import Expression
-from .graph import Graph, Group, Item, declared, signature
-from .keys import Interpolation, Key, Keys, Outside
-from .lookup import node_output
+from .graph import Graph, Group, Item, find_value, signature
+from .keys import Extrapolation, Interpolation, Key, Keys
+from .lookup import find_node_output
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean
 from .problems import Problem, problems
@@ -21,6 +21,7 @@ __all__ = [
     "Animation",
     "Control",
     "Expression",
+    "Extrapolation",
     "Graph",
     "Group",
     "Input",
@@ -29,7 +30,6 @@ __all__ = [
     "Key",
     "Keys",
     "Output",
-    "Outside",
     "Port",
     "Problem",
     "Settings",
@@ -38,13 +38,13 @@ __all__ = [
     "animation_fault",
     "color_settings",
     "conversion",
-    "declared",
     "did_you_mean",
     "evaluate_at_frame",
     "find_key_range",
+    "find_node_output",
+    "find_value",
     "is_animated",
     "make_socket",
-    "node_output",
     "problems",
     "signature",
     "value_at",

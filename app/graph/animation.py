@@ -1,4 +1,4 @@
-"""Ways in which a value changes over time."""
+"""How a value changes over time: by keys or by an expression."""
 
 from __future__ import annotations
 
@@ -15,31 +15,31 @@ from .values import coerce, value_fault
 Animation = Keys | Expression
 
 ANIMATED = frozenset({"float", "int", "bool", "color", "vector", "matrix"})
-"""Types of values that can change over time."""
+"""Types of values that can be animated."""
 
 
 def adapt_animation(value: Value, animation: Animation) -> Animation:
-    """The same with keys of the type that the value has: 1 becomes 1.0 where it takes numbers."""
+    """The animation with keys converted to the type of the value: 1 becomes 1.0 for a float."""
     if isinstance(animation, Expression):
         return animation
     keys = (replace(key, value=plain) for key in animation.keys if (plain := coerce(value, key.value)) is not None)
-    made = tuple(keys)
-    return replace(animation, keys=made) if len(made) == len(animation.keys) else animation
+    adapted_keys = tuple(keys)
+    return replace(animation, keys=adapted_keys) if len(adapted_keys) == len(animation.keys) else animation
 
 
 def move_animation(animation: Mapping[Port, Animation], old: str, new: str = "") -> dict[Port, Animation]:
-    """All `animation` after a node or control was renamed, or a node removed if `new` is empty."""
-    found: dict[Port, Animation] = {}
+    """All animation after a node or control is renamed, or removed if `new` is empty."""
+    moved_animation: dict[Port, Animation] = {}
     for port, item in animation.items():
         if port.node == old and not new:
             continue
-        here = Port(new, port.socket) if port.node == old else port
-        found[here] = item.rename(old, new) if new and isinstance(item, Expression) else item
-    return found
+        moved_port = Port(new, port.socket) if port.node == old else port
+        moved_animation[moved_port] = item.rename(old, new) if new and isinstance(item, Expression) else item
+    return moved_animation
 
 
-def unfit(port: Port, value: Value, animation: Animation) -> str | None:
-    """Why the value at `port` cannot change in that way, or None. What names in it mean is not looked at."""
+def animation_type_fault(port: Port, value: Value, animation: Animation) -> str | None:
+    """Why the value at `port` cannot be animated in this way, or None. Names in expressions are not checked."""
     if value.type not in ANIMATED:
         return f"{port}: a {value.type} cannot change over time"
     if isinstance(animation, Expression):

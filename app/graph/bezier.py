@@ -1,7 +1,7 @@
-"""A piece of a Bezier curve that is a function: cubic in (frame, channels), frames never going back.
+"""Bezier segments between two keys: cubics in (frame, channels).
 
-With the frames of both handles inside the segment, frame(t) is monotone, so every frame has one t (as in CSS Easing
-Functions, cubic-bezier, and in Blender and After Effects, which limit handles in the same way).
+The handles are limited so that their frames lie inside the segment. Then frame(t) is monotone and every frame has
+exactly one t, as in CSS Easing Functions (cubic-bezier), Blender and After Effects.
 """
 
 from __future__ import annotations
@@ -13,39 +13,41 @@ Point = tuple[float, ...]
 
 Segment = tuple[Point, Point, Point, Point]
 
-_STEPS = 100
+_MAX_STEPS = 100
+"""More than bisection needs for all bits of a double; Newton's method needs 3 to 6."""
 
 
 def limit_handles(first: Point, last: Point, right: Point, left: Point) -> Segment:
-    """The segment from `first` to `last` with handles as offsets: shortened to end inside, their directions kept.
+    """The four points of a segment whose handles are given as offsets.
 
-    A handle that points away from the segment stands upright.
+    A handle that ends outside of the segment is shortened and keeps its direction. One that points away from the
+    segment becomes vertical.
     """
     width = last[0] - first[0]
-    reach = min(1.0, width / right[0]) if right[0] > 0.0 else 1.0
-    back = min(1.0, -width / left[0]) if left[0] < 0.0 else 1.0
-    one = (first[0] + min(max(right[0], 0.0), width), *_along(first, right, reach))
-    two = (last[0] - min(max(-left[0], 0.0), width), *_along(last, left, back))
-    return first, one, two, last
+    right_share = min(1.0, width / right[0]) if right[0] > 0.0 else 1.0
+    left_share = min(1.0, -width / left[0]) if left[0] < 0.0 else 1.0
+    right_handle = (first[0] + min(max(right[0], 0.0), width), *_add_scaled(first, right, right_share))
+    left_handle = (last[0] - min(max(-left[0], 0.0), width), *_add_scaled(last, left, left_share))
+    return first, right_handle, left_handle, last
 
 
-def at(first: Point, one: Point, two: Point, last: Point, frame: float) -> Point:
-    """The channels at a frame inside the segment."""
-    t = _t(first, one, two, last, frame)
+def evaluate(first: Point, right_handle: Point, left_handle: Point, last: Point, frame: float) -> Point:
+    """The channels at a frame inside a segment."""
+    t = _solve_parameter(first, right_handle, left_handle, last, frame)
     v = 1.0 - t
     weights = (v * v * v, 3.0 * v * v * t, 3.0 * v * t * t, t * t * t)
-    points = zip(first[1:], one[1:], two[1:], last[1:], strict=True)
+    points = zip(first[1:], right_handle[1:], left_handle[1:], last[1:], strict=True)
     return tuple(sum(w * part for w, part in zip(weights, parts, strict=True)) for parts in points)
 
 
-def split(first: Point, one: Point, two: Point, last: Point, frame: float) -> tuple[Point, ...]:
-    """The segment cut at a frame (de Casteljau): what the five handles and channels of its two halves are.
+def split(first: Point, right_handle: Point, left_handle: Point, last: Point, frame: float) -> tuple[Point, ...]:
+    """Split a segment at a frame (de Casteljau), so that its shape stays.
 
-    That is the right handle of the start, the left handle, channels and right handle of the new key, and the left
-    handle of the end. Handles are offsets.
+    Returns the right handle of the start; left handle, channels and right handle of the new key; and the left handle
+    of the end. Handles are offsets.
     """
-    t = _t(first, one, two, last, frame)
-    row: list[Point] = [first, one, two, last]
+    t = _solve_parameter(first, right_handle, left_handle, last, frame)
+    row: list[Point] = [first, right_handle, left_handle, last]
     starts, ends = [first], [last]
     while len(row) > 1:
         row = [tuple(a + (b - a) * t for a, b in zip(*pair, strict=True)) for pair in pairwise(row)]
@@ -53,30 +55,32 @@ def split(first: Point, one: Point, two: Point, last: Point, frame: float) -> tu
         ends.append(row[-1])
     middle = (frame, *row[0][1:])
     return (
-        _offset(first, starts[1]),
-        _offset(middle, starts[2]),
+        _subtract(first, starts[1]),
+        _subtract(middle, starts[2]),
         middle[1:],
-        _offset(middle, ends[2]),
-        _offset(last, ends[1]),
+        _subtract(middle, ends[2]),
+        _subtract(last, ends[1]),
     )
 
 
-def end_slopes(first: Point, one: Point, two: Point, last: Point, *, last_end: bool) -> Point:
-    """The slopes with which the curve leaves the segment; of an upright end, those towards the next point."""
-    points = (last, two, one, first) if last_end else (first, one, two, last)
-    here = points[0]
-    other = next((point for point in points[1:] if abs(point[0] - here[0]) > 1e-9 * abs(last[0] - first[0])), points[3])
-    return tuple(part / (other[0] - here[0]) for part in _offset(here, other)[1:])
+def end_slopes(first: Point, right_handle: Point, left_handle: Point, last: Point, *, last_end: bool) -> Point:
+    """The slopes of the curve at one end of a segment; for a vertical handle, the slopes towards the next point."""
+    points = (last, left_handle, right_handle, first) if last_end else (first, right_handle, left_handle, last)
+    end_point = points[0]
+    next_point = next(
+        (point for point in points[1:] if abs(point[0] - end_point[0]) > 1e-9 * abs(last[0] - first[0])), points[3]
+    )
+    return tuple(part / (next_point[0] - end_point[0]) for part in _subtract(end_point, next_point)[1:])
 
 
-def _t(first: Point, one: Point, two: Point, last: Point, frame: float) -> float:
-    """Where along the curve a frame lies, 0 to 1: Newton's method, inside a bracket that halves where it fails."""
+def _solve_parameter(first: Point, right_handle: Point, left_handle: Point, last: Point, frame: float) -> float:
+    """The parameter t (0 to 1) of a frame: by Newton's method, with bisection where it leaves the bracket."""
     width = last[0] - first[0]
-    u, a, b = (frame - first[0]) / width, (one[0] - first[0]) / width, (two[0] - first[0]) / width
+    target, a, b = (frame - first[0]) / width, (right_handle[0] - first[0]) / width, (left_handle[0] - first[0]) / width
     cubic, square, line = 1.0 + 3.0 * (a - b), 3.0 * (b - 2.0 * a), 3.0 * a
-    low, high, t = 0.0, 1.0, u
-    for _ in range(_STEPS):
-        error = ((cubic * t + square) * t + line) * t - u
+    low, high, t = 0.0, 1.0, target
+    for _ in range(_MAX_STEPS):
+        error = ((cubic * t + square) * t + line) * t - target
         low, high = (low, t) if error > 0.0 else (t, high)
         slope = (3.0 * cubic * t + 2.0 * square) * t + line
         step = t - error / slope if slope > 1e-12 else -1.0
@@ -86,9 +90,9 @@ def _t(first: Point, one: Point, two: Point, last: Point, frame: float) -> float
     return t
 
 
-def _along(point: Point, offset: Point, share: float) -> Point:
+def _add_scaled(point: Point, offset: Point, share: float) -> Point:
     return tuple(part + more * share for part, more in zip(point[1:], offset[1:], strict=True))
 
 
-def _offset(point: Point, other: Point) -> Point:
-    return tuple(b - a for a, b in zip(point, other, strict=True))
+def _subtract(point: Point, end: Point) -> Point:
+    return tuple(b - a for a, b in zip(point, end, strict=True))

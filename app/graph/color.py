@@ -1,4 +1,4 @@
-"""How a graph manages color, as those see it who read files."""
+"""The color settings of a graph, for reading files."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from msgspec import structs
 from .graph import Graph
 
 BUILT_IN = "ocio://"
-"""What the names of configs begin with that come with OpenColorIO."""
+"""The prefix of the configs that come with OpenColorIO."""
 
 
 def color_settings(graph: Graph) -> ColorSettings:
-    """The settings of a graph; a config's path, which starts at the graph's folder, as it stands."""
+    """The color settings of a graph, with the path of the config made relative to the current folder."""
     color = graph.settings.color
     if not color.config or color.config.startswith(BUILT_IN):
         return color

@@ -1,4 +1,4 @@
-"""Which link fits: lossless conversions are implicit, the rest name the node that converts."""
+"""Which links are valid: lossless conversions are implicit, for others an error names the node that converts."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType(
 
 
 def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
-    """A socket that no class body declares. `width` counts the channels of a Vector."""
+    """Make a socket outside of a class body. `width` counts the channels of a Vector."""
     start = float(default) if isinstance(default, int | float) else None if isinstance(default, str) else default
     if kind is Kind.VECTOR:
         socket: Socket = Vector(start, width=width, doc=doc)
@@ -30,7 +30,7 @@ def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, nam
 
 
 def conversion(source: Socket, target: Socket | Value) -> str | None:
-    """None if `source` can feed `target` without loss, else the reason and the way out.
+    """None if `source` can feed `target` without loss, else the reason and what to do.
 
     A Number fits everything, a Color or Field an Image, a Field a Vector; widths of Vectors must agree.
     A value (of a pointwise node) takes what its own type can hold.
@@ -42,7 +42,7 @@ def conversion(source: Socket, target: Socket | Value) -> str | None:
         return None
     reason = f"{_word(source)} does not fit {_word(target)}"
     if planned := next((kind for kind in (target.kind, source.kind) if kind.is_planned), None):
-        return f"{reason}: a {planned.facts.noun} goes where a {planned} is wanted, and nothing else does"
+        return f"{reason}: a {planned.facts.noun} can only be linked to a {planned} input, and nothing else can"
     if target.single:
         single = "a Number" if target.kind is Kind.NUMBER else "a Number or Color"
         return f"{reason}, one value for the whole picture: link {single}, such as 'luminance_statistics' measures"
@@ -70,7 +70,7 @@ def _word(socket: Socket) -> str:
 
 
 def _way_out(source: Socket, target: Socket) -> tuple[str, ...]:
-    """The nodes that convert between two kinds of pixels."""
+    """The nodes that convert between two kinds of sockets."""
     split = f"'separate{_suffix(source)}'"
     if target.kind is Kind.FIELD:
         return (split,) if source.kind is Kind.VECTOR else (f"'luminance' or {split}",)
@@ -78,7 +78,7 @@ def _way_out(source: Socket, target: Socket) -> tuple[str, ...]:
 
 
 def _suffix(socket: Socket) -> str:
-    """How the nodes that take vectors apart are called: plain for colors, `_vector` for three channels."""
+    """The end of the names of the nodes that split and join this kind: "" for colors, `_vector`, `_vector2`, ..."""
     if socket.kind is not Kind.VECTOR:
         return ""
     return "_vector" if socket.channels == 3 else f"_vector{socket.channels}"

@@ -14,7 +14,7 @@ EndSection = Literal["inputs", "outputs", "controls"]
 
 
 class _Ends(Protocol):
-    """The parts of a graph that name its ends."""
+    """The fields of a graph that name its inputs, outputs and controls."""
 
     @property
     def links(self) -> Mapping[Port, Port]: ...
@@ -25,9 +25,9 @@ class _Ends(Protocol):
 
 
 def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> dict[str, Any]:
-    """The fields of a graph that change where an input, output or control is renamed, or removed if `new` is None.
+    """The fields of a graph that change when an input, output or control is renamed, or removed if `new` is None.
 
-    Links, layout and unknown keys of the end follow, or go.
+    Its links, layout and unknown keys are renamed or removed too.
     """
     ends: Mapping[str, Any] = getattr(graph, section)
     pick(ends, old, f"the graph has no {section[:-1]}")

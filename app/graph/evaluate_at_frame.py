@@ -1,4 +1,4 @@
-"""A graph at a frame: what changes over time stands still."""
+"""Evaluates the animation of a graph at one frame."""
 
 from __future__ import annotations
 
@@ -9,49 +9,49 @@ from dataclasses import replace
 from halation.nodes import Plain, Value
 
 from ..errors import GraphError
-from .animation import ANIMATED, Animation, unfit
+from .animation import ANIMATED, Animation, animation_type_fault
 from .expressions import Expression
-from .graph import Graph, Group, declared
+from .graph import Graph, Group, find_value
 from .keys import Keys, round_keys
 from .model import Port, Settings
 from .names import did_you_mean
-from .values import coerce, expected
+from .values import coerce, describe_type
 
 CHANNELS = {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
 
 
 def evaluate_at_frame(graph: Graph, frame: int) -> Graph:
-    """The graph at a frame: every animated value, in groups too, is set to what it is then.
+    """The graph with every animated value, also in groups, set to its value at a frame.
 
-    Raises GraphError for an expression that has no value there, or that needs itself.
+    Raises GraphError for an expression that has no value at this frame, or that depends on itself.
     """
-    return _FrameEvaluation(frame, graph.settings).of(graph)
+    return _FrameEvaluation(frame, graph.settings).evaluate(graph)
 
 
 def value_at(graph: Graph, port: Port, frame: int) -> Plain:
-    """What a value of a node, or a control of a group, is at a frame. Raises GraphError."""
-    return _Values(graph, frame, graph.settings).at(port)
+    """The value of a node, or of a control of a group, at a frame. Raises GraphError."""
+    return _ValueEvaluation(graph, frame, graph.settings).evaluate(port)
 
 
 def is_animated(graph: Graph) -> bool:
-    """True if any value of it changes over time, groups included."""
+    """True if any value is animated, also in groups."""
     return bool(graph.animation) or any(
         is_animated(item.graph) for item in graph.nodes.values() if isinstance(item, Group)
     )
 
 
 def find_key_range(graph: Graph) -> tuple[int, int]:
-    """From frame 1 to the last key, groups included."""
+    """The frames from 1 to the last key, also in groups."""
     keyed = [item for item in graph.animation.values() if isinstance(item, Keys) and item.keys]
     inner = (find_key_range(item.graph)[1] for item in graph.nodes.values() if isinstance(item, Group))
     return 1, max([1, *(math.ceil(item.keys[-1].frame) for item in keyed), *inner])
 
 
 def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | None:
-    """Why a value cannot change in that way, or None."""
+    """Why a value cannot be animated in this way, or None. Checks the names in expressions too."""
     try:
-        value = declared(graph.node(port.node), port.socket, port.node)
-        if fault := unfit(port, value, animation):
+        value = find_value(graph.node(port.node), port.socket, port.node)
+        if fault := animation_type_fault(port, value, animation):
             return fault
         if isinstance(animation, Keys):
             return None
@@ -65,27 +65,27 @@ def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | Non
     return None
 
 
-def loop_faults(graph: Graph) -> Iterator[tuple[Port, str]]:
-    """Expressions that need themselves."""
+def find_expression_loops(graph: Graph) -> Iterator[tuple[Port, str]]:
+    """The ports whose expressions depend on themselves, each with a sentence."""
     reads = {
-        port: [find_named_value(graph, name)[0] for name in item.names if _is_there(graph, name)]
+        port: [find_named_value(graph, name)[0] for name in item.names if _names_a_value(graph, name)]
         for port, item in graph.animation.items()
         if isinstance(item, Expression)
     }
     for port in reads:
-        seen, todo = set[Port](), list(reads[port])
+        visited, todo = set[Port](), list(reads[port])
         while todo:
-            other = todo.pop()
-            if other == port:
-                yield port, f"{port}: its expression needs itself"
+            read_port = todo.pop()
+            if read_port == port:
+                yield port, f"{port}: its expression depends on itself"
                 break
-            if other not in seen:
-                seen.add(other)
-                todo.extend(reads.get(other, ()))
+            if read_port not in visited:
+                visited.add(read_port)
+                todo.extend(reads.get(read_port, ()))
 
 
 def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
-    """The value, and the channel of it, that an expression calls `glow`, `bloom.intensity` or `move.offset.x`.
+    """The value, and its channel if any, that a name in an expression means: `glow`, `bloom.intensity`, `move.by.x`.
 
     Raises GraphError with a suggestion.
     """
@@ -97,11 +97,11 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
         if head not in graph.nodes:
             raise GraphError(f"there is no node '{head}'{did_you_mean(head, graph.nodes)}")
     else:
-        known = [*graph.controls, *(f"{node}." for node in graph.nodes)]
-        raise GraphError(f"there is no control '{head}'{did_you_mean(head, known)}")
-    value = declared(graph.node(port.node), port.socket, port.node)
+        names = [*graph.controls, *(f"{node}." for node in graph.nodes)]
+        raise GraphError(f"there is no control '{head}'{did_you_mean(head, names)}")
+    value = find_value(graph.node(port.node), port.socket, port.node)
     if value.type not in ANIMATED:
-        raise GraphError(f"'{port}' is a {value.type}, which is no number")
+        raise GraphError(f"'{port}' is a {value.type}, not a number")
     if not rest:
         return port, None
     width = len(value.default) if isinstance(value.default, tuple) else 1
@@ -112,74 +112,74 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
 
 
 class _FrameEvaluation:
-    """One frame."""
+    """Evaluates graphs and their groups at one frame."""
 
     def __init__(self, frame: int, settings: Settings) -> None:
         self._frame, self._settings = frame, settings
 
-    def of(self, graph: Graph) -> Graph:
+    def evaluate(self, graph: Graph) -> Graph:
         if not is_animated(graph):
             return graph
-        values = _Values(graph, self._frame, self._settings)
-        for port, plain in {port: values.at(port) for port in graph.animation}.items():
+        values = _ValueEvaluation(graph, self._frame, self._settings)
+        for port, plain in {port: values.evaluate(port) for port in graph.animation}.items():
             graph = graph.put(port, plain)
         for id, item in graph.nodes.items():
             if isinstance(item, Group) and is_animated(item.graph):
-                graph = replace(graph, nodes={**graph.nodes, id: Group(self.of(item.body()), item.path)})
+                graph = replace(graph, nodes={**graph.nodes, id: Group(self.evaluate(item.body()), item.path)})
         return graph
 
 
-class _Values:
-    """Values of one graph, groups not looked into, at one frame."""
+class _ValueEvaluation:
+    """Evaluates values of one graph, without its groups, at one frame; each once."""
 
     def __init__(self, graph: Graph, frame: int, settings: Settings) -> None:
         self._graph, self._frame, self._settings = graph, frame, settings
-        self._known: dict[Port, Plain] = {}
-        self._asked: list[Port] = []
+        self._results: dict[Port, Plain] = {}
+        self._in_progress: list[Port] = []
 
-    def at(self, port: Port) -> Plain:
+    def evaluate(self, port: Port) -> Plain:
         animation = self._graph.animation.get(port)
         if animation is None:
             return self._graph.value(port)
-        if port not in self._known:
-            if port in self._asked:
-                raise GraphError(f"{port}: its expression needs itself", node=port.node)
-            self._asked.append(port)
-            self._known[port] = self._made(port, animation)
-            self._asked.pop()
-        return self._known[port]
+        if port not in self._results:
+            if port in self._in_progress:
+                raise GraphError(f"{port}: its expression depends on itself", node=port.node)
+            self._in_progress.append(port)
+            self._results[port] = self._evaluate_animation(port, animation)
+            self._in_progress.pop()
+        return self._results[port]
 
-    def _made(self, port: Port, animation: Animation) -> Plain:
-        value = declared(self._graph.node(port.node), port.socket, port.node)
+    def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
+        value = find_value(self._graph.node(port.node), port.socket, port.node)
         if isinstance(animation, Keys):
-            return fitted(port, value, animation.at(self._frame), self._frame)
+            return fit_to_value(port, value, animation.evaluate(self._frame), self._frame)
         first, rate = (self._settings.frames or (1, 1))[0], self._settings.rate
         try:
-            made = animation.at(self._frame, (self._frame - first) / rate, rate, self._named)
+            number = animation.evaluate(self._frame, (self._frame - first) / rate, rate, self._evaluate_name)
         except GraphError as error:
             raise GraphError(f"{port} at frame {self._frame}: {error}", node=port.node) from None
-        return fitted(port, value, made, self._frame)
+        return fit_to_value(port, value, number, self._frame)
 
-    def _named(self, name: str) -> Plain:
+    def _evaluate_name(self, name: str) -> Plain:
         port, channel = find_named_value(self._graph, name)
-        found = self.at(port)
-        return found[channel] if channel is not None and isinstance(found, tuple) else found
+        plain = self.evaluate(port)
+        return plain[channel] if channel is not None and isinstance(plain, tuple) else plain
 
 
-def fitted(port: Port, value: Value, made: Plain, frame: int) -> Plain:
-    """What was computed as a setting of the value: rounded for a whole number, limited to the hard range.
+def fit_to_value(port: Port, value: Value, computed: Plain, frame: int) -> Plain:
+    """Convert a computed number to the type of a value: rounded for an int, limited to the hard range.
 
-    One number does for all channels. Raises GraphError for what does not fit.
+    A single number is used for all channels. Raises GraphError if it does not fit.
     """
-    if isinstance(value.default, tuple) and isinstance(made, int | float):
-        made = (float(made),) * len(value.default)
-    elif value.type == "int" and isinstance(made, float):
-        made = int(round_keys(made))
-    elif value.type == "bool" and isinstance(made, int | float):
-        made = made != 0
-    plain = coerce(value, made)
+    if isinstance(value.default, tuple) and isinstance(computed, int | float):
+        computed = (float(computed),) * len(value.default)
+    elif value.type == "int" and isinstance(computed, float):
+        computed = int(round_keys(computed))
+    elif value.type == "bool" and isinstance(computed, int | float):
+        computed = computed != 0
+    plain = coerce(value, computed)
     if plain is None:
-        raise GraphError(f"{port} at frame {frame} is {made!r}: it takes {expected(value)}", node=port.node)
+        raise GraphError(f"{port} at frame {frame} is {computed!r}: it takes {describe_type(value)}", node=port.node)
     if isinstance(plain, bool | str):
         return plain
     if isinstance(plain, tuple):
@@ -187,7 +187,7 @@ def fitted(port: Port, value: Value, made: Plain, frame: int) -> Plain:
     return type(plain)(min(max(plain, value.minimum), value.maximum))
 
 
-def _is_there(graph: Graph, name: str) -> bool:
+def _names_a_value(graph: Graph, name: str) -> bool:
     try:
         find_named_value(graph, name)
     except GraphError:

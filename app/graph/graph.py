@@ -1,4 +1,4 @@
-"""The graph: an immutable value. Every edit returns a new one and raises GraphError where it makes no sense."""
+"""The graph: an immutable value. Each edit returns a new graph, or raises GraphError if it is invalid."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from halation.nodes import Node, Plain, Pointwise, Socket, Value
 from msgspec import structs
 
 from ..errors import GraphError
-from .animation import ANIMATED, Animation, adapt_animation, move_animation, unfit
+from .animation import ANIMATED, Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
 from .ends import EndSection, move_end
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
@@ -20,15 +20,15 @@ from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
 from .relink import move_links, relink
 from .values import coerce, value_fault
-from .walk import Wired, loop_sentence, route
+from .walk import Wired, describe_loop, find_route
 
 
 @dataclass(frozen=True)
 class Group:
     """A node whose body is another graph.
 
-    `path` is as written in the file, relative to that file; empty for a body that is part of it.
-    `values` holds settings of the body's controls by name.
+    `path` is the file of the body, relative to the file of the graph; empty for a body in the same file.
+    `values` holds the settings of the body's controls by name.
     """
 
     graph: Graph
@@ -39,7 +39,7 @@ class Group:
         object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
 
     def body(self) -> Graph:
-        """The graph inside, with the group's values put where its controls point."""
+        """The body with the group's values set where its controls point."""
         graph = self.graph
         for name, plain in self.values.items():
             if name in graph.controls:
@@ -54,7 +54,7 @@ Item = Node | Group | Unknown
 class Graph(Wired[Item]):
     """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
 
-    `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps keys that mean nothing here, by the JSON
+    `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps unknown keys of the file, by the JSON
     path of the object that holds them. `folder` is where relative paths start; it is not saved.
     """
 
@@ -79,23 +79,23 @@ class Graph(Wired[Item]):
                 object.__setattr__(self, name, freeze(getattr(self, name)))
         object.__setattr__(self, "muted", frozenset(self.muted))
 
-    # --- questions ---------------------------------------------------------------------------------------------
+    # --- queries -----------------------------------------------------------------------------------------------
 
     def node(self, id: str) -> Item:
-        """The node of that id. Raises GraphError with a suggestion."""
+        """The node of an id. Raises GraphError with a suggestion."""
         if id not in self.nodes:
             raise GraphError(f"there is no node '{id}'{did_you_mean(id, self.nodes)}")
         return self.nodes[id]
 
     def source(self, port: Port) -> Socket | None:
-        """What leaves at `port`; None if it belongs to a node of unknown type. Raises GraphError."""
+        """The output at `port`; None for a node of unknown type. Raises GraphError."""
         if port.node == INPUTS:
             return pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
         face = signature(self.node(port.node))
         return None if face.anything else pick(face.outputs, port.socket, f"node '{port.node}' has no output")
 
     def target(self, port: Port) -> Socket | Value | None:
-        """What a link to `port` feeds; None if it belongs to a node of unknown type. Raises GraphError."""
+        """The input or value at `port`; None for a node of unknown type. Raises GraphError."""
         if port.node == OUTPUTS:
             return pick(self.outputs, port.socket, "the graph has no output").socket(port.socket)
         item = self.node(port.node)
@@ -108,7 +108,7 @@ class Graph(Wired[Item]):
         return value
 
     def link_fault(self, source: Port, target: Port) -> str | None:
-        """Why a link from `source` cannot feed `target`, loops aside, or None."""
+        """Why a link from `source` to `target` is invalid, or None. Loops are not checked."""
         try:
             start, end = self.source(source), self.target(target)
         except GraphError as error:
@@ -116,7 +116,7 @@ class Graph(Wired[Item]):
         return None if start is None or end is None else conversion(start, end)
 
     def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
-        """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
+        """The port that can feed `target` in place of node `id`: the source of its first linked input that fits."""
         face = signature(self.node(id))
         ports = (
             sorted(port for port in self.links if port.node == id)
@@ -144,14 +144,14 @@ class Graph(Wired[Item]):
         return self._with(nodes={**self.nodes, id: item})
 
     def remove(self, id: str, heal: bool = True) -> Self:
-        """A graph without that node, its links and the controls of it.
+        """A graph without a node, its links and its controls.
 
-        With `heal`, what fed its first input that fits is linked to what it fed.
+        With `heal`, the source of its first input that fits is linked to the targets of the node.
         """
         self.node(id)
         links = {target: source for target, source in self.links.items() if id not in (target.node, source.node)}
         for target, source in self.links.items() if heal else ():
-            if source.node == id != target.node and (instead := self._instead(id, target)):
+            if source.node == id != target.node and (instead := self._find_replacement_source(id, target)):
                 links[target] = instead
         controls = {name: control for name, control in self.controls.items() if control.target.node != id}
         return self._with(
@@ -188,10 +188,10 @@ class Graph(Wired[Item]):
         )
 
     def replace(self, id: str, item: Item) -> Self:
-        """A graph where another node stands in that place.
+        """A graph where another node replaces node `id`.
 
-        Links stay where a socket of the same name fits, else move to the first free one of a kind that fits,
-        else go; controls of values that it lacks go too.
+        A link stays on the socket of the same name if it fits, else moves to the first free socket that fits, else is
+        removed. Controls of values that the new node lacks are removed.
         """
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
@@ -202,26 +202,26 @@ class Graph(Wired[Item]):
             if control.target.node != id or face.anything or control.target.socket in face.values
         }
         extra = self.extra if type(before) is type(item) else move_keys(self.extra, f"nodes.{id}")
-        kept_animation = {
+        remaining_animation = {
             port: animation
             for port, animation in self.animation.items()
             if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
         }
-        return after._with(links=links, controls=controls, animation=kept_animation, extra=extra)
+        return after._with(links=links, controls=controls, animation=remaining_animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
-        """A graph where the node passes its first input through, or works again."""
+        """A graph where a node is muted, so that it passes its first input through; or, with `on` False, is not."""
         self.node(id)
         return self._with(muted=self.muted | {id} if on else self.muted - {id})
 
     # --- links and values --------------------------------------------------------------------------------------
 
     def connect(self, source: Port, target: Port) -> Self:
-        """A graph where `source` feeds `target`, in place of what fed it before."""
+        """A graph with a link from `source` to `target`, which replaces an earlier link to `target`."""
         if fault := self.link_fault(source, target):
             raise GraphError(f"'{source}' cannot feed '{target}': {fault}")
-        if loop := route(target.node, source.node, self.fed):
-            raise GraphError(f"'{source}' cannot feed '{target}': {loop_sentence((*loop, target.node))}")
+        if loop := find_route(target.node, source.node, self.fed):
+            raise GraphError(f"'{source}' cannot feed '{target}': {describe_loop((*loop, target.node))}")
         ui = self.ui if self.links.get(target) == source else without_route(self.ui, str(target))
         return self._with(links={**self.links, target: source}, ui=ui)
 
@@ -232,17 +232,17 @@ class Graph(Wired[Item]):
         return self._with(links=without(self.links, target))
 
     def value(self, port: Port) -> Plain:
-        """What a value of a node, or a control of a group, is set to."""
-        return declared(self.node(port.node), port.socket, port.node).default
+        """The setting of a value of a node, or of a control of a group."""
+        return find_value(self.node(port.node), port.socket, port.node).default
 
     def set(self, port: Port, value: object) -> Self:
-        """A graph where a value of a node, or a control of a group, is set for all frames, or is animated.
+        """A graph where a value of a node, or a control of a group, is set for all frames or animated.
 
         Checks type, choice and hard range.
         """
         if isinstance(value, Animation):
             return self.animate(port, value)
-        declaration = declared(self.node(port.node), port.socket, port.node)
+        declaration = find_value(self.node(port.node), port.socket, port.node)
         if fault := value_fault(declaration, value):
             raise GraphError(f"{port}: {fault}")
         plain = coerce(declaration, value)
@@ -250,7 +250,7 @@ class Graph(Wired[Item]):
         return self.put(port, plain)
 
     def put(self, port: Port, plain: Plain) -> Self:
-        """`set` without any check; a port that is not there changes nothing."""
+        """`set` without checks; a port that does not exist changes nothing."""
         item = self.nodes.get(port.node)
         if isinstance(item, Group) and port.socket in item.graph.controls:
             item = dataclasses.replace(item, values={**item.values, port.socket: plain})
@@ -262,20 +262,20 @@ class Graph(Wired[Item]):
         return self._with(nodes={**self.nodes, port.node: item}, animation=animation)
 
     def animate(self, port: Port, animation: Animation | None) -> Self:
-        """A graph where a value changes over time, or does not any more; then it stays what it is set to."""
+        """A graph where a value is animated; with None it is not, and has its setting again."""
         if animation is None:
             return self._with(animation=without(self.animation, port))
-        value = declared(self.node(port.node), port.socket, port.node)
-        if fault := unfit(port, value, animation):
+        value = find_value(self.node(port.node), port.socket, port.node)
+        if fault := animation_type_fault(port, value, animation):
             raise GraphError(fault)
         return self._with(animation={**self.animation, port: adapt_animation(value, animation)})
 
     def set_control(self, name: str, value: object) -> Self:
-        """A graph where the value behind a control is set."""
+        """A graph where the value that a control points at is set."""
         return self.set(pick(self.controls, name, "the graph has no control").target, value)
 
     def override(self, path: str, value: object) -> Self:
-        """Set what `path` names: `glow` (a control), `bloom.intensity`, `group.control` or `group.node.value`."""
+        """A graph where the value at `path` is set: `glow` (a control), `bloom.intensity`, `group.node.value`."""
         head, dot, rest = path.partition(".")
         if not dot:
             return self.set_control(path, value)
@@ -283,10 +283,10 @@ class Graph(Wired[Item]):
             return self.set(Port(head, rest), value)
         item = self.node(head)
         if not isinstance(item, Group):
-            raise GraphError(f"'{path}' looks inside '{head}', which is no group: write {head}.value")
+            raise GraphError(f"'{path}' looks inside '{head}', which is not a group: write {head}.value")
         return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
 
-    # --- ends --------------------------------------------------------------------------------------------------
+    # --- inputs, outputs and controls --------------------------------------------------------------------------
 
     def add_input(self, name: str, input: Input) -> Self:
         """A graph with one more input."""
@@ -299,21 +299,21 @@ class Graph(Wired[Item]):
         return self._with(outputs={**self.outputs, name: output})
 
     def add_control(self, name: str, control: Control) -> Self:
-        """A graph that shows one more value under a name."""
+        """A graph with one more control."""
         check_name(name, "control", self.controls)
-        declared(self.node(control.target.node), control.target.socket, control.target.node)
+        find_value(self.node(control.target.node), control.target.socket, control.target.node)
         return self._with(controls={**self.controls, name: control})
 
     def remove_input(self, name: str) -> Self:
-        """A graph without that input and its links."""
+        """A graph without an input and its links."""
         return self._move_end("inputs", name)
 
     def remove_output(self, name: str) -> Self:
-        """A graph without that output and its link."""
+        """A graph without an output and its link."""
         return self._move_end("outputs", name)
 
     def remove_control(self, name: str) -> Self:
-        """A graph without that control; the value stays as it is."""
+        """A graph without a control; its value keeps its setting."""
         return self._move_end("controls", name)
 
     def rename_input(self, old: str, new: str) -> Self:
@@ -329,7 +329,7 @@ class Graph(Wired[Item]):
         after = self._move_end("controls", old, new)
         return after if old in self.nodes else after._with(animation=move_animation(self.animation, old, new))
 
-    # --- inside ------------------------------------------------------------------------------------------------
+    # --- private -----------------------------------------------------------------------------------------------
 
     def _with(self, **changes: Any) -> Self:
         if "links" in changes and "routes" in self.ui:
@@ -337,7 +337,7 @@ class Graph(Wired[Item]):
             changes["ui"] = keep_linked_routes(changes.get("ui", self.ui), ends)
         return dataclasses.replace(self, **changes)
 
-    def _instead(self, id: str, target: Port) -> Port | None:
+    def _find_replacement_source(self, id: str, target: Port) -> Port | None:
         try:
             source = self.bypass(id, self.target(target))
         except GraphError:
@@ -348,11 +348,11 @@ class Graph(Wired[Item]):
         return self._with(**move_end(self, section, old, new))
 
 
-# --- faces of nodes --------------------------------------------------------------------------------------------------
+# --- signatures of nodes ---------------------------------------------------------------------------------------------
 
 
 def signature(item: Item) -> Signature:
-    """What a node shows to links. A group shows its body's ends, and its controls as values."""
+    """The sockets and values of a node. Those of a group are the inputs, outputs and controls of its body."""
     if isinstance(item, Node):
         outputs = {name: output.socket for name, output in item.outputs.items()}
         return Signature(item.inputs, outputs, item.values, pointwise=isinstance(item, Pointwise))
@@ -365,26 +365,26 @@ def signature(item: Item) -> Signature:
 
 
 def control_value(graph: Graph, name: str) -> Value | None:
-    """The value behind a control, called as the control is, its present setting as the default."""
+    """The value that a control points at, with the name of the control and the setting as default; else None."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
-    value = None if item is None else _present(item, control.target.socket)
+    value = None if item is None else _find_setting(item, control.target.socket)
     return value and structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
 
 
-def declared(item: Item, name: str, id: str) -> Value:
-    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
-    if value := _present(item, name):
+def find_value(item: Item, name: str, id: str) -> Value:
+    """A value of a node, or a control of a group, with its setting as default. Raises GraphError."""
+    if value := _find_setting(item, name):
         return value
     face = signature(item)
     if face.anything:
         raise GraphError(f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown")
     if name in face.inputs:
-        raise GraphError(f"'{id}.{name}' is an input, not a value: link something to it")
+        raise GraphError(f"'{id}.{name}' is an input, not a value: link an output to it")
     raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
 
 
-def _present(item: Item, name: str) -> Value | None:
+def _find_setting(item: Item, name: str) -> Value | None:
     if isinstance(item, Node) and name in item.values:
         return structs.replace(item.values[name], default=getattr(item, name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
@@ -393,7 +393,7 @@ def _present(item: Item, name: str) -> Value | None:
 
 
 def _is_pointwise(item: Item, name: str) -> bool:
-    """True if value `name` of a node, or what a control of a group turns, can be wired."""
+    """True if a value of a node, or of a control of a group, belongs to a pointwise node, so that it can be linked."""
     while isinstance(item, Group):
         target = item.graph.controls[name].target
         item, name = item.graph.nodes[target.node], target.socket

@@ -1,4 +1,4 @@
-"""Finding things by what a person typed."""
+"""Finds ports by text that the user typed."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from .graph import Graph, signature
 from .model import Port
 
 
-def node_output(graph: Graph, text: str) -> Port:
-    """The port behind `node` or `node.output`. Raises GraphError with what there is instead."""
+def find_node_output(graph: Graph, text: str) -> Port:
+    """The port that `node` or `node.output` names. Raises GraphError that lists the outputs."""
     id, _, output = text.partition(".")
     outputs = tuple(signature(graph.node(id)).outputs)
     if (output or "out") in outputs:

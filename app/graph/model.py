@@ -1,4 +1,4 @@
-"""What a graph is made of, besides nodes."""
+"""The parts of a graph other than nodes: ports, inputs, outputs, controls, settings."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ class Port(Struct, frozen=True, order=True):
         """Read `node.socket`. Raises GraphError."""
         node, _, socket = text.partition(".")
         if not node or not socket or "." in socket:
-            raise GraphError(f"'{text}' names no socket: write node.socket, such as 'bloom.image'")
+            raise GraphError(f"'{text}' is not a socket: write node.socket, such as 'bloom.image'")
         return cls(node, socket)
 
 
 @dataclass(frozen=True)
 class Input:
-    """Where something enters the graph: bound by name, else `default`, else layer `layer` of `file`.
+    """An input of the graph: what the caller binds to its name, else `default`, else layer `layer` of `file`.
 
     `width` counts the channels of a Vector. `default` is one number, or one per channel. `missing` says what a frame
-    shows that has no file, where `file` names a sequence. `color_space` is what color in a file is in, by name or role;
-    "" finds out.
+    without a file shows if `file` is a sequence. `color_space` is the color space of the file, by name or role; ""
+    means that the file says it.
     """
 
     kind: Kind = Kind.IMAGE
@@ -54,16 +54,16 @@ class Input:
         object.__setattr__(self, "width", _width(self.kind, self.width))
 
     def socket(self, name: str = "") -> Socket:
-        """How a link sees it. Outside a group it may stay unlinked if there is a default or a file."""
+        """The socket of this input. In the graph itself it is optional if it has a default or a file."""
         fallback = 0.0 if self.default is None and self.file else self.default
         return make_socket(self.kind, self.width, fallback, name=name, doc=self.doc)
 
 
 @dataclass(frozen=True)
 class Output:
-    """Where something leaves the graph. `layer` names it in a file of several layers (default: its own name).
+    """An output of the graph. `layer` is its name in a file of several layers; by default the name of the output.
 
-    `view` is how to show it unless someone chooses: `none` for light that a tone map made ready for the display.
+    `view` is the default OpenColorIO view: `none` for display colors, as after a tone map.
     """
 
     kind: Kind = Kind.IMAGE
@@ -75,13 +75,13 @@ class Output:
         object.__setattr__(self, "width", _width(self.kind, self.width))
 
     def socket(self, name: str = "") -> Socket:
-        """How a link sees it."""
+        """The socket of this output."""
         return make_socket(self.kind, self.width, name=name)
 
 
 @dataclass(frozen=True)
 class Control:
-    """A value of a node (or a control of a group) that the graph shows under a name of its own."""
+    """A value of a node (or a control of a group) that the graph exposes under a name."""
 
     target: Port
     label: str = ""
@@ -92,7 +92,7 @@ class Control:
 class Unknown:
     """A node of a type that is not installed, or of code that has a `fault`.
 
-    It does nothing, and is saved back as it was read.
+    It does nothing, and is saved as it was read.
     """
 
     type: str
@@ -105,13 +105,13 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Settings:
-    """What holds for the graph as a whole.
+    """Settings of the whole graph.
 
     `size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080.
     `frames`: the first and last frame; by default those of the first sequence that is read, else frame 1 alone.
-    `rate`: frames per second. `preroll`: how many frames before the one that is wanted nodes with a memory look back;
-    by default to the first frame, so that a frame is the same wherever a rendering begins. `color`: how colors are
-    managed, groups included. `allow`: reasons why what a rule warns of is meant, by `rule` or `rule:node`.
+    `rate`: frames per second. `preroll`: how many earlier frames are rendered for nodes with a memory; by default all
+    from the first one, so that a frame does not depend on where a render starts. `color`: color management, also in
+    groups. `allow`: reasons why a warning is intended, by `rule` or `rule:node`.
     """
 
     size: Size | None = None
@@ -126,7 +126,7 @@ class Settings:
 
 
 class Signature(Struct, frozen=True):
-    """What a node shows to links: its sockets and values by name. `anything`: its type is unknown."""
+    """The sockets and values of a node by name. `anything` is True if its type is unknown."""
 
     inputs: Mapping[str, Socket]
     outputs: Mapping[str, Socket]
@@ -136,7 +136,7 @@ class Signature(Struct, frozen=True):
 
 
 def freeze(item: Any) -> Any:
-    """The same JSON tree, read-only: objects as mapping proxies, lists as tuples."""
+    """A read-only copy of a JSON tree: objects as mapping proxies, lists as tuples."""
     if isinstance(item, Mapping):
         return MappingProxyType({key: freeze(part) for key, part in cast("Mapping[str, Any]", item).items()})
     if isinstance(item, list | tuple):
@@ -145,7 +145,7 @@ def freeze(item: Any) -> Any:
 
 
 def _width(kind: Kind, width: int) -> int:
-    """Channels of an end of the graph; only those of a Vector are free."""
+    """The number of channels of an input or output: `width` for a Vector, else that of the kind."""
     if kind is not Kind.VECTOR:
         return make_socket(kind).channels
     if width not in (2, 3, 4):

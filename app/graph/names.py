@@ -1,4 +1,4 @@
-"""Names that people choose, and the nearest one to what they meant."""
+"""Names of nodes, inputs, outputs and controls, and suggestions for misspelled ones."""
 
 from __future__ import annotations
 
@@ -9,57 +9,57 @@ from typing import TypeVar
 from ..errors import GraphError
 
 INPUTS, OUTPUTS = "inputs", "outputs"
-"""The ids under which links name the ends of the graph itself."""
+"""The node ids in links that stand for the inputs and outputs of the graph itself."""
 
-_LISTED = 12
+_MAX_LISTED = 12
 
 T = TypeVar("T")
 
 
-def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """The tail of a sentence about an unknown `name`: the nearest known one, or a short list, or nothing."""
-    lowered = {item.lower(): item for item in sorted(known, reverse=True)}
+def did_you_mean(name: str, names: Iterable[str]) -> str:
+    """The end of a sentence about an unknown name: the most similar of `names`, or a short list of them, or ""."""
+    lowered = {item.lower(): item for item in sorted(names, reverse=True)}
     if near := difflib.get_close_matches(name.lower(), lowered, n=1):
         return f"; did you mean '{lowered[near[0]]}'?"
-    if 0 < len(lowered) <= _LISTED:
+    if 0 < len(lowered) <= _MAX_LISTED:
         return f"; there is {', '.join(sorted(lowered.values()))}"
     return ""
 
 
-def pick(known: Mapping[str, T], name: str, lacking: str) -> T:
-    """The entry of that name. Raises GraphError: `lacking`, the name and a suggestion."""
-    if name not in known:
-        raise GraphError(f"{lacking} '{name}'{did_you_mean(name, known)}")
-    return known[name]
+def pick(entries: Mapping[str, T], name: str, lacking: str) -> T:
+    """The entry of a name. Raises GraphError made of `lacking`, the name and a suggestion."""
+    if name not in entries:
+        raise GraphError(f"{lacking} '{name}'{did_you_mean(name, entries)}")
+    return entries[name]
 
 
-def name_fault(name: str, what: str) -> str | None:
-    """Why `name` cannot name a node, input, output or control (`what` says which), or None."""
+def name_fault(name: str, subject: str) -> str | None:
+    """Why a node, input, output or control (`subject`) cannot have this name, or None."""
     if not name:
-        return f"the name of {_article(what)} cannot be empty"
+        return f"the name of {_add_article(subject)} cannot be empty"
     if "." in name or "/" in name or not name.isprintable():
-        return f"{_article(what)} cannot be called {name!r}: leave out dots, slashes and control characters"
-    if what == "node" and name in (INPUTS, OUTPUTS):
+        return f"{_add_article(subject)} cannot be called {name!r}: leave out dots, slashes and control characters"
+    if subject == "node" and name in (INPUTS, OUTPUTS):
         return f"a node cannot be called '{name}': that name stands for the ends of the graph"
     return None
 
 
-def check_name(name: str, what: str, taken: Iterable[str] = ()) -> None:
-    """Raise GraphError unless `name` is valid and free."""
-    if fault := name_fault(name, what):
+def check_name(name: str, subject: str, used_names: Iterable[str] = ()) -> None:
+    """Raise GraphError unless a name is valid and not used yet."""
+    if fault := name_fault(name, subject):
         raise GraphError(fault)
-    if name in taken:
-        raise GraphError(f"{_article(what)} called '{name}' already exists; choose another name")
+    if name in used_names:
+        raise GraphError(f"{_add_article(subject)} called '{name}' already exists; choose another name")
 
 
-def fresh_name(stem: str, taken: Iterable[str]) -> str:
-    """`stem`, or `stem2`, `stem3`, ... where that is taken."""
-    used, number, name = set(taken), 1, stem
-    while name in used:
+def fresh_name(stem: str, used_names: Iterable[str]) -> str:
+    """A name that is not used yet: `stem`, or `stem2`, `stem3`, ..."""
+    names, number, name = set(used_names), 1, stem
+    while name in names:
         number += 1
         name = f"{stem}{number}"
     return name
 
 
-def _article(what: str) -> str:
-    return f"an {what}" if what[0] in "aeiou" else f"a {what}"
+def _add_article(noun: str) -> str:
+    return f"an {noun}" if noun[0] in "aeiou" else f"a {noun}"

@@ -11,14 +11,14 @@ from halation.nodes import Node, catalogue, plugins
 
 from ..errors import GraphError
 from . import rules
-from .evaluate_at_frame import animation_fault, loop_faults
+from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, signature
 from .model import Input, Port, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
-from .values import numbers, value_fault
-from .walk import loop_sentence, loops
+from .values import coerce_numbers, value_fault
+from .walk import describe_loop, find_loops
 
 _REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
 """A package and its version, as pip takes them. Anything else in a file is not repeated as a command to type."""
@@ -97,8 +97,8 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
         yield from _missing(graph, id, item, id in needed)
         if isinstance(item, Group):
             yield from _group(id, item, known, depth)
-    for loop in loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
-        yield Problem(loop[0], "", loop_sentence(loop), rules.LOOP)
+    for loop in find_loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
+        yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
     for node, socket, sentence, at in find_unmerged(graph.extra):
@@ -138,7 +138,7 @@ def _animations(graph: Graph) -> Iterator[Problem]:
         elif port in graph.links:
             sentence = f"'{port}' is linked, so that its keys do nothing"
             yield Problem(port.node, port.socket, sentence, rules.DEAD_ANIMATION, f"animation.{port}")
-    for port, fault in loop_faults(graph):
+    for port, fault in find_expression_loops(graph):
         yield Problem(port.node, port.socket, fault, rules.BAD_ANIMATION, f"animation.{port}")
     first, last = graph.settings.frames or (1, 1)
     if last < first:
@@ -219,7 +219,7 @@ def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
 def _default_fault(name: str, end: Input) -> str | None:
     channels = end.socket().channels
     default = (end.default,) if isinstance(end.default, int | float) else end.default
-    fits = numbers(default, 1) or numbers(default, channels)
+    fits = coerce_numbers(default, 1) or coerce_numbers(default, channels)
     if default is None or (fits and all(map(math.isfinite, fits))):
         return None
     expected_form = "a number" if channels == 1 else f"a number or a list of {channels} numbers"

@@ -1,4 +1,4 @@
-"""Where links go when a node is replaced by one with other sockets."""
+"""Moves links when a node is replaced by one with other sockets."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from collections.abc import Callable, Mapping
 from .model import Port, Signature
 
 Fits = Callable[[Port, Port], bool]
-"""Whether a link from the first port can feed the second."""
+"""True if a link from the first port to the second is valid."""
 
 
 def move_links(links: Mapping[Port, Port], moves: Mapping[Port, Port]) -> dict[Port, Port]:
-    """All `links` with some ports replaced by others."""
+    """All links with some ports replaced by others."""
     return {moves.get(target, target): moves.get(source, source) for target, source in links.items()}
 
 
 def relink(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, fits: Fits) -> dict[Port, Port]:
-    """All `links` (target to source), those of node `id` moved from its `old` sockets to its `new` ones.
+    """All links by target, with those of node `id` moved from its old sockets to its new ones.
 
-    A link stays on the socket of the same name if it fits there, else takes the first free one that fits, else goes.
+    A link stays on the socket of the same name if it fits, else moves to the first free one that fits, else is removed.
     """
     other_links = {target: source for target, source in links.items() if id not in (target.node, source.node)}
     rank = {name: place for place, name in enumerate((*old.inputs, *old.values))}

@@ -1,6 +1,6 @@
-"""What a merge of two versions left to be decided, for those who look for problems.
+"""Finds the conflicts of a merge that are not resolved yet.
 
-Such a document says it under the key `conflicts`, which a graph keeps as one that means nothing to it.
+A merged file lists them under the key `conflicts`, which a graph keeps among its unknown keys.
 """
 
 from __future__ import annotations
@@ -10,42 +10,42 @@ from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 CONFLICTS = "conflicts"
-_LONG = 40
+_SHOWN_CHARACTERS = 40
 
 
 def find_unmerged(extra: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
-    """Node, socket, sentence and JSON path of every conflict, given what a graph keeps.
+    """Node, socket, sentence and JSON path of every conflict among the unknown keys of a graph.
 
     The node is a path through groups.
     """
-    found: object = extra.get("", {}).get(CONFLICTS, ())
-    entries = cast("tuple[object, ...]", found) if isinstance(found, tuple) else (found,)
+    section: object = extra.get("", {}).get(CONFLICTS, ())
+    entries = cast("tuple[object, ...]", section) if isinstance(section, tuple) else (section,)
     for entry in entries:
-        known = cast("Mapping[str, object]", entry if isinstance(entry, Mapping) else {})
-        at = known.get("at")
+        conflict = cast("Mapping[str, object]", entry if isinstance(entry, Mapping) else {})
+        at = conflict.get("at")
         keys = tuple(map(str, cast("tuple[object, ...]", at))) if isinstance(at, tuple) else ()
         if not keys:
             yield "", "", f"'{CONFLICTS}' marks an unfinished merge, but does not say where: remove it", CONFLICTS
             return
-        sides = ", ".join(f"{side} {_said(known, side)}" for side in ("ours", "theirs"))
+        sides = ", ".join(f"{side} {_describe_side(conflict, side)}" for side in ("ours", "theirs"))
         path = ".".join(keys)
         sentence = f"{path} was changed by both sides of a merge ({sides}): choose with halation merge --resolve"
-        yield *_place(keys), sentence, path
+        yield *_find_socket(keys), sentence, path
 
 
-def _said(entry: Mapping[str, object], side: str) -> str:
-    """What a side has there, where that is short enough to be read."""
+def _describe_side(entry: Mapping[str, object], side: str) -> str:
+    """What one side has at the place of a conflict, if that is short."""
     if side not in entry:
         return "has none"
     part = entry[side]
     if isinstance(part, Mapping):
         return "has one"
     words = json.dumps(part, ensure_ascii=False, default=dict)
-    return f"has {words}" if len(words) <= _LONG else "has another"
+    return f"has {words}" if len(words) <= _SHOWN_CHARACTERS else "has another"
 
 
-def _place(keys: tuple[str, ...]) -> tuple[str, str]:
-    """Node and socket that an address belongs to."""
+def _find_socket(keys: tuple[str, ...]) -> tuple[str, str]:
+    """The node and the socket that a path of keys belongs to."""
     groups: list[str] = []
     while len(keys) > 3 and keys[0] == "nodes" and keys[2] == "graph":
         groups.append(keys[1])

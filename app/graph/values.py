@@ -1,4 +1,4 @@
-"""Is this a legal setting of that value?"""
+"""Checks settings of values, and converts them to the type of the value."""
 
 from __future__ import annotations
 
@@ -12,47 +12,47 @@ _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38
 
 
-def coerce(value: Value, given: object) -> Plain | None:
-    """`given` as the plain type that `value` declares (an int serves as a float, a list as a tuple), else None.
+def coerce(value: Value, setting: object) -> Plain | None:
+    """A setting converted to the type of a value (an int to a float, a list to a tuple), or None if it does not fit.
 
-    Ranges and choices are not looked at: see `value_fault`.
+    Ranges and choices are not checked: see `value_fault`.
     """
     match value.type:
         case "float":
-            return _number(given)
+            return _coerce_number(setting)
         case "int":
-            return given if isinstance(given, int) and not isinstance(given, bool) else None
+            return setting if isinstance(setting, int) and not isinstance(setting, bool) else None
         case "bool":
-            return given if isinstance(given, bool) else None
+            return setting if isinstance(setting, bool) else None
         case "choice" | "path" | "text":
-            return given if isinstance(given, str) else None
+            return setting if isinstance(setting, str) else None
         case "color" | "vector" | "matrix":
-            return numbers(given, value.length)
+            return coerce_numbers(setting, value.length)
         case "curve" | "ramp":
-            return _points(given, value.length, 2)
+            return _coerce_points(setting, value.length, 2)
         case "lights":
-            return _points(given, value.length, 0)
+            return _coerce_points(setting, value.length, 0)
 
 
-def numbers(given: object, length: int) -> tuple[float, ...] | None:
+def coerce_numbers(setting: object, length: int) -> tuple[float, ...] | None:
     """A list or tuple of `length` numbers as floats, else None."""
-    if not isinstance(given, list | tuple):
+    if not isinstance(setting, list | tuple):
         return None
-    parts = [_number(part) for part in cast("tuple[Any, ...]", given)]
-    found = tuple(part for part in parts if part is not None)
-    return found if len(found) == len(parts) == length else None
+    converted = [_coerce_number(part) for part in cast("tuple[Any, ...]", setting)]
+    floats = tuple(part for part in converted if part is not None)
+    return floats if len(floats) == len(converted) == length else None
 
 
-def _points(given: object, width: int, least: int) -> tuple[float, ...] | None:
-    """A list of at least so many points of `width` numbers each, else None."""
-    if not isinstance(given, list | tuple):
+def _coerce_points(setting: object, width: int, least: int) -> tuple[float, ...] | None:
+    """The numbers of at least `least` points of `width` numbers each, or None."""
+    if not isinstance(setting, list | tuple):
         return None
-    parts = cast("tuple[Any, ...]", given)
-    return numbers(parts, len(parts)) if len(parts) >= least * width and len(parts) % width == 0 else None
+    parts = cast("tuple[Any, ...]", setting)
+    return coerce_numbers(parts, len(parts)) if len(parts) >= least * width and len(parts) % width == 0 else None
 
 
-def expected(value: Value) -> str:
-    """What `value` wants, in words: "a number", "one of a, b"."""
+def describe_type(value: Value) -> str:
+    """The settings that a value takes, in words: "a number", "one of a, b"."""
     match value.type:
         case "float":
             return "a number"
@@ -74,27 +74,29 @@ def expected(value: Value) -> str:
             return "a list of t, red, green, blue, alpha for every stop, at least two"
 
 
-def value_fault(value: Value, given: object) -> str | None:
-    """Why `given` is no legal setting (type, hard range, choice, not finite), or None."""
-    plain = coerce(value, given)
+def value_fault(value: Value, setting: object) -> str | None:
+    """Why a setting is invalid (type, hard range, choice, not finite), or None."""
+    plain = coerce(value, setting)
     if plain is None:
-        return f"{given!r} does not fit: it takes {expected(value)}"
+        return f"{setting!r} does not fit: it takes {describe_type(value)}"
     if isinstance(plain, str):
-        return f"'{plain}' is no choice: it takes {expected(value)}" if _no_choice(value, plain) else None
+        return (
+            f"'{plain}' is not a choice: it takes {describe_type(value)}" if _is_unknown_choice(value, plain) else None
+        )
     for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
         if isinstance(part, float) and not math.isfinite(part):
             return f"{part} is not a finite number"
         if value.type == "curve" and index % 2 == 0:
             continue
         if not value.minimum <= part <= value.maximum:
-            return f"{given!r} is outside the range {_range(value)}"
+            return f"{setting!r} is outside the range {_describe_range(value)}"
         if abs(part) > (_FLOAT32 if isinstance(part, float) else _INT32 - 1):
-            return f"{given!r} is too large for 32 bits"
+            return f"{setting!r} is too large for 32 bits"
     return _order_fault(value, plain) if isinstance(plain, tuple) else None
 
 
 def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
-    """Why the points of a curve or ramp do not follow each other from 0 to 1, or lights are none; else None."""
+    """Why the points of a curve or ramp are not in order from 0 to 1, or lights are invalid; else None."""
     if value.type == "lights":
         return _lights_fault(plain)
     if value.type not in ("curve", "ramp"):
@@ -122,20 +124,20 @@ def _lights_fault(plain: tuple[float, ...]) -> str | None:
     return None
 
 
-def _number(given: object) -> float | None:
-    if isinstance(given, bool) or not isinstance(given, int | float):
+def _coerce_number(setting: object) -> float | None:
+    if isinstance(setting, bool) or not isinstance(setting, int | float):
         return None
     try:
-        return float(given)
+        return float(setting)
     except OverflowError:
-        return math.inf if given > 0 else -math.inf
+        return math.inf if setting > 0 else -math.inf
 
 
-def _no_choice(value: Value, plain: str) -> bool:
+def _is_unknown_choice(value: Value, plain: str) -> bool:
     return value.type == "choice" and plain not in value.choices
 
 
-def _range(value: Value) -> str:
+def _describe_range(value: Value) -> str:
     if math.isinf(value.maximum):
         return f"of {value.minimum:g} and more"
     if math.isinf(value.minimum):

@@ -14,7 +14,7 @@ from typing import Any
 from .. import document
 from ..compiler import find_named_files
 from ..errors import GraphError, HalationError
-from ..graph import Expression, Graph, Port, node_output, problems
+from ..graph import Expression, Graph, Port, find_node_output, problems
 from ..graph.frames import Pattern
 from ..media.layers import split_layer
 from ..media.pictures.stored import StoredPart, copy_picture
@@ -163,7 +163,7 @@ def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
 
 
 def _make_request(case: Case, graph: Graph, how: RunOptions) -> RenderRequest:
-    targets: dict[str, Port] = {case.node: node_output(graph, case.node)} if case.node else {}
+    targets: dict[str, Port] = {case.node: find_node_output(graph, case.node)} if case.node else {}
     precision = "float" if how.deterministic else None
     return RenderRequest(case.inputs, targets, case.size, case.scale, precision=precision)
 

@@ -8,7 +8,7 @@ from typing import get_args
 
 from ..custom_nodes import CustomNode, Language
 from ..graph import Graph, Group, Item, Unknown
-from ..graph.paths import full
+from ..graph.paths import resolve_path
 
 
 def code_files(graph: Graph) -> tuple[Path, ...]:
@@ -40,4 +40,4 @@ def code_file(item: Item, folder: str) -> Path | None:
         file = item.code.file
     else:
         file = item.raw.get("file") if isinstance(item, Unknown) and item.type in get_args(Language) else ""
-    return full(file, folder) if isinstance(file, str) and file else None
+    return resolve_path(file, folder) if isinstance(file, str) and file else None

@@ -122,11 +122,11 @@ def test_set_a_choice_and_a_boolean(cli, graphs, out):
         ("light.stops=NaN", "--set: NaN is not a valid value; write a finite number"),
         ("light.stops=1e999", "--set light.stops=1e999: inf is not a finite number"),
         ("merge.amount=1.5", "--set merge.amount=1.5: 1.5 is outside the range 0 to 1"),
-        ("merge.mode=ovr", "--set merge.mode=ovr: 'ovr' is no choice"),
+        ("merge.mode=ovr", "--set merge.mode=ovr: 'ovr' is not a choice"),
         ("tone.clip=1", "--set tone.clip=1: 1 does not fit: it takes true or false"),
         ("gloww=1", "--set gloww=1: the graph has no control 'gloww'; did you mean 'glow'?"),
         ("light.stops", "--set light.stops: write --set NAME=VALUE"),
-        ("light.a.b=1", "--set light.a.b=1: 'light.a.b' looks inside 'light', which is no group"),
+        ("light.a.b=1", "--set light.a.b=1: 'light.a.b' looks inside 'light', which is not a group"),
     ],
 )
 def test_set_refuses_what_makes_no_sense(cli, graphs, out, text, sentence):

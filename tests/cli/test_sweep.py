@@ -176,7 +176,7 @@ def test_the_sheet_names_its_cells(cli, graphs, tmp_path):
         (("--set", "light.stops=1..2/1"), "a range is FIRST..LAST/COUNT of 2 to"),
         (("--set", "light.stops=-1..2/3log"), "even ratios need numbers above 0"),
         (("--set", "light.stops"), "write --set NAME=VALUE,VALUE"),
-        (("--set", "mix.mode=plus,ovr"), "'ovr' is no choice"),
+        (("--set", "mix.mode=plus,ovr"), "'ovr' is not a choice"),
         (("--set", "light.stops=1,2", "--set", "mix.amount=0,1", "--frames", "1-2"), "no more: give all but two"),
         (("--set", "light.stops=0..1/400", "--set", "mix.amount=0,1"), "800 pictures are more than the 400"),
         (("--set", "light.stops=1,2", "--show", "imgae"), "did you mean 'image'?"),

@@ -13,7 +13,7 @@ from halation.color.management import digest_color_settings, get_color_manager
 from halation.color.primaries import find_working_space, primaries_to_xyz
 from halation.errors import GraphError, UsageError
 from halation.graph import color_settings
-from halation.graph.paths import rebased
+from halation.graph.paths import rebase_paths
 from halation.nodes import ColorSettings
 from house_config import AP1_LUMINANCE, AP1_TO_REC709, HOUSE, studio, write_house
 
@@ -48,9 +48,9 @@ def test_a_config_that_changes_is_read_again(house):
 def test_paths_start_at_the_folder_of_the_graph():
     graph = graph_of(config="../house.ocio")
     assert color_settings(graph).config == "/shots/a/../house.ocio"
-    assert rebased(graph, "/shots/b/c").settings.color.config == "../../house.ocio"
+    assert rebase_paths(graph, "/shots/b/c").settings.color.config == "../../house.ocio"
     built_in = graph_of(config="ocio://default")
-    assert color_settings(built_in).config == rebased(built_in, "/x").settings.color.config == "ocio://default"
+    assert color_settings(built_in).config == rebase_paths(built_in, "/x").settings.color.config == "ocio://default"
 
 
 def test_only_what_differs_is_saved_and_the_rest_is_kept():

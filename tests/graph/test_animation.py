@@ -93,7 +93,7 @@ def test_what_cannot_be(graph, port, animation, said):
         ("nobody.x", "no node 'nobody'"),
         ("gloww", "did you mean 'glow'"),
         ("grade.gain.q", "no channel 'q'"),
-        ("light.stops", "needs itself"),
+        ("light.stops", "depends on itself"),
         ("blur.edge", "is no number|is a choice"),
     ],
 )
@@ -104,8 +104,8 @@ def test_names_that_mean_nothing_are_problems(graph, text, said):
 
 def test_a_circle_of_expressions(graph):
     graph = graph.animate(STOPS, Expression("grade.gain.r")).animate(GAIN, Expression("light.stops"))
-    assert len([said for said in faults(graph) if "needs itself" in said]) == 2
-    with pytest.raises(GraphError, match="needs itself"):
+    assert len([said for said in faults(graph) if "depends on itself" in said]) == 2
+    with pytest.raises(GraphError, match="depends on itself"):
         evaluate_at_frame(graph, 1)
 
 

@@ -345,7 +345,7 @@ class TestGroups:
             ("glwo", "no control 'glwo'; did you mean 'glow'"),
             ("gan.gain", "did you mean 'gain'"),
             ("gain.gian", "did you mean 'gain'"),
-            ("gain.gain.x", "'gain', which is no group"),
+            ("gain.gain.x", "'gain', which is not a group"),
         ],
     )
     def test_override_that_points_nowhere(self, path: str, says: str) -> None:

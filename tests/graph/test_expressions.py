@@ -84,19 +84,19 @@ def test_values(text: str, expected: object) -> None:
         ("clamp(1, 2)", 0, "clamp(x, low, high)"),
         ("sin()", 0, "does not take 0"),
         ("(1 + 2", 0, "'(' is never closed"),
-        ("1)", 1, "closes nothing"),
+        ("1)", 1, "has no opening bracket"),
         ("[1, 2", 0, "'[' is never closed"),
-        ("(1]", 2, "closes nothing"),
+        ("(1]", 2, "has no opening bracket"),
         ("[]", 0, "at least one"),
         ("1 = 2", 2, "=="),
         ("[1, [2]]", 0, "a list holds numbers"),
-        ("'a'", 0, "no text"),
+        ("'a'", 0, "cannot hold text"),
         ("1 if 2 else 3", 2, "? yes : no"),
         ("1 ? 2", 5, "':' is missing"),
         ("1 < 2 < 3", 6, "only two numbers"),
         ("1e999", 0, "too large"),
         ("1 , 2", 2, "','"),
-        ("`a", 0, "no end"),
+        ("`a", 0, "closing backquote"),
         ("2 ÷ 3", 2, "'÷'"),
         ("1\x00", 1, "U+0000"),
         ("(glow).q", 7, "channel is missing"),
@@ -117,7 +117,7 @@ def test_values(text: str, expected: object) -> None:
         ("1e300 * 1e300", 6, "1e+300 * 1e+300 is too large"),
         ("9^9^9", 1, "too large"),
         ("[1, 0] + 1 / [1, 0]", 11, "1 / 0"),
-        ("[1, 2] + [1, 2, 3]", 7, "do not go together"),
+        ("[1, 2] + [1, 2, 3]", 7, "cannot be combined"),
         ("glow + nope", 7, "no control 'nope'"),
         ("name + 1", 0, "text"),
         ("bad", 0, "not finite"),
@@ -152,7 +152,7 @@ def test_a_fault_of_another_expression_is_passed_on() -> None:
         raise ExpressionError("1/0", 1, "a division by zero: 1 / 0")
 
     with pytest.raises(ExpressionError) as found:
-        Expression("2 + glow").at(1, 0, 24, other)
+        Expression("2 + glow").evaluate(1, 0, 24, other)
     assert found.value.text == "1/0"
     assert isinstance(found.value, GraphError)
     blamed = Expression("2 + glow").blame_name("glow", "no")

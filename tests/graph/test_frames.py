@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 from halation.errors import UsageError
 from halation.graph import frames as module
-from halation.graph.frames import MOST_FRAMES, Pattern, check_numbered, format_frames, numbered, parse_frames
+from halation.graph.frames import MOST_FRAMES, Pattern, add_frame_number, check_numbered, format_frames, parse_frames
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,20 +53,20 @@ def test_a_list_of_frames(text, frames):
         (" \n", "no frames are given"),
         ("1,,2", "before or after a comma"),
         ("1-5,", "before or after a comma"),
-        ("all", "'all' is neither a frame nor a range"),
-        ("1-", "'1-' is neither"),
-        ("1.5", "neither"),
-        ("1-5x", "neither"),
-        ("5x2", "neither"),
-        ("1-5x-2", "neither"),
-        ("1-5-9", "neither"),
-        ("1-24x0", "a step of 0 never gets on: write 1-24x2"),
+        ("all", "'all' is not a frame or a range"),
+        ("1-", "'1-' is not a frame"),
+        ("1.5", "is not a frame or a range"),
+        ("1-5x", "is not a frame or a range"),
+        ("5x2", "is not a frame or a range"),
+        ("1-5x-2", "is not a frame or a range"),
+        ("1-5-9", "is not a frame or a range"),
+        ("1-24x0", "the step cannot be 0: write 1-24x2"),
         ("1-9999999999", "'9999999999' has more than 9 digits"),
         ("1-1000001", "more than 1,000,000 frames"),
         ("1-999999999", "more than 1,000,000 frames"),
         ("1-600000,1-600000", "more than 1,000,000 frames"),
         ("9" * 5000, "more than 9 digits"),
-        ("\u0661", "neither"),
+        ("\u0661", "is not a frame or a range"),
     ],
 )
 def test_what_is_no_list_is_told_in_a_sentence(text, said):
@@ -253,7 +253,7 @@ def test_windows_separators_and_letter_case(monkeypatch):
     assert pattern is not None and pattern.folder == "C:\\#1\\renders/"
     assert pattern.name(12) == "C:\\#1\\renders/Shot.0012.exr"
     assert pattern.frame("D:\\x\\SHOT.0012.EXR") == 12
-    assert numbered("C:\\a.b\\out.exr") == "C:\\a.b\\out.####.exr"
+    assert add_frame_number("C:\\a.b\\out.exr") == "C:\\a.b\\out.####.exr"
 
 
 @pytest.mark.parametrize(

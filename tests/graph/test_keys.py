@@ -9,7 +9,7 @@ from random import Random
 import numpy as np
 import pytest
 from halation.errors import GraphError
-from halation.graph.keys import Interpolation, Key, Keys, Outside, round_keys
+from halation.graph.keys import Extrapolation, Interpolation, Key, Keys, round_keys
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
@@ -20,7 +20,7 @@ HEIGHT = st.one_of(st.integers(-3, 3).map(float), st.floats(-100, 100).map(lambd
 HEIGHTS = st.lists(HEIGHT, min_size=2, max_size=8)
 
 
-def keyed(frames, values, way: Interpolation = "smooth", outside: Outside = "hold") -> Keys:
+def keyed(frames, values, way: Interpolation = "smooth", outside: Extrapolation = "hold") -> Keys:
     return Keys(tuple(Key(frame, value, way) for frame, value in zip(frames, values, strict=True)), outside)
 
 
@@ -39,7 +39,7 @@ def test_smooth_is_pchip_with_flat_ends(data: st.DataObject) -> None:
     slopes[0] = slopes[-1] = 0.0
     keys, reference = keyed(frames.tolist(), values), CubicHermiteSpline(frames, values, slopes)
     for frame in np.linspace(frames[0], frames[-1], 57):
-        assert keys.at(float(frame)) == pytest.approx(float(reference(frame)), rel=1e-10, abs=1e-10)
+        assert keys.evaluate(float(frame)) == pytest.approx(float(reference(frame)), rel=1e-10, abs=1e-10)
     for frame, slope in zip(frames.tolist(), slopes, strict=True):
         assert keys.slopes(frame)[0] == pytest.approx(slope, rel=1e-6, abs=1e-9)
 
@@ -49,7 +49,7 @@ def test_smooth_is_pchip_with_flat_ends(data: st.DataObject) -> None:
 def test_smooth_stays_between_its_keys(values: list[float], u: float) -> None:
     keys = keyed(range(0, 10 * len(values), 10), values)
     for place, (a, b) in enumerate(pairwise(values)):
-        assert min(a, b) - 1e-9 <= keys.at(10 * (place + u)) <= max(a, b) + 1e-9
+        assert min(a, b) - 1e-9 <= keys.evaluate(10 * (place + u)) <= max(a, b) + 1e-9
 
 
 def test_vectors_go_channel_by_channel() -> None:
@@ -60,7 +60,7 @@ def test_vectors_go_channel_by_channel() -> None:
         keys = keyed(frames, values, way)
         parts = [keyed(frames, [value[channel] for value in values], way) for channel in range(4)]
         for frame in np.linspace(-1, 23, 99).tolist():
-            assert keys.at(frame) == tuple(part.at(frame) for part in parts)
+            assert keys.evaluate(frame) == tuple(part.evaluate(frame) for part in parts)
 
 
 @settings(max_examples=300, deadline=None)
@@ -73,25 +73,25 @@ def test_bezier_against_a_root_finder(x1: float, y1: float, x2: float, y2: float
     expected = 3 * (1 - t) ** 2 * t * y1 + 3 * (1 - t) * t * t * y2 + t**3
     speed = 3 * (1 - t) ** 2 * x1 + 6 * (1 - t) * t * (x2 - x1) + 3 * t * t * (1 - x2)
     if speed > 1e-3:
-        assert eased(x1, y1, x2, y2).at(x) == pytest.approx(expected, abs=1e-9)
+        assert eased(x1, y1, x2, y2).evaluate(x) == pytest.approx(expected, abs=1e-9)
     else:
-        assert eased(x1, x1, x2, x2).at(x) == pytest.approx(x, abs=1e-9)
+        assert eased(x1, x1, x2, x2).evaluate(x) == pytest.approx(x, abs=1e-9)
 
 
 def test_bezier_closed_values() -> None:
     """Symmetric easings pass the middle; a straight one is the identity; frame(t) = t^3, value(t) = t has a root."""
-    assert eased(0.42, 0.0, 0.58, 1.0).at(0.5) == pytest.approx(0.5, abs=1e-12)
-    assert eased(0.25, 0.25, 0.75, 0.75).at(0.3) == pytest.approx(0.3, abs=1e-12)
+    assert eased(0.42, 0.0, 0.58, 1.0).evaluate(0.5) == pytest.approx(0.5, abs=1e-12)
+    assert eased(0.25, 0.25, 0.75, 0.75).evaluate(0.3) == pytest.approx(0.3, abs=1e-12)
     for x in (1e-6, 0.001, 0.2, 0.7, 0.999):
-        assert eased(0.0, 1 / 3, 0.0, 2 / 3).at(x) == pytest.approx(x ** (1 / 3), abs=1e-9)
-        assert eased(1 / 3, 0.0, 2 / 3, 0.0).at(x) == pytest.approx(x**3, abs=1e-12)
+        assert eased(0.0, 1 / 3, 0.0, 2 / 3).evaluate(x) == pytest.approx(x ** (1 / 3), abs=1e-9)
+        assert eased(1 / 3, 0.0, 2 / 3, 0.0).evaluate(x) == pytest.approx(x**3, abs=1e-12)
 
 
 def test_automatic_handles_are_smooth() -> None:
     frames, values = [0.0, 3.0, 10.0, 11.0, 30.0], [1.0, 4.0, 4.5, -2.0, 7.0]
     smooth, bezier = keyed(frames, values), keyed(frames, values, "bezier")
     for frame in np.linspace(-2, 33, 141).tolist():
-        assert bezier.at(frame) == pytest.approx(smooth.at(frame), abs=1e-12)
+        assert bezier.evaluate(frame) == pytest.approx(smooth.evaluate(frame), abs=1e-12)
 
 
 def test_handles_are_shortened_to_their_segment() -> None:
@@ -100,8 +100,8 @@ def test_handles_are_shortened_to_their_segment() -> None:
     back = long.with_handles(0.0, right=(-4.0, 3.0))
     upright = long.with_handles(0.0, right=(0.0, 3.0))
     for frame in np.linspace(0, 10, 41).tolist():
-        assert long.at(frame) == pytest.approx(short.at(frame), abs=1e-12)
-        assert back.at(frame) == pytest.approx(upright.at(frame), abs=1e-12)
+        assert long.evaluate(frame) == pytest.approx(short.evaluate(frame), abs=1e-12)
+        assert back.evaluate(frame) == pytest.approx(upright.evaluate(frame), abs=1e-12)
     assert long.handles(0.0) == ((), (10.0, 10.0))
     assert long.handles(10.0) == ((-5.0, 0.0), ())
 
@@ -110,16 +110,16 @@ def test_held_frames_take_no_part_in_curves() -> None:
     keys = keyed([0.0, 10.0, 20.0, 30.0], [0.5, 1.0, 2.0, 4.0])
     alone = keyed([10.0, 20.0, 30.0], [1.0, 2.0, 4.0])
     held = keys.with_interpolation([0.0], "constant")
-    assert [held.at(frame) for frame in (0.0, 5.0, 9.99)] == [0.5, 0.5, 0.5]
-    assert [held.at(frame) for frame in range(10, 31)] == [alone.at(frame) for frame in range(10, 31)]
-    assert keys.at(12.0) != alone.at(12.0)
+    assert [held.evaluate(frame) for frame in (0.0, 5.0, 9.99)] == [0.5, 0.5, 0.5]
+    assert [held.evaluate(frame) for frame in range(10, 31)] == [alone.evaluate(frame) for frame in range(10, 31)]
+    assert keys.evaluate(12.0) != alone.evaluate(12.0)
 
 
 def test_outside_of_the_keys() -> None:
     frames, values = [10.0, 15.0, 20.0], [1.0, 3.0, 4.0]
 
-    def at(outside: Outside, frame: float, way: Interpolation = "linear") -> float:
-        return keyed(frames, values, way, outside).at(frame)
+    def at(outside: Extrapolation, frame: float, way: Interpolation = "linear") -> float:
+        return keyed(frames, values, way, outside).evaluate(frame)
 
     assert (at("hold", -5), at("hold", 99)) == (1.0, 4.0)
     assert (at("linear", 5), at("linear", 25)) == (pytest.approx(-1.0), pytest.approx(5.0))
@@ -128,21 +128,21 @@ def test_outside_of_the_keys() -> None:
     assert [at("mirror", frame) for frame in (21, 31, 9, -1, 30, 40)] == pytest.approx([3.8, 1.4, 1.4, 3.8, 1.0, 4.0])
     assert at("linear", 25, "smooth") == at("linear", 25, "bezier") == 4.0
     tilted = keyed(frames, values, "bezier", "linear").with_handles(20.0, left=(-1.0, -0.5))
-    assert (tilted.at(21.0), tilted.at(30.0)) == pytest.approx((4.5, 9.0))
+    assert (tilted.evaluate(21.0), tilted.evaluate(30.0)) == pytest.approx((4.5, 9.0))
     upright = keyed(frames, values, "bezier", "linear").with_handles(20.0, left=(0.0, -1.0))
-    assert math.isfinite(upright.at(30.0))
-    assert Keys((Key(1.0, 7.0),), "loop").at(99) == 7.0
+    assert math.isfinite(upright.evaluate(30.0))
+    assert Keys((Key(1.0, 7.0),), "loop").evaluate(99) == 7.0
 
 
 def test_what_is_no_number_is_held() -> None:
     keys = keyed([1.0, 5.0], [True, False], "linear", "linear")
-    assert [keys.at(frame) for frame in (0, 1, 4.9, 5, 6)] == [True, True, True, False, False]
-    assert keyed([1.0, 5.0], [(1.0, 2.0), (1.0, 2.0, 3.0)]).at(3) == (1.0, 2.0)
+    assert [keys.evaluate(frame) for frame in (0, 1, 4.9, 5, 6)] == [True, True, True, False, False]
+    assert keyed([1.0, 5.0], [(1.0, 2.0), (1.0, 2.0, 3.0)]).evaluate(3) == (1.0, 2.0)
 
 
 def test_between_whole_numbers_are_numbers() -> None:
     keys = keyed([0.0, 4.0], [-1, 1], "linear")
-    assert [keys.at(frame) for frame in range(5)] == [-1.0, -0.5, 0.0, 0.5, 1.0]
+    assert [keys.evaluate(frame) for frame in range(5)] == [-1.0, -0.5, 0.0, 0.5, 1.0]
     assert [round_keys(x) for x in (0.5, 1.5, 2.5, -0.5, -1.5, 0.49999999999999994, 2.4)] == [1, 2, 3, -1, -2, 0, 2]
 
 
@@ -151,7 +151,7 @@ def test_faults() -> None:
         with pytest.raises(GraphError):
             Key(wrong, 1.0)
     with pytest.raises(GraphError):
-        Keys().at(1.0)
+        Keys().evaluate(1.0)
     keys = keyed([1.0, 2.0], [0.0, 1.0])
     for edit in (
         lambda: keys.scale(None, 0.0, 1.0),
@@ -191,10 +191,10 @@ def test_a_key_put_on_the_curve(way: Interpolation) -> None:
             8.0, left=(-3.0, 4.0, -9.0)
         )
     )
-    assert keys.at(5.0) == pytest.approx(before.at(5.0))
+    assert keys.evaluate(5.0) == pytest.approx(before.evaluate(5.0))
     if way != "smooth":
         for frame in np.linspace(0, 8, 81).tolist():
-            assert keys.at(frame) == pytest.approx(before.at(frame), abs=1e-9)
+            assert keys.evaluate(frame) == pytest.approx(before.evaluate(frame), abs=1e-9)
 
 
 def test_moving_keys() -> None:
@@ -203,9 +203,9 @@ def test_moving_keys() -> None:
     assert keys.move([1.0, 5.0], 4.0).keys == (Key(5.0, 1.0, "linear"), Key(9.0, 2.0, "linear"))
     assert keys.move([9.0], -20.0).frames == (-11.0, 1.0, 5.0)
     assert keys.move(None, 0.1).move(None, 0.2).frames == (1.3, 5.3, 9.3)
-    assert keyed([1.0], [(1.0, 2.0)]).move(None, 0.0, (0.0, 1.0)).at(1) == (1.0, 3.0)
-    assert keyed([1.0], [True]).move(None, 1.0, 5.0).at(2) is True
-    assert keyed([1.0], [1]).move(None, 0.0, 0.5).at(1) == 2
+    assert keyed([1.0], [(1.0, 2.0)]).move(None, 0.0, (0.0, 1.0)).evaluate(1) == (1.0, 3.0)
+    assert keyed([1.0], [True]).move(None, 1.0, 5.0).evaluate(2) is True
+    assert keyed([1.0], [1]).move(None, 0.0, 0.5).evaluate(1) == 2
 
 
 def test_scaling_keys() -> None:
@@ -213,7 +213,7 @@ def test_scaling_keys() -> None:
     wide = keys.scale(None, 2.0, 1.0)
     assert wide.frames == (1.0, 9.0, 17.0) and wide.key(9.0).left == (-2.0, 2.0) and wide.key(9.0).right == (4.0, 1.0)
     for frame in np.linspace(1, 9, 33).tolist():
-        assert wide.at(1 + 2 * (frame - 1)) == pytest.approx(keys.at(frame), abs=1e-9)
+        assert wide.evaluate(1 + 2 * (frame - 1)) == pytest.approx(keys.evaluate(frame), abs=1e-9)
     assert keys.scale([5.0, 9.0], 0.3, 1.0, whole=True).frames == (1.0, 2.0, 3.0)
     assert wide.scale(None, 0.5, 1.0) == keys
 
@@ -241,8 +241,8 @@ def test_any_edits_leave_keys_that_have_values(seed: int) -> None:
     for _ in range(30):
         keys = some_edit(rng, keys)
         assert list(keys.frames) == sorted(set(keys.frames))
-        assert all(math.isfinite(keys.at(rng.uniform(-60, 100))) for _ in range(4))
+        assert all(math.isfinite(keys.evaluate(rng.uniform(-60, 100))) for _ in range(4))
         for frame in keys.frames:
-            assert keys.at(frame) == keys.key(frame).value
+            assert keys.evaluate(frame) == keys.key(frame).value
             for side, back in zip(keys.handles(frame), (True, False), strict=True):
                 assert not side or (side[0] <= 0.0 if back else side[0] >= 0.0)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from halation import document
 from halation.compiler.lowering.references import find_path_texts
-from halation.graph.paths import inlined, rebased, repointed
+from halation.graph.paths import change_paths, inline_files, rebase_paths
 
 INNER = {
     "halation": 1,
@@ -54,7 +54,7 @@ def files(graph) -> dict[str, str]:
 def test_what_is_inside_leads_to_the_same_files(folder: Path, name: str) -> None:
     """Two files of groups in two folders, and a control that reaches through both."""
     graph = document.load(folder / f"{name}.json")
-    whole = inlined(graph)
+    whole = inline_files(graph)
     assert files(whole) == files(graph) and len(files(graph)) == 2
     text = document.dumps(whole)
     assert "inner.json" not in text and "outer.json" not in text
@@ -64,15 +64,15 @@ def test_what_is_inside_leads_to_the_same_files(folder: Path, name: str) -> None
 
 
 def test_a_graph_that_moves_takes_its_paths_along(folder: Path, tmp_path: Path) -> None:
-    graph = inlined(document.load(folder / "whole.json"))
-    moved = rebased(graph, str(tmp_path / "library" / "deep"))
+    graph = inline_files(document.load(folder / "whole.json"))
+    moved = rebase_paths(graph, str(tmp_path / "library" / "deep"))
     assert files(moved) == files(graph) and find_path_texts(moved)["inputs.plate"][0] == "../../plate.exr"
-    assert rebased(moved, str(folder)) == graph
+    assert rebase_paths(moved, str(folder)) == graph
 
 
 def test_every_path_can_be_another(folder: Path) -> None:
-    graph = inlined(document.load(folder / "turned.json"))
-    changed = repointed(graph, lambda path: f"x/{Path(path).name}")
+    graph = inline_files(document.load(folder / "turned.json"))
+    changed = change_paths(graph, lambda path: f"x/{Path(path).name}")
     assert {text for text, _ in find_path_texts(changed).values()} == {"x/plate.exr", "x/rain.exr"}
 
 
@@ -86,6 +86,6 @@ def test_code_comes_inside(tmp_path: Path) -> None:
             }
         )
     )
-    whole = inlined(document.load(tmp_path / "graph.json"))
+    whole = inline_files(document.load(tmp_path / "graph.json"))
     (tmp_path / "twice.glsl").unlink()
     assert "image * 2.0" in document.dumps(whole) and document.loads(document.dumps(whole)) == whole

@@ -103,7 +103,7 @@ def test_a_missing_input_is_an_error_only_where_it_matters() -> None:
         ({"gain": 99.0}, "gain", "99.0 is outside the range 0 to 16"),
         ({"gain": float("nan")}, "gain", "nan is not a finite number"),
         ({"gain": "much"}, "gain", "'much' does not fit: it takes a number"),
-        ({"mode": "soft"}, "mode", "'soft' is no choice: it takes one of add, soft light"),
+        ({"mode": "soft"}, "mode", "'soft' is not a choice: it takes one of add, soft light"),
         ({"steps": 1.5}, "steps", "1.5 does not fit: it takes a whole number"),
         ({"tint": (1.0,)}, "tint", "(1.0,) does not fit: it takes a list of 4 numbers"),
     ],

@@ -35,7 +35,7 @@ def test_what_the_table_says_is_what_sockets_do(kind: Kind) -> None:
 def test_planned_kinds_fit_nothing_else() -> None:
     for other in set(Kind) - {Kind.CAMERA}:
         for ends in ((CameraSocket(), make_socket(other)), (make_socket(other), CameraSocket())):
-            assert "a camera goes where a Camera is wanted" in (conversion(*ends) or "")
+            assert "a camera can only be linked to a Camera input" in (conversion(*ends) or "")
 
 
 def test_numbers_in_a_file_are_a_camera() -> None:

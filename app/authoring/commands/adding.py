@@ -195,7 +195,7 @@ def load_group(document: OpenDocument, path: str | Path) -> Group:
     if own_path in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
         raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
     if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
-        return Group(paths.rebased(without_samples(body), document.root.folder))
+        return Group(paths.rebase_paths(without_samples(body), document.root.folder))
     return Group(body, document.relative(path))
 
 

@@ -37,7 +37,7 @@ class SetCode(EditCommand[None]):
             edited = coding.set_code(graph, self.id, structs.replace(code, text=self.text))
             return Edited(label, None, edited, merge=self.merge)
         document.check_editable()
-        file = paths.full(code.file, graph.folder)
+        file = paths.resolve_path(code.file, graph.folder)
         return Edited(label, None, root=coding.set_file_code(root, file, self.text), merge=self.merge)
 
 

@@ -44,7 +44,7 @@ class MakeGroupLocal(EditCommand[None]):
         group = folding.find_group(document.graph, self.id)
         if not group.path:
             raise GraphError(f"group '{self.id}' is part of this document already")
-        local = Group(paths.rebased(group.body(), document.graph.folder))
+        local = Group(paths.rebase_paths(group.body(), document.graph.folder))
         return Edited(f"Make {self.id} local", None, _with_group(document.graph, self.id, local))
 
 

@@ -15,7 +15,7 @@ from . import timing
 from .elements import Place, element_of, end_port, entry, list_elements, with_entries, with_places
 from .layout import positions, shift_off
 from .merging import merge_part, rename_dots
-from .paths import rebased
+from .paths import rebase_paths
 from .routes import routes, with_routes
 from .wiring import Types
 
@@ -66,7 +66,7 @@ def read_part(text: str, folder: str, types: Types) -> Graph:
     except (ValueError, RecursionError):
         stated_folder = None
     graph = loads(text, "clipboard", stated_folder if isinstance(stated_folder, str) else folder, types)
-    return rebased(replace(graph, extra={path: kept for path, kept in graph.extra.items() if path}), folder)
+    return rebase_paths(replace(graph, extra={path: kept for path, kept in graph.extra.items() if path}), folder)
 
 
 def paste_part(

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from ...graph.walk import sort
+from ...graph.walk import sort_topologically
 
 _SWEEPS = 8
 
@@ -164,7 +164,7 @@ def _find_tops(layering: BoxLayers, heights: Mapping[str, float], gap: float) ->
         for upper, lower in pairwise(layer):
             one, lower_line, need = line[upper], line[lower], heights[upper] + gap
             below[one][lower_line] = above[lower_line][one] = max(need, below[one].get(lower_line, 0.0))
-    order = sort({root: sorted(above[root]) for root in sorted(above)})
+    order = sort_topologically({root: sorted(above[root]) for root in sorted(above)})
     tops: dict[str, float] = {}
     for root in order:
         tops[root] = max((tops[one] + need for one, need in above[root].items()), default=0.0)

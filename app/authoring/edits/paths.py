@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ...errors import UsageError
 from ...graph import Graph, Group
-from ...graph.paths import full, rebased, relocated
+from ...graph.paths import rebase_paths, relocate_path, resolve_path
 
-__all__ = ["check_target", "full", "group_files", "rebased", "relative", "relocated"]
+__all__ = ["check_target", "group_files", "rebase_paths", "relative", "relocate_path", "resolve_path"]
 
 
 def relative(path: str | Path, folder: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from ...graph import Graph, Port
-from ...graph.walk import reach
+from ...graph.walk import find_reachable
 from .decor import find_frame_members, set_box
 from .elements import Place, Sizes, element_of, entries, with_places
 from .layout import bounds, element_links, positions
@@ -34,7 +34,7 @@ def make_space(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | 
     after: dict[str, list[str]] = {}
     for start, end in links:
         after.setdefault(start, []).append(end)
-    behind = {element_of(target), *reach(element_of(target), after)} - {*ids}
+    behind = {element_of(target), *find_reachable(element_of(target), after)} - {*ids}
     by = _measure_overlap(graph, ids, behind, places, sizes)
     return _push_right(graph, behind, by, places, sizes) if by > 0.0 else graph
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import Literal
 
 from ...graph import Graph
-from ...graph.walk import reach
+from ...graph.walk import find_reachable
 from .elements import list_elements
 from .layout import element_links
 
@@ -63,5 +63,5 @@ def _spread(graph: Graph, selection: Collection[str], steps: Steps) -> tuple[str
             ways.setdefault(start, []).append(end)
     reached = set(selection)
     for key in selection:
-        reached |= reach(key, ways).keys()
+        reached |= find_reachable(key, ways).keys()
     return tuple(key for key in list_elements(graph) if key in reached)

@@ -15,7 +15,7 @@ from .folding import find_group
 from .grouping import group_corner
 from .layout import positions
 from .merging import MergedPart, merge_part, rename_dots
-from .paths import rebased
+from .paths import rebase_paths
 from .routes import routes, tidy_routes
 
 
@@ -28,7 +28,7 @@ def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
     item = find_group(graph, id)
     if id in graph.muted:
         raise GraphError(f"group '{id}' is muted, so its content is not what it shows: unmute it first")
-    body = rebased(item.body(), graph.folder)
+    body = rebase_paths(item.body(), graph.folder)
     outer = _remove_group(graph, id)
     merged_part = merge_part(outer, body, _content_places(graph, id, body))
     opened_group = _OpenedGroup(graph, id, body, merged_part)

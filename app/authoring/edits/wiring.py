@@ -10,7 +10,7 @@ from halation.nodes import Kind, Node, Pointwise, Socket, Value
 from ...errors import GraphError
 from ...graph import Graph, Item, Port, conversion, make_socket, signature
 from ...graph.values import coerce, value_fault
-from ...graph.walk import loop_sentence, route
+from ...graph.walk import describe_loop, find_route
 from .elements import place
 from .routes import dots_on_link as dots_of
 from .routes import split_route, with_routes
@@ -22,8 +22,8 @@ def why_not_linkable(graph: Graph, source: Port, target: Port) -> str | None:
     """Why a link cannot be, loops included; None if it can."""
     if fault := graph.link_fault(source, target):
         return fault
-    loop = route(target.node, source.node, graph.fed)
-    return loop_sentence((*loop, target.node)) if loop else None
+    loop = find_route(target.node, source.node, graph.fed)
+    return describe_loop((*loop, target.node)) if loop else None
 
 
 def list_targets(item: Item, id: str) -> tuple[Port, ...]:

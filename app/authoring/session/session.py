@@ -203,10 +203,10 @@ class Session(OpenDocument):
         paths.check_target(self.root, target)
         self.seal()
         folder = str(target.parent)
-        root = paths.rebased(self.root, folder)
+        root = paths.rebase_paths(self.root, folder)
         save(root, target)
         if root is not self.root:
-            self.migrate(lambda graph: paths.rebased(graph, folder))
+            self.migrate(lambda graph: paths.rebase_paths(graph, folder))
         self.path, self._saved = target, self.root
         self.revision += 1
 
@@ -232,7 +232,7 @@ class Session(OpenDocument):
     def save_group(self, id: str, path: str | Path, link: bool = False) -> None:
         """Save what is in a group as a graph file; with `link`, the group comes from that file from now on."""
         target = Path(path)
-        body = paths.rebased(folding.find_group(self.graph, id).body(), str(target.parent))
+        body = paths.rebase_paths(folding.find_group(self.graph, id).body(), str(target.parent))
         paths.check_target(body, target)
         if self.path and self.path.resolve() == target.resolve():
             raise UsageError(f"{target}: this is the file of the document itself: choose another name")
@@ -281,12 +281,12 @@ class Session(OpenDocument):
         code = self.code(id)
         assert code is not None
         write_text_atomically(Path(path), code.text)
-        self.code_files.note(paths.full(paths.relative(path, self.graph.folder), self.graph.folder), code.text)
+        self.code_files.note(paths.resolve_path(paths.relative(path, self.graph.folder), self.graph.folder), code.text)
         self.apply(command)
 
     def save_code(self, id: str) -> Path:
         """Write the code of a node to its file; returns that. Raises OutputError."""
-        path = paths.full(self.code_in_file(id).file, self.graph.folder)
+        path = paths.resolve_path(self.code_in_file(id).file, self.graph.folder)
         return self._write_code(path, coding.file_texts(self.root)[path])
 
     def save_drafts(self) -> tuple[Path, ...]:

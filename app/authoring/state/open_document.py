@@ -35,7 +35,7 @@ from ...graph import (
     find_key_range,
     value_at,
 )
-from ...graph.graph import declared
+from ...graph.graph import find_value
 from ..edits import clipboard, coding, decor, elements, folding, layout, paths, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.folding import GroupPath
@@ -267,7 +267,7 @@ class OpenDocument:
     def can_animate(self, port: Port) -> bool:
         """True if the value can change over time."""
         try:
-            return declared(self.graph.node(port.node), port.socket, port.node).type in ANIMATED
+            return find_value(self.graph.node(port.node), port.socket, port.node).type in ANIMATED
         except GraphError:
             return False
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from ...graph import Graph, Group, Port, signature
-from ...graph.walk import loops
+from ...graph.walk import find_loops
 from .parts import PartPath
 
 
@@ -44,7 +44,7 @@ def _is_gone(graph: Graph, port: Port) -> bool:
 def _links_in_loops(merge: Graph, ours: Graph) -> Iterator[Port]:
     """Links that are part of a loop and are not in our version."""
     steps = {id: sorted(merge.feeding[id]) for id in sorted(merge.nodes)}
-    for loop in loops(steps):
+    for loop in find_loops(steps):
         around = set(pairwise(loop))
         for target, source in merge.links.items():
             if (target.node, source.node) in around and ours.links.get(target) != source:

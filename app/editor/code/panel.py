@@ -125,7 +125,7 @@ class CodePanel:
         imgui.same_line()
         glyphs = (icons.ICON_FA_FLOPPY_DISK, icons.ICON_FA_FILE_IMPORT, icons.ICON_FA_CIRCLE_QUESTION)
         glyphs = glyphs if code.file else (icons.ICON_FA_FILE_EXPORT, icons.ICON_FA_CIRCLE_QUESTION)
-        draft = bool(code.file) and paths.full(code.file, session.graph.folder) in session.drafts
+        draft = bool(code.file) and paths.resolve_path(code.file, session.graph.folder) in session.drafts
         where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else "in the graph"
         room = imgui.get_content_region_avail().x - len(glyphs) * (imgui.get_frame_height() + style.item_spacing.x)
         imgui.align_text_to_frame_padding()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...graph import Interpolation, Outside
+from ...graph import Extrapolation, Interpolation
 from ..shared.action import Action
 from . import commands
 from .commands import has_chosen_keys
@@ -19,7 +19,7 @@ _INTERPOLATIONS: tuple[tuple[Interpolation, str], ...] = (
     ("smooth", "Go smoothly through the keys, never beyond them."),
     ("bezier", "Follow the handles."),
 )
-_EXTRAPOLATIONS: tuple[tuple[Outside, str, str], ...] = (
+_EXTRAPOLATIONS: tuple[tuple[Extrapolation, str, str], ...] = (
     ("hold", "Hold", "Before the first and after the last key the value stays."),
     ("linear", "Go On Straight", "Before the first and after the last key the value continues along its slope."),
     ("loop", "Repeat", "The part between the first and the last key repeats."),
@@ -40,7 +40,7 @@ def _make_interpolation_action(how: Interpolation, doc: str) -> Action:
     )
 
 
-def _make_outside_action(how: Outside, label: str, doc: str) -> Action:
+def _make_outside_action(how: Extrapolation, label: str, doc: str) -> Action:
     return Action(
         f"keys.outside_{how}",
         f"Outside: {label}",

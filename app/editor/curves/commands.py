@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ...authoring.commands import AnimateValues
 from ...authoring.edits.values import animatable_values
 from ...errors import UsageError
-from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
+from ...graph import Extrapolation, Graph, Interpolation, Keys, Port, Settings
 from ..toolkit.plane import View
 from .copying import decode_keys, encode_keys, paste_keys
 from .editing import (
@@ -99,7 +99,7 @@ def make_free(context: CurvesContext) -> None:
     context.curves.free |= _list_chosen_keys(context)
 
 
-def extrapolate(how: Outside) -> Callable[[CurvesContext], None]:
+def extrapolate(how: Extrapolation) -> Callable[[CurvesContext], None]:
     """A command that sets the extrapolation of the selected keys' values, or else of the selected rows."""
 
     def act(context: CurvesContext) -> None:
@@ -112,7 +112,7 @@ def extrapolate(how: Outside) -> Callable[[CurvesContext], None]:
     return act
 
 
-def extrapolates(context: CurvesContext, how: Outside) -> bool:
+def extrapolates(context: CurvesContext, how: Extrapolation) -> bool:
     """True if all values of the selected keys have this extrapolation."""
     state, animation = context.curves, context.session.graph.animation
     animations = [animation.get(port) for port in ({port for port, _, _ in state.spots} or state.chosen_rows)]

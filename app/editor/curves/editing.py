@@ -13,7 +13,7 @@ from typing import Literal
 
 from halation.nodes import Plain
 
-from ...graph import Animation, Interpolation, Key, Keys, Outside, Port
+from ...graph import Animation, Extrapolation, Interpolation, Key, Keys, Port
 from ...graph.keys import round_keys
 from .rows import Spot
 from .shapes import is_interpolated, read_key_channel
@@ -103,11 +103,11 @@ def interpolate_keys(animation: Animations, spots: Collection[Spot], how: Interp
     return {
         port: keys.with_interpolation(frames, how)
         for port, frames in group_spots(animation, spots).items()
-        if (keys := _get_keys(animation, port)).keys[0].parts
+        if (keys := _get_keys(animation, port)).keys[0].channels
     }
 
 
-def extrapolate_keys(animation: Animations, ports: Collection[Port], how: Outside) -> dict[Port, Keys]:
+def extrapolate_keys(animation: Animations, ports: Collection[Port], how: Extrapolation) -> dict[Port, Keys]:
     """Set what values do before the first and after the last key."""
     return {port: replace(keys, outside=how) for port in ports if isinstance(keys := animation.get(port), Keys)}
 
@@ -131,14 +131,14 @@ def ease_keys(animation: Animations, spots: Collection[Spot], how: Ease) -> dict
 
 def convert_to_bezier(keys: Keys, place: int) -> Keys:
     """Give one segment handles without changing its curve; a segment that holds becomes smooth."""
-    if place + 1 >= len(keys.keys) or not keys.keys[place].parts:
+    if place + 1 >= len(keys.keys) or not keys.keys[place].channels:
         return keys
     start, end = keys.keys[place : place + 2]
     if start.interpolation == "bezier":
         return keys
     if not is_interpolated(keys, place) or start.interpolation == "linear":
         third = (end.frame - start.frame) / 3.0
-        rise = tuple((b - a) / 3.0 for a, b in zip(start.parts, end.parts, strict=False))
+        rise = tuple((b - a) / 3.0 for a, b in zip(start.channels, end.channels, strict=False))
         if start.interpolation == "constant":
             rise = (0.0,) * len(rise)
         right, left = (third, *rise), (-third, *(-part for part in rise))
@@ -252,9 +252,9 @@ def _change_value(key: Key, which: Collection[int], change: Callable[[float], fl
     """The value of a key with other numbers in some channels; a switch is on from a half."""
     if isinstance(key.value, bool):
         return change(float(key.value)) >= 0.5
-    if not key.parts:
+    if not key.channels:
         return key.value
-    parts = tuple(change(part) if place in which else part for place, part in enumerate(key.parts))
+    parts = tuple(change(part) if place in which else part for place, part in enumerate(key.channels))
     if isinstance(key.value, tuple):
         return parts
     return round_keys(parts[0]) if isinstance(key.value, int) else parts[0]
@@ -262,7 +262,7 @@ def _change_value(key: Key, which: Collection[int], change: Callable[[float], fl
 
 def _make_flat_handle(keys: Keys, place: int, side: int) -> tuple[float, ...]:
     width = abs(keys.keys[place + side].frame - keys.keys[place].frame)
-    return side * width / 3.0, *(0.0 for _ in keys.keys[place].parts)
+    return side * width / 3.0, *(0.0 for _ in keys.keys[place].channels)
 
 
 def _find_slope(handle: tuple[float, ...], place: int) -> float:

@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from msgspec import structs
 
 from ...graph import Keys, Port
-from ...graph.graph import declared
+from ...graph.graph import find_value
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import row_of_numbers
 from ..theme.palette import DARK
@@ -79,14 +79,14 @@ class KeyFields:
         port, keys, at = single_key
         index = keys.frames.index(at)
         key = keys.keys[index]
-        declaration = declared(frame.graph.node(port.node), port.socket, port.node)
+        declaration = find_value(frame.graph.node(port.node), port.socket, port.node)
         first, last = frame.context.session.frames
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
         rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
-        if key.parts and len(key.parts) <= 4:
+        if key.channels and len(key.channels) <= 4:
             kind = structs.replace(declaration, type="int" if declaration.type == "int" else "float")
             rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
-            if not frame.is_sheet and len(key.parts) == 1:
+            if not frame.is_sheet and len(key.channels) == 1:
                 loose = structs.replace(
                     kind,
                     type="float",

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ...authoring.edits.naming import value_label
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
-from ...graph.graph import declared
+from ...graph.graph import find_value
 
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""
@@ -67,7 +67,7 @@ def make_rows(
 def name_channels(graph: Graph, port: Port) -> str:
     """The letters of the channels that a value has; none for one number."""
     try:
-        value = declared(graph.node(port.node), port.socket, port.node)
+        value = find_value(graph.node(port.node), port.socket, port.node)
     except GraphError:
         return ""
     if not isinstance(value.default, tuple):
@@ -83,7 +83,7 @@ def count_channels(graph: Graph, port: Port) -> int:
 
 def list_spots(port: Port, keys: Keys, frames: Iterable[float] | None = None) -> frozenset[Spot]:
     """All channels of the keys at those frames, or of all."""
-    count = max((len(key.parts) for key in keys.keys), default=0) or 1
+    count = max((len(key.channels) for key in keys.keys), default=0) or 1
     return frozenset(
         (port, frame, channel) for frame in (keys.frames if frames is None else frames) for channel in range(count)
     )
@@ -92,7 +92,7 @@ def list_spots(port: Port, keys: Keys, frames: Iterable[float] | None = None) ->
 def find_limits(graph: Graph, port: Port) -> tuple[float, float]:
     """The smallest and the largest number that a value may have."""
     try:
-        value = declared(graph.node(port.node), port.socket, port.node)
+        value = find_value(graph.node(port.node), port.socket, port.node)
     except GraphError:
         return float("-inf"), float("inf")
     return value.minimum, value.maximum

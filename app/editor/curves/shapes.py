@@ -30,7 +30,7 @@ _MOST, _REPEATS, _SAMPLES = 1024, 64, 240
 
 def read_key_channel(key: Key, channel: int) -> float:
     """A channel of a key as a number: of a switch, 0 or 1."""
-    return key.parts[channel] if channel < len(key.parts) else float(bool(key.value))
+    return key.channels[channel] if channel < len(key.channels) else float(bool(key.value))
 
 
 def is_interpolated(keys: Keys, place: int) -> bool:
@@ -39,7 +39,7 @@ def is_interpolated(keys: Keys, place: int) -> bool:
     return (
         place + 1 < len(keys.keys)
         and key.interpolation != "constant"
-        and 0 < len(key.parts) == len(keys.keys[place + 1].parts)
+        and 0 < len(key.channels) == len(keys.keys[place + 1].channels)
     )
 
 
@@ -50,7 +50,7 @@ def make_pieces(keys: Keys, channel: int) -> Pieces:
 
 def make_all_pieces(keys: Keys) -> list[Pieces]:
     """Every channel between the first and the last key."""
-    count = max((len(key.parts) for key in keys.keys), default=0) or 1
+    count = max((len(key.channels) for key in keys.keys), default=0) or 1
     cubics: list[tuple[tuple[float, ...], ...]] = []
     key_points = [(key.frame, *(read_key_channel(key, channel) for channel in range(count))) for key in keys.keys]
     interpolated = [is_interpolated(keys, place) for place in range(len(key_points))]
@@ -89,11 +89,11 @@ def make_outside_pieces(keys: Keys, channel: int, inner: Pieces, first: float, l
     before, after = np.empty((0, 4, 2)), np.empty((0, 4, 2))
     if first < start:
         before = _make_straight(
-            (first, read_channel(keys.at(first), channel)), (start, read_key_channel(keys.keys[0], channel))
+            (first, read_channel(keys.evaluate(first), channel)), (start, read_key_channel(keys.keys[0], channel))
         )
     if last > end:
         after = _make_straight(
-            (end, read_key_channel(keys.keys[-1], channel)), (last, read_channel(keys.at(last), channel))
+            (end, read_key_channel(keys.keys[-1], channel)), (last, read_channel(keys.evaluate(last), channel))
         )
     return before, after
 

@@ -83,5 +83,5 @@ def _find_holds(keys: Keys) -> tuple[tuple[float, float], ...]:
     return tuple(
         (start.frame, end.frame)
         for start, end in zip(keys.keys, keys.keys[1:], strict=False)
-        if start.interpolation == "constant" or start.value == end.value or not start.parts
+        if start.interpolation == "constant" or start.value == end.value or not start.channels
     )

@@ -114,7 +114,9 @@ class NodeView:
         context = rows.context
         if code.file:
             rows.name(f"{id} file", "file", doc="The file that the code of this node is in")
-            draft = " *" if paths.full(code.file, context.session.graph.folder) in context.session.drafts else ""
+            draft = (
+                " *" if paths.resolve_path(code.file, context.session.graph.folder) in context.session.drafts else ""
+            )
             rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
         label = f"{icons.ICON_FA_CODE}  Edit Code"
         if rows.wide_button(label, f"code {id}", f"Show the {LANGUAGES[code.language]} of this node"):

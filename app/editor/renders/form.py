@@ -13,7 +13,15 @@ from msgspec.structs import replace
 
 from ...authoring.render_queue.queue import QueuedRender, RenderJob
 from ...errors import HalationError, UsageError
-from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
+from ...graph.frames import (
+    Pattern,
+    add_frame_number,
+    check_numbered,
+    format_frames,
+    is_video,
+    parse_frames,
+    remove_frame_number,
+)
 from ...media.sequences import find_sequence
 from ...media.video.library import load_pyav
 
@@ -133,7 +141,7 @@ class RenderForm:
         """Another format for all files; a video has no place for the frame number."""
         self.format = format
         named = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
-        self.files = {name: unnumbered(path) if is_video(path) else path for name, path in named.items()}
+        self.files = {name: remove_frame_number(path) if is_video(path) else path for name, path in named.items()}
 
     def number(self) -> None:
         """Give all files a place for the frame number."""
@@ -195,7 +203,7 @@ def _parse_listed(text: str) -> tuple[tuple[int, ...], str]:
 def _add_number(path: str) -> str:
     """The path with a place for the number, unless it has one, or needs none."""
     try:
-        return path if is_video(path) or Pattern.parse(path) else numbered(path)
+        return path if is_video(path) or Pattern.parse(path) else add_frame_number(path)
     except UsageError:
         return path
 

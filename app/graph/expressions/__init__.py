@@ -1,6 +1,7 @@
-"""Small safe formulas of time and of other values, read and computed by ourselves.
+"""Expressions: small formulas of the time and of other values.
 
-What reads and computes them is loaded with the first formula: most graphs have none.
+They are parsed and evaluated here, never by Python's `eval`, so that a graph file cannot run code. The parser is
+imported with the first expression, because most graphs have none.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The code of expressions: small functions of a scope, each made of others. All of them raise ExpressionError."""
+"""Evaluators of expressions: functions of a scope, made of other such functions. They raise ExpressionError.
+
+Each function here returns an evaluator for one part of an expression, which the parser puts together.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +15,11 @@ from halation.nodes import Plain
 
 from ...errors import GraphError
 from .fault import ExpressionError
-from .functions import OPERATORS, ExpressionFunction, Made, NoValueError, apply
+from .functions import OPERATORS, ExpressionFunction, ExpressionResult, NoValueError, apply
 
 
 class Scope(NamedTuple):
-    """What an expression reads: the time, and other values by their names."""
+    """What an expression can read: the time, and other values by their names."""
 
     frame: float
     time: float
@@ -24,10 +27,10 @@ class Scope(NamedTuple):
     value: Callable[[str], Plain]
 
 
-Code = Callable[[Scope], Made]
+Evaluator = Callable[[Scope], ExpressionResult]
 
-Step = tuple[str, int, Code]
-"""An operator, where it stands, and the operand after it."""
+Step = tuple[str, int, Evaluator]
+"""An operator, its position, and the operand after it."""
 
 CHANNELS: Mapping[str, int] = MappingProxyType(
     {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
@@ -44,20 +47,20 @@ COMPARISONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
 )
 
 
-def constant(made: Made) -> Code:
+def make_constant(number: ExpressionResult) -> Evaluator:
     """A number."""
-    return lambda scope: made
+    return lambda scope: number
 
 
-def variable(name: str) -> Code:
+def make_variable(name: str) -> Evaluator:
     """`frame`, `time` or `rate`."""
     return operator.attrgetter(name)
 
 
-def named(text: str, position: int, name: str) -> Code:
-    """The value of another name. What is wrong with it is said with the character here, unless it points at one."""
+def make_name(text: str, position: int, name: str) -> Evaluator:
+    """The value of a name. An error points at the name here, unless it points into another expression already."""
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         try:
             found = scope.value(name)
         except GraphError as error:
@@ -65,9 +68,9 @@ def named(text: str, position: int, name: str) -> Code:
                 raise
             raise ExpressionError(text, position, str(error)) from None
         if isinstance(found, str):
-            raise ExpressionError(text, position, f"'{name}' is a text, which is no number")
+            raise ExpressionError(text, position, f"'{name}' is a text, not a number")
         try:
-            made = found if isinstance(found, bool) else _floats(found)
+            made = found if isinstance(found, bool) else _to_floats(found)
         except OverflowError:
             made = math.inf
         if not (math.isfinite(made) if not isinstance(made, tuple) else all(map(math.isfinite, made))):
@@ -77,10 +80,10 @@ def named(text: str, position: int, name: str) -> Code:
     return run
 
 
-def call(text: str, position: int, function: ExpressionFunction, arguments: Sequence[Code]) -> Code:
-    """A function of arguments."""
+def make_call(text: str, position: int, function: ExpressionFunction, arguments: Sequence[Evaluator]) -> Evaluator:
+    """A call of a function."""
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         try:
             return apply(function.name, function.call, tuple([code(scope) for code in arguments]))
         except NoValueError as fault:
@@ -89,11 +92,11 @@ def call(text: str, position: int, function: ExpressionFunction, arguments: Sequ
     return run
 
 
-def arithmetic(text: str, first: Code, steps: Sequence[Step]) -> Code:
-    """Operators of one level from left to right."""
+def make_arithmetic(text: str, first: Evaluator, steps: Sequence[Step]) -> Evaluator:
+    """Operators of one level, from left to right."""
     rest = [(name, OPERATORS[name], position, code) for name, position, code in steps]
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         made = first(scope)
         for name, call, position, code in rest:
             other = code(scope)
@@ -106,11 +109,11 @@ def arithmetic(text: str, first: Code, steps: Sequence[Step]) -> Code:
     return run
 
 
-def comparison(text: str, left: Code, name: str, position: int, right: Code) -> Code:
-    """Two numbers compared."""
+def make_comparison(text: str, left: Evaluator, name: str, position: int, right: Evaluator) -> Evaluator:
+    """A comparison of two numbers."""
     call = COMPARISONS[name]
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         a, b = left(scope), right(scope)
         if isinstance(a, tuple) or isinstance(b, tuple):
             raise ExpressionError(text, position, "lists cannot be compared: take a channel of each, such as .x")
@@ -119,29 +122,29 @@ def comparison(text: str, left: Code, name: str, position: int, right: Code) -> 
     return run
 
 
-def logic(text: str, first: Code, steps: Sequence[Step], *, any_of: bool) -> Code:
-    """`or` (any of them) or `and`: what comes after the answer is known is not looked at."""
+def make_logic(text: str, first: Evaluator, steps: Sequence[Step], *, any_of: bool) -> Evaluator:
+    """`or` (`any_of`) or `and`; operands after the one that decides are not evaluated."""
 
-    def run(scope: Scope) -> Made:
-        made = _truth(text, steps[0][1], first(scope))
+    def run(scope: Scope) -> ExpressionResult:
+        made = _to_truth(text, steps[0][1], first(scope))
         for _, position, code in steps:
             if made == any_of:
                 return made
-            made = _truth(text, position, code(scope))
+            made = _to_truth(text, position, code(scope))
         return made
 
     return run
 
 
-def negation(text: str, position: int, code: Code) -> Code:
+def make_negation(text: str, position: int, code: Evaluator) -> Evaluator:
     """`not`."""
-    return lambda scope: not _truth(text, position, code(scope))
+    return lambda scope: not _to_truth(text, position, code(scope))
 
 
-def signed(code: Code, *, minus: bool) -> Code:
+def make_sign(code: Evaluator, *, minus: bool) -> Evaluator:
     """A sign in front."""
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         made = code(scope)
         if isinstance(made, tuple):
             return tuple(-part for part in made) if minus else made
@@ -150,16 +153,16 @@ def signed(code: Code, *, minus: bool) -> Code:
     return run
 
 
-def choice(text: str, position: int, condition: Code, yes: Code, no: Code) -> Code:
-    """One of two; the other is not looked at."""
-    return lambda scope: (yes if _truth(text, position, condition(scope)) else no)(scope)
+def make_choice(text: str, position: int, condition: Evaluator, yes: Evaluator, no: Evaluator) -> Evaluator:
+    """One of two operands; the other one is not evaluated."""
+    return lambda scope: (yes if _to_truth(text, position, condition(scope)) else no)(scope)
 
 
-def channel(text: str, position: int, code: Code, name: str) -> Code:
-    """One number of a list."""
+def make_channel(text: str, position: int, code: Evaluator, name: str) -> Evaluator:
+    """A channel of a list."""
     place = CHANNELS[name]
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         made = code(scope)
         if not isinstance(made, tuple):
             raise ExpressionError(text, position, f"a number has no channel '{name}'")
@@ -170,10 +173,10 @@ def channel(text: str, position: int, code: Code, name: str) -> Code:
     return run
 
 
-def listed(text: str, position: int, codes: Sequence[Code]) -> Code:
+def make_list(text: str, position: int, codes: Sequence[Evaluator]) -> Evaluator:
     """A list of numbers."""
 
-    def run(scope: Scope) -> Made:
+    def run(scope: Scope) -> ExpressionResult:
         parts = [code(scope) for code in codes]
         if any(isinstance(part, tuple) for part in parts):
             raise ExpressionError(text, position, "a list holds numbers, not lists")
@@ -182,11 +185,11 @@ def listed(text: str, position: int, codes: Sequence[Code]) -> Code:
     return run
 
 
-def _truth(text: str, position: int, made: Made) -> bool:
-    if isinstance(made, tuple):
+def _to_truth(text: str, position: int, number: ExpressionResult) -> bool:
+    if isinstance(number, tuple):
         raise ExpressionError(text, position, "a list is neither true nor false: compare a channel of it, such as .x")
-    return made != 0.0
+    return number != 0.0
 
 
-def _floats(found: float | tuple[float, ...]) -> float | tuple[float, ...]:
-    return tuple([float(part) for part in found]) if isinstance(found, tuple) else float(found)
+def _to_floats(plain: float | tuple[float, ...]) -> float | tuple[float, ...]:
+    return tuple([float(part) for part in plain]) if isinstance(plain, tuple) else float(plain)

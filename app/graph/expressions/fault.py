@@ -1,4 +1,4 @@
-"""What is wrong with an expression, and at which character."""
+"""The error of an expression, which points at a character."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ _SHOWN = 60
 
 
 class ExpressionError(GraphError):
-    """An expression cannot be read, or has no value at a frame. `position` is the character at fault in `text`.
+    """An expression cannot be parsed, or has no value at a frame. `position` is the index of the character in `text`.
 
-    The message is the sentence, the line at fault, and a caret below the character.
+    The message is the sentence, the line, and a caret below the character.
     """
 
     def __init__(self, text: str, position: int, sentence: str) -> None:
         self.text, self.position, self.sentence = text, position, sentence
-        super().__init__(f"{sentence}\n{_pointed(text, position)}" if text.strip() else sentence)
+        super().__init__(f"{sentence}\n{_draw_caret(text, position)}" if text.strip() else sentence)
 
     def __reduce__(self) -> tuple[type[ExpressionError], tuple[str, int, str]]:
         return ExpressionError, (self.text, self.position, self.sentence)
 
 
-def _pointed(text: str, position: int) -> str:
-    """The part of the line around a position, and a caret below."""
+def _draw_caret(text: str, position: int) -> str:
+    """The part of the line around a position, with a caret below."""
     start = text.rfind("\n", 0, position) + 1
     end = text.find("\n", position)
     end = len(text) if end < 0 else end
@@ -31,16 +31,16 @@ def _pointed(text: str, position: int) -> str:
     last = min(end, first + _SHOWN)
     head = "…" if first > start else ""
     tail = "…" if last < end else ""
-    before = head + _printable(text[first:position])
-    return f"    {before}{_printable(text[position:last])}{tail}\n    {' ' * _width(before)}^"
+    before = head + _replace_unprintable(text[first:position])
+    return f"    {before}{_replace_unprintable(text[position:last])}{tail}\n    {' ' * _count_columns(before)}^"
 
 
-def _printable(text: str) -> str:
+def _replace_unprintable(text: str) -> str:
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
-def _width(text: str) -> int:
-    """How many columns a terminal gives to a text (Unicode Standard Annex 11)."""
+def _count_columns(text: str) -> int:
+    """The number of columns of a text in a terminal (Unicode Standard Annex 11)."""
     import unicodedata
 
     return sum(

@@ -1,4 +1,4 @@
-"""The functions and operators of expressions: what each makes of numbers, and of lists element by element."""
+"""The functions and operators of expressions, for numbers and, element by element, for lists."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from msgspec import Struct
 from ..keys import round_keys
 from .noise import noise, random
 
-Made = float | bool | tuple[float, ...]
-"""What an expression can be."""
+ExpressionResult = float | bool | tuple[float, ...]
+"""The types of results of expressions."""
 
 
 class NoValueError(Exception):
-    """Why some numbers make no value, in words."""
+    """A function has no value for these arguments; the message says why."""
 
 
 class ExpressionFunction(Struct, frozen=True):
-    """A function: how it is written, what it is, and how many values it can take."""
+    """A function of expressions: its signature, description, numbers of arguments, and implementation."""
 
     signature: str
     doc: str
@@ -30,41 +30,41 @@ class ExpressionFunction(Struct, frozen=True):
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Its name."""
         return self.signature.partition("(")[0]
 
 
-def apply(name: str, call: Callable[..., float], given: tuple[Made, ...]) -> Made:
-    """A function of numbers for numbers and lists: those go element by element, with single numbers for each.
+def apply(name: str, call: Callable[..., float], arguments: tuple[ExpressionResult, ...]) -> ExpressionResult:
+    """Call a function of numbers with numbers and lists: element by element, with a single number for each element.
 
-    Raises NoValueError, which says for which numbers.
+    Raises NoValueError that names the numbers.
     """
-    if tuple not in map(type, given):
-        return _one(name, call, given)
-    lengths = {len(part) for part in given if isinstance(part, tuple)}
+    if tuple not in map(type, arguments):
+        return _call_with_numbers(name, call, arguments)
+    lengths = {len(part) for part in arguments if isinstance(part, tuple)}
     if len(lengths) > 1:
         few, many = sorted(lengths)[:2]
-        raise NoValueError(f"a list of {few} and a list of {many} numbers do not go together")
+        raise NoValueError(f"a list of {few} and a list of {many} numbers cannot be combined")
     length = lengths.pop()
-    rows = zip(*(part if isinstance(part, tuple) else (part,) * length for part in given), strict=True)
-    return tuple(_one(name, call, row) for row in rows)
+    rows = zip(*(part if isinstance(part, tuple) else (part,) * length for part in arguments), strict=True)
+    return tuple(_call_with_numbers(name, call, row) for row in rows)
 
 
-def _one(name: str, call: Callable[..., float], numbers: tuple[Made, ...]) -> float:
+def _call_with_numbers(name: str, call: Callable[..., float], numbers: tuple[ExpressionResult, ...]) -> float:
     try:
-        made = float(call(*numbers))
+        number = float(call(*numbers))
     except ZeroDivisionError:
-        raise NoValueError(f"a division by zero: {_shown(name, numbers)}") from None
+        raise NoValueError(f"a division by zero: {_format_call(name, numbers)}") from None
     except ValueError:
-        raise NoValueError(f"{_shown(name, numbers)} has no value") from None
+        raise NoValueError(f"{_format_call(name, numbers)} has no value") from None
     except OverflowError:
-        made = math.inf
-    if not math.isfinite(made):
-        raise NoValueError(f"{_shown(name, numbers)} is too large")
-    return made
+        number = math.inf
+    if not math.isfinite(number):
+        raise NoValueError(f"{_format_call(name, numbers)} is too large")
+    return number
 
 
-def _shown(name: str, numbers: tuple[Made, ...]) -> str:
+def _format_call(name: str, numbers: tuple[ExpressionResult, ...]) -> str:
     parts = [f"{part:g}" for part in numbers if not isinstance(part, tuple)]
     if name in OPERATORS and len(parts) == 2:
         return f"{parts[0]} {name} {parts[1]}"
@@ -123,7 +123,7 @@ OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
 )
 """Arithmetic. The rest of a division, %, has the sign of the divisor, as mod() of GLSL."""
 
-_MANY = range(2, 501)
+_VARIADIC = range(2, 501)
 
 FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
     {
@@ -152,8 +152,8 @@ FUNCTIONS: Mapping[str, ExpressionFunction] = MappingProxyType(
             ExpressionFunction("round(x)", "the nearest whole number, halves away from zero", (1,), round_keys),
             ExpressionFunction("fract(x)", "x without its whole part", (1,), _fract),
             ExpressionFunction("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
-            ExpressionFunction("min(a, b, ...)", "the smallest", _MANY, min),
-            ExpressionFunction("max(a, b, ...)", "the largest", _MANY, max),
+            ExpressionFunction("min(a, b, ...)", "the smallest", _VARIADIC, min),
+            ExpressionFunction("max(a, b, ...)", "the largest", _VARIADIC, max),
             ExpressionFunction(
                 "clamp(x, low, high)", "x within low and high; within 0 and 1 if they are left out", (1, 3), _clamp
             ),

@@ -1,4 +1,4 @@
-"""The words of an expression."""
+"""The tokens of expressions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TokenKind = Literal[
 ]
 
 VARIABLES = frozenset({"frame", "time", "rate"})
-"""What every expression can read."""
+"""Names that every expression can read."""
 
 CONSTANTS = frozenset({"pi", "tau", "e", "true", "false"})
 
@@ -35,7 +35,7 @@ _SEGMENTS = re.compile(r"`((?:[^`]|``)+)`|([^.`]+)")
 
 
 class Token(Struct, frozen=True):
-    """A word of the text from `start` to `end`. `name` is the dotted name without its quotes."""
+    """A token of the text from `start` to `end`. `name` is the dotted name without backquotes."""
 
     kind: TokenKind
     start: int
@@ -44,18 +44,18 @@ class Token(Struct, frozen=True):
     name: str = ""
 
 
-def tokens(text: str) -> Iterator[Token]:
-    """Every word of a text, spaces left out; what is none is `unknown`. It never fails."""
-    for found in _PARTS.finditer(text):
-        kind, word = found.lastgroup, found.group()
+def tokenize(text: str) -> Iterator[Token]:
+    """The tokens of a text without spaces. It never fails: other characters have the kind `unknown`."""
+    for match in _PARTS.finditer(text):
+        kind, word = match.lastgroup, match.group()
         if kind == "name":
-            yield _named(word, found.start(), found.end(), text)
+            yield _classify_name(word, match.start(), match.end(), text)
         elif kind == "number" or kind == "operator" or kind == "bracket" or kind == "unknown":
-            yield Token(kind, found.start(), found.end(), word)
+            yield Token(kind, match.start(), match.end(), word)
 
 
 def write_name(name: str) -> str:
-    """A dotted name as an expression has to write it: odd parts in backquotes."""
+    """A dotted name as an expression writes it: parts that are not identifiers in backquotes."""
     parts = name.split(".")
     return ".".join(
         part if part.isidentifier() and (place or part not in _RESERVED) else f"`{part.replace('`', '``')}`"
@@ -63,13 +63,13 @@ def write_name(name: str) -> str:
     )
 
 
-def segments(word: str) -> list[str]:
-    """The parts of a dotted name as it is written."""
+def split_name(word: str) -> list[str]:
+    """The parts of a dotted name, without backquotes."""
     return [quoted.replace("``", "`") or plain for quoted, plain in _SEGMENTS.findall(word)]
 
 
-def _named(word: str, start: int, end: int, text: str) -> Token:
-    parts = segments(word)
+def _classify_name(word: str, start: int, end: int, text: str) -> Token:
+    parts = split_name(word)
     if "`" not in word and not all(part.isidentifier() for part in parts):
         return Token("unknown", start, end, word)
     if any(not part or "." in part for part in parts):

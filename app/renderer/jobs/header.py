@@ -15,7 +15,7 @@ from ...color.management import digest_color_settings
 from ...compiler import Pass, Plan, Target
 from ...errors import HalationError
 from ...graph import Graph
-from ...graph.paths import inlined
+from ...graph.paths import inline_files
 from ...version import VERSION
 from ..engine import RenderRequest
 from .destinations import Destination, OutputSettings
@@ -27,7 +27,7 @@ _KEY = "halation:key"
 
 def dump_whole_graph(graph: Graph) -> str:
     """A graph and its groups as one text."""
-    return document.dumps(inlined(graph))
+    return document.dumps(inline_files(graph))
 
 
 def make_header(

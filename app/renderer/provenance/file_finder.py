@@ -16,7 +16,7 @@ from ...compiler.lowering.references import CONFIG, find_path_texts
 from ...errors import InputError, UsageError
 from ...graph import INPUTS, Graph, did_you_mean
 from ...graph.frames import Pattern
-from ...graph.paths import relocated, repointed
+from ...graph.paths import change_paths, relocate_path
 from ...resources.sandbox import outside
 from ..jobs.source_files import FileHashes
 from .recipe import Recipe, RecordedFile, read_recipe
@@ -154,7 +154,7 @@ def relink_files(graph: Graph, found: Sequence[LocatedFile]) -> Graph:
     texts = {owner: text for owner, (text, _) in find_path_texts(graph).items()}
     here = {item.used.owner: _spell_path(item.path, graph.folder) for item in found if item.path}
     moved = {text: path for owner, path in here.items() if (text := find_text(texts, owner))}
-    graph = repointed(graph, lambda text: moved.get(text, text))
+    graph = change_paths(graph, lambda text: moved.get(text, text))
     ends = dict(graph.inputs)
     for item in found:
         node, _, name = item.used.owner.partition(".")
@@ -169,7 +169,7 @@ def relink_files(graph: Graph, found: Sequence[LocatedFile]) -> Graph:
 def _spell_path(path: str, folder: str) -> str:
     """How a graph in a folder names a file: relative if it is near."""
     full = os.path.abspath(path)  # noqa: PTH100
-    near = relocated(os.path.relpath(full), "", folder) if _same_drive(full, folder) else full
+    near = relocate_path(os.path.relpath(full), "", folder) if _same_drive(full, folder) else full
     return full if near.startswith(_FAR) else near
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...color.management import digest_color_settings
 from ...errors import DeviceError, UsageError
-from ...graph import Graph, color_settings, node_output
+from ...graph import Graph, color_settings, find_node_output
 from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
 from ...media.pictures.same_numbers import read_numbers
 from ...resources.sandbox import ROOT
@@ -92,7 +92,7 @@ def reproduce(
     """
     graph, targets = _relink_graph(recipe, found), {}
     if recipe.node:
-        targets = {recipe.node: node_output(graph, recipe.node)}
+        targets = {recipe.node: find_node_output(graph, recipe.node)}
     names = recipe.outputs or (recipe.node,)  # "" is all of them
     wanted = RenderRequest({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
     for file in files:

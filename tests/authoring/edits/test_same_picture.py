@@ -159,8 +159,8 @@ def test_saving_in_another_folder_and_back(seed):
     graph, _ = made(seed)
     graph = graph.add("photo", catalogue()["read_image"](path="plates/a.exr"))
     graph, _ = make_group(graph, ["photo"])
-    there = paths.rebased(graph, "deep/er")
+    there = paths.rebase_paths(graph, "deep/er")
     photo = there.nodes["group"].graph
     assert photo.folder == "deep/er"
     assert photo.nodes["photo"].path == "../../plates/a.exr"
-    assert paths.rebased(there, "") == graph
+    assert paths.rebase_paths(there, "") == graph

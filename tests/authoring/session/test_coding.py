@@ -31,7 +31,7 @@ from halation.custom_nodes import CustomNode
 from halation.document import dumps, loads
 from halation.errors import GraphError
 from halation.graph import Graph, Input, Keys, Output, Port, Unknown
-from halation.graph.paths import rebased
+from halation.graph.paths import rebase_paths
 
 GAIN = 'vec4 gain(vec4 image, float k // = 2, 0..4, "How Much"\n) { return image * k; }'
 HEAD = '/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/'
@@ -199,7 +199,7 @@ def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: P
     other.apply(PasteText(filed.copy()))
     assert other.code("gain").file == "shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
     broken = Graph(folder=str(tmp_path)).add("x", coding.make_file_node("none.glsl", str(tmp_path)))
-    assert rebased(broken, str(tmp_path / "elsewhere")).nodes["x"].raw["file"] == "../none.glsl"  # pyright: ignore
+    assert rebase_paths(broken, str(tmp_path / "elsewhere")).nodes["x"].raw["file"] == "../none.glsl"  # pyright: ignore
 
 
 def test_shaders_of_another_format_are_dropped_too(tmp_path: Path) -> None:

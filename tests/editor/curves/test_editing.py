@@ -69,15 +69,15 @@ def test_keys_move_together_and_come_back_from_where_they_pushed() -> None:
     animation = graph().animation
     drag = KeyMove(animation, at(GAIN, 1, 10) | at(TINT, 1), 1.0, (1.3, 0.0), "m")
     far = drag.change((11.2, 0.0), True, editing.allow_any_number)
-    assert far.new_keys[GAIN].frames == (11.0, 20.0) and far.new_keys[GAIN].at(20) == 2.0
+    assert far.new_keys[GAIN].frames == (11.0, 20.0) and far.new_keys[GAIN].evaluate(20) == 2.0
     assert far.new_keys[TINT].frames == (10.0, 11.0)
     assert far.spots == at(GAIN, 11, 20) | at(TINT, 11)
     near = drag.change((2.31, 0.0), True, editing.allow_any_number)
     assert near.new_keys[GAIN].frames == (2.0, 11.0, 20.0)
     assert drag.change((2.31, 0.0), False, editing.allow_any_number).new_keys[GAIN].frames == (2.01, 11.01, 20.0)
     still = drag.change((9.0, 1.0), True, editing.allow_any_number, across=False)
-    assert still.new_keys[GAIN].frames == (1.0, 10.0, 20.0) and still.new_keys[GAIN].at(1) == 1.0
-    assert still.new_keys[TINT].at(1)[0] == 2.0 and still.new_keys[TINT].at(1)[1] == 0.0
+    assert still.new_keys[GAIN].frames == (1.0, 10.0, 20.0) and still.new_keys[GAIN].evaluate(1) == 1.0
+    assert still.new_keys[TINT].evaluate(1)[0] == 2.0 and still.new_keys[TINT].evaluate(1)[1] == 0.0
 
 
 def test_a_lifted_key_stays_within_its_limits_and_type() -> None:
@@ -85,7 +85,7 @@ def test_a_lifted_key_stays_within_its_limits_and_type() -> None:
     made = editing.move_keys(
         animation, at(GAIN, 20) | at(STEPS, 1) | at(CLAMP, 5), 0.0, 40.0, lambda p: find_limits(graph(), p)
     )
-    assert made.new_keys[GAIN].at(20) == 16.0
+    assert made.new_keys[GAIN].evaluate(20) == 16.0
     assert made.new_keys[STEPS].key(1).value == 43 and isinstance(made.new_keys[STEPS].key(1).value, int)
     down = editing.move_keys(animation, at(CLAMP, 5), 0.0, -0.8)
     assert down.new_keys[CLAMP].key(5).value is False
@@ -113,7 +113,7 @@ def test_handles_turn_together_or_alone() -> None:
     made = drag.change((9.0 + 0.5 + 4.0, 1.0 + 0.25 + 2.0), True)
     assert made.key(9).right == (4.0, 2.0)
     assert made.key(9).left == pytest.approx((-3.0, -1.5)) and editing.has_aligned_handles(made, 9.0)
-    assert made.at(0) == 0.0 and made.at(12) > 1.0
+    assert made.evaluate(0) == 0.0 and made.evaluate(12) > 1.0
     alone = drag.change((13.5, 3.25), False)
     assert alone.key(9).left == () and not editing.has_aligned_handles(alone, 9.0)
     assert drag.change((13.5, 3.25), True, flat=True).key(9).right == (4.0, 0.0)
@@ -133,21 +133,21 @@ def test_a_curve_that_gets_handles_keeps_its_shape() -> None:
         made = editing.convert_to_bezier(keys, place)
         assert made.keys[place].interpolation == "bezier"
         for frame in range(21):
-            assert made.at(frame) == pytest.approx(keys.at(frame), abs=1e-9)
+            assert made.evaluate(frame) == pytest.approx(keys.evaluate(frame), abs=1e-9)
     held = editing.convert_to_bezier(Keys((Key(0, 1.0, "constant"), Key(8, 3.0))), 0)
-    assert held.at(4) == pytest.approx(2.0)
+    assert held.evaluate(4) == pytest.approx(2.0)
 
 
 def test_easing_lays_handles_flat() -> None:
     animation = {GAIN: Keys((Key(0, 0.0, "linear"), Key(10, 1.0, "linear"), Key(20, 2.0, "linear")))}
     made = editing.ease_keys(animation, at(GAIN, 10), "both")[GAIN]
     assert made.key(10).left[1] == made.key(10).right[1] == 0.0
-    slope = (made.at(10.01) - made.at(9.99)) / 0.02
+    slope = (made.evaluate(10.01) - made.evaluate(9.99)) / 0.02
     assert abs(slope) < 0.01
-    begin = (made.at(0.01) - made.at(0.0)) / 0.01
+    begin = (made.evaluate(0.01) - made.evaluate(0.0)) / 0.01
     assert begin == pytest.approx(0.1, rel=0.05)
     into = editing.ease_keys(animation, at(GAIN, 10), "in")[GAIN]
-    assert into.at(15) == 1.5 and into.at(8) > 0.8
+    assert into.evaluate(15) == 1.5 and into.evaluate(8) > 0.8
     assert editing.ease_keys(animation, at(GAIN, 0), "in")[GAIN] == animation[GAIN]
 
 
@@ -165,7 +165,7 @@ def test_kinds_of_handles() -> None:
     assert editing.has_aligned_handles(straight, 10.0) and straight.key(10).left[0] == -2.0
     assert editing.reset_handles(animation, at(GAIN, 10))[GAIN].key(10).left == ()
     put = editing.fix_handles(animation, at(GAIN, 0))[GAIN]
-    assert len(put.key(0).right) == 2 and put.at(4) == pytest.approx(animation[GAIN].at(4))
+    assert len(put.key(0).right) == 2 and put.evaluate(4) == pytest.approx(animation[GAIN].evaluate(4))
     assert editing.extrapolate_keys(animation, (GAIN, TINT), "loop")[GAIN].outside == "loop"
     assert editing.interpolate_keys({CLAMP: Keys((Key(1, True),))}, at(CLAMP, 1), "linear") == {}
     assert editing.remove_keys(animation, at(GAIN, 0, 10, 20))[GAIN].keys == ()
@@ -177,7 +177,7 @@ def test_keys_pass_the_clipboard() -> None:
     assert json.loads(text)["halation keys"]["gain.gain"][0]["frame"] == 0.0
     change = paste_keys(made, decode_keys(text), 31.0)
     assert change.new_keys[GAIN].frames == (1.0, 10.0, 20.0, 31.0, 41.0)
-    assert change.new_keys[TINT].at(31) == (0.0, 1.0, 0.0, 1.0)
+    assert change.new_keys[TINT].evaluate(31) == (0.0, 1.0, 0.0, 1.0)
     assert change.spots >= at(GAIN, 31, 41) | at(TINT, 31, channel=3)
     other = paste_keys(made, decode_keys(encode_keys(made.animation, at(GAIN, 10))), 3.0, (STEPS,))
     assert list(other.new_keys) == [STEPS]

@@ -60,7 +60,7 @@ def test_keys_and_handles_of_curves() -> None:
     for chosen in ((GAIN, 10.0, 0), (TINT, 10.0, 0)):
         assert seen.find_mark(99.0, 301.0, 6.0, {chosen}).spots == {chosen}
     assert seen.find_mark(99.0, 320.0, 6.0, ()) is None
-    middle = found.animation[GAIN].at(30)
+    middle = found.animation[GAIN].evaluate(30)
     assert seen.find_lane(PLANE.x(30.0), PLANE.y(middle) + 3.0, 5.0) == (GAIN, 0)
     of, _, bent, cuts = bundle.project_outside(PLANE)
     assert of == [0, 1, 2, 3, 1, 2, 3] and cuts == list(range(8)) and not bent.any()

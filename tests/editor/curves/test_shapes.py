@@ -53,7 +53,7 @@ def test_a_drawn_curve_is_where_the_keys_say(ends: str, channels: int) -> None:
         line = curve(keys, channel)
         assert np.all(np.diff(line[:, 0]) >= -1e-9)
         for frame in np.random.default_rng(1).uniform(-20.0, 60.0, 300):
-            value = keys.at(frame)
+            value = keys.evaluate(frame)
             there = value[channel] if isinstance(value, tuple) else value
             place = int(np.clip(np.searchsorted(line[:, 0], frame), 1, len(line) - 1))
             near = line[max(place - 2, 0) : place + 2]

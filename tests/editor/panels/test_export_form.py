@@ -75,8 +75,8 @@ def test_typed_frames_are_checked(desk: Desk) -> None:
     assert form.targets(0.0).last.endswith("soft_bloom.0040.exr")
     form.listed = "1-x"
     assert form.frames() == ()
-    assert "neither a frame nor a range" in form.targets(0.0).fault
-    with pytest.raises(UsageError, match="neither a frame nor a range"):
+    assert "is not a frame or a range" in form.targets(0.0).fault
+    with pytest.raises(UsageError, match="is not a frame or a range"):
         form.start()
     assert desk.exports.all == ()
 
