@@ -32,7 +32,8 @@ def fmt(
 ) -> int:
     """Rewrite graph files in the canonical format.
 
-    The text of standard input (-) is written to standard output.
+    The text of standard input (-) is written to standard output. In folders, virtual environments and installed
+    packages (site-packages, node_modules) are left out.
     """
     from .. import document
     from ..errors import UsageError

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ..document.disk import read_text
 from ..errors import DocumentError
+from ..resources.folders import is_foreign, walk_project
 
 _KEY = re.compile(r'"halation"\s*:')
 
@@ -18,8 +19,9 @@ _KEY = re.compile(r'"halation"\s*:')
 def find_graphs(paths: Iterable[Path]) -> Iterator[Path]:
     """Every file that is meant, once, in order.
 
-    A folder stands for all graphs in it and below, hidden folders aside; a pattern for what it matches, `**` included.
-    A name stands for itself, whether there is such a file or not.
+    A folder stands for all graphs in it and below, without hidden folders, virtual environments and installed packages;
+    a pattern for what it matches, with the same exceptions below the folders that it names. A name stands for itself,
+    whether there is such a file or not.
     """
     real_paths = set[str]()
     for path in paths:
@@ -36,17 +38,19 @@ def _expand(path: Path) -> Iterator[Path]:
     elif path.exists() or not (matches := sorted(glob.glob(str(path), recursive=True))):  # noqa: PTH207
         yield path
     else:
+        depth = next((index for index, part in enumerate(path.parts) if glob.has_magic(part)), len(path.parts))
         for match in matches:
+            steps = Path(match).parts
+            if any(is_foreign(Path(*steps[:end])) for end in range(depth + 1, len(steps) + 1)):
+                continue
             yield from _graphs_in_folder(Path(match)) if Path(match).is_dir() else (Path(match),)
 
 
 def _graphs_in_folder(folder: Path) -> Iterator[Path]:
     """The graphs in a folder: JSON files that say they are one."""
-    for here, folders, names in os.walk(folder):
-        folders[:] = sorted(name for name in folders if not name.startswith("."))
-        for name in sorted(names):
-            if name.lower().endswith(".json") and not name.startswith(".") and is_graph(path := Path(here, name)):
-                yield path
+    for path in walk_project(folder):
+        if path.name.lower().endswith(".json") and is_graph(path):
+            yield path
 
 
 def is_graph(path: Path) -> bool:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ..errors import DocumentError, UsageError
+from ..resources.folders import walk_project
 from .cases import ENDING, METRICS, PER_PIXEL, Case
 from .toml_tables import TomlTable, parse_toml, read_frames, read_goldens, read_inputs, read_size
 
@@ -36,7 +37,7 @@ def find_suites(paths: Iterable[Path]) -> tuple[Path, ...]:
     found: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            inside = sorted(item for item in path.rglob(f"*{ENDING}") if _is_visible(item.relative_to(path)))
+            inside = sorted(item for item in walk_project(path) if item.name.endswith(ENDING))
             if not inside:
                 raise UsageError(f"{path}: there is no suite in this folder; the name of one ends in {ENDING}")
             found.update(dict.fromkeys(inside))
@@ -130,10 +131,6 @@ def _check_goldens(path: Path, cases: Iterable[Case]) -> None:
                     f"cases.{case.name}",
                     f"golden {golden.path} is that of '{owner[golden.path]}' too: give each its own, with {{case}}",
                 )
-
-
-def _is_visible(path: Path) -> bool:
-    return not any(part.startswith(".") for part in path.parts)
 
 
 def load_suites(paths: Sequence[Path]) -> tuple[Case, ...]:

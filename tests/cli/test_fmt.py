@@ -72,3 +72,32 @@ def test_folders_and_patterns(cli, graphs, tmp_path):
     assert cli("fmt", tmp_path / "shots").code == 0 and cli("fmt", tmp_path / "shots", "--check").code == 0
     assert Path(tmp_path / "shots/package.json").read_text() == '{"name":1}'
     assert cli("fmt", tmp_path / "none").code == 3
+
+
+def test_installed_packages_are_not_the_projects(cli, graphs, tmp_path, monkeypatch):
+    """A folder and a pattern leave out virtual environments and packages of others; a folder that is named is meant."""
+    for name in ("look.json", "env/share/a.json", "node_modules/b.json", "tools/site-packages/c.json", "conda/d.json"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        graphs(name)
+    (tmp_path / "env/pyvenv.cfg").touch()
+    (tmp_path / "conda/conda-meta").mkdir()
+    foreign = {path: path.read_bytes() for path in tmp_path.rglob("[abcd].json")}
+    monkeypatch.chdir(tmp_path)
+    assert len(foreign) == 4
+    for word in (".", tmp_path, "**/*.json"):
+        assert cli("fmt", word, "--json").json["checked"] == 1, word
+        assert [Path(report["graph"]).name for report in cli("check", word, "--json").json["graphs"]] == ["look.json"]
+    assert foreign == {path: path.read_bytes() for path in foreign}
+    for word in ("env", "node_modules/*.json", "tools/site-packages", "conda/d.json"):
+        assert cli("fmt", word, "--check", "--json").json["checked"] == 1, word
+    monkeypatch.chdir(tmp_path / "env")
+    assert cli("fmt", "**/*.json", "--check", "--json").json["checked"] == 1
+
+
+def test_suites_of_installed_packages_are_not_run(cli, tmp_path):
+    (tmp_path / "env").mkdir()
+    (tmp_path / "env/pyvenv.cfg").touch()
+    for name in ("mine", "env/theirs"):
+        (tmp_path / f"{name}.suite.toml").write_text('[cases.a]\ngraph = "group.json"\ngolden = "a.exr"\n')
+    cases = cli("test", tmp_path, "--list", "--json").json["cases"]
+    assert [Path(case["graph"]).parent for case in cases] == [tmp_path]
