@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .graph import Graph, Port
     from .inputs.provider import Binding
     from .renderer import Renderer
+    from .resources.sandbox import Sandbox
 
 __all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
 
@@ -36,15 +37,17 @@ __version__ = VERSION
 def load(path: str | Path) -> Graph:
     """The graph in a JSON file. Raises DocumentError with the JSON path of a fault."""
     from . import document
+    from .resources.sandbox import read_process_sandbox
 
-    return document.load(path)
+    return document.load(path, sandbox=read_process_sandbox())
 
 
 def save(graph: Graph, path: str | Path) -> None:
     """Write a graph as canonical JSON, whole or not at all. Raises OutputError."""
     from . import document
+    from .resources.sandbox import read_process_sandbox
 
-    document.save(graph, path)
+    document.save(graph, path, sandbox=read_process_sandbox())
 
 
 def render(
@@ -87,6 +90,7 @@ def render_frames(
     the same: nodes with a memory are led up to it from the first frame of the graph, or by its pre-roll.
     """
     from .renderer import FrameRenderer, RenderRequest
+    from .resources.sandbox import read_process_sandbox
 
     if not 0.0 < scale <= 1.0:
         raise UsageError(f"scale {scale:g}: give a number above 0 and up to 1")
@@ -95,7 +99,9 @@ def render_frames(
     for name, value in (values or {}).items():
         graph = graph.override(name, value)
     targets = {node: _output(graph, node)} if node else {}
-    reel = FrameRenderer(_renderer(), graph, RenderRequest(inputs or {}, targets, size, scale, precision=precision))
+    reel = FrameRenderer(
+        _renderer(read_process_sandbox()), graph, RenderRequest(inputs or {}, targets, size, scale, precision=precision)
+    )
     first, last = reel.frames
     try:
         for frame in range(first, last + 1) if frames is None else frames:
@@ -114,13 +120,20 @@ def write(
     from halation.nodes import Kind
 
     from . import media
+    from .resources.sandbox import read_process_sandbox
 
     channels = {2: 1, 3: picture.shape[-1]}.get(picture.ndim, 0)
     if not 1 <= channels <= 4:
         raise UsageError(f"{path}: the array is {list(picture.shape)}; give [height, width] or [height, width, 1 to 4]")
     kind = (Kind.FIELD, Kind.VECTOR, Kind.IMAGE, Kind.IMAGE)[channels - 1]
     media.write_picture(
-        Path(path), {"image": picture}, kinds={"image": kind}, precision=precision, compression=compression, view=view
+        Path(path),
+        {"image": picture},
+        kinds={"image": kind},
+        precision=precision,
+        compression=compression,
+        view=view,
+        sandbox=read_process_sandbox(),
     )
 
 
@@ -131,11 +144,11 @@ def _output(of: Graph, node: str) -> Port:
 
 
 @cache
-def _renderer() -> Renderer:
+def _renderer(sandbox: Sandbox) -> Renderer:
     """One device for all calls: opening another costs more than most graphs."""
     from .renderer import Renderer
 
-    return Renderer()
+    return Renderer(sandbox=sandbox)
 
 
 def __getattr__(name: str) -> Any:

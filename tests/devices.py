@@ -6,6 +6,7 @@ import os
 
 from halation.compiler import Form
 from halation.renderer import DEFAULT_BUDGET, Renderer, open_device
+from halation.resources.sandbox import UNRESTRICTED
 
 
 def form_to_test() -> Form | None:
@@ -17,4 +18,4 @@ def form_to_test() -> Form | None:
 
 def open_renderer(budget: int = DEFAULT_BUDGET) -> Renderer:
     """A renderer on a device of its own, on whatever OpenGL this machine has; the caller closes it."""
-    return Renderer(open_device(form_to_test()), budget=budget)
+    return Renderer(open_device(form_to_test(), sandbox=UNRESTRICTED), budget=budget, sandbox=UNRESTRICTED)

@@ -8,6 +8,7 @@ import numpy as np
 from halation import media
 from halation.nodes import CameraModel, Kind, look_at
 from halation.presets import sample
+from halation.resources.sandbox import UNRESTRICTED
 
 Array = np.ndarray
 
@@ -33,7 +34,9 @@ def rays(camera: CameraModel, width: int, height: int) -> Array:
 def sample_layer(name: str) -> Array:
     """A layer of data of the sample frame."""
     width = _WIDTHS[name]
-    return media.read_layer(sample(), name, Kind.VECTOR if width > 1 else Kind.FIELD, width).array.astype(np.float32)
+    return media.read_layer(
+        sample(), name, Kind.VECTOR if width > 1 else Kind.FIELD, width, sandbox=UNRESTRICTED
+    ).array.astype(np.float32)
 
 
 @cache

@@ -20,6 +20,7 @@ from halation.editor.toolkit.keys import chord
 from halation.editor.window.editor import Editor
 from halation.editor.window.opengl import needs_no_display
 from halation.editor.window.window import Window
+from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import ImVec2, hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
 
@@ -240,6 +241,6 @@ def headless(
     state.mkdir(exist_ok=True)
     form = form_to_test()
     version = (4, 1) if form == "fragment" else (4, 5)
-    window = Window(path, bindings or {}, version=version, state=state, size=size, form=form)
+    window = Window(path, bindings or {}, version=version, state=state, size=size, form=form, sandbox=UNRESTRICTED)
     window.params.ini_disable = True
     return window

@@ -19,6 +19,7 @@ from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
 from halation.nodes.input.read_image import ReadImage
 from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import Lamps, Tint
 
 SAMPLES = presets.paths()[0].parent / "samples"
@@ -50,7 +51,7 @@ def write_many_things(folder: Path) -> Path:
         graph = graph.connect(Port.parse(source), Port.parse(target))
     graph = graph.add_control("glow", Control(Port("bloom", "intensity")))
     path = folder / "many_things.json"
-    save(graph, path)
+    save(graph, path, sandbox=UNRESTRICTED)
     return path
 
 
@@ -245,7 +246,10 @@ def panels(ui: Ui) -> Screens:
 def make_render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
     """A render to files as the panel sees it, without a process."""
     made = QueuedRender(
-        QueuedJob(RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1))), Graph())
+        QueuedJob(
+            RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1)), sandbox=UNRESTRICTED),
+            Graph(),
+        )
     )
     made.state, made.done = state, done
     made.started_at, made.ended_at = 1.0, 0.0 if state in ("running", "waiting") else 43.0

@@ -7,10 +7,11 @@ from halation.authoring.session import Session
 from halation.custom_nodes.plugins import preset_paths
 from halation.editor.shared import entries
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths())
 for query in ("soft glow", "acme glow", "acme dream"):
     print(entries.arrange_entries(every, query)[0].entries[0].title)
-session = Session()
+session = Session(sandbox=UNRESTRICTED)
 print(session.apply(AddNode("acme_glow.soft_glow")))
 print(session.apply(AddGroupFile(next(path for path in preset_paths() if path.stem == "acme_dream"))))

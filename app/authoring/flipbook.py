@@ -18,6 +18,7 @@ from ..graph import OUTPUTS, Graph, Output, Port
 from ..graph.frames import Pattern
 from ..graph.names import fresh_name, name_fault
 from ..media.sequences import find_sequence, suggest_pattern
+from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .render_queue.queue import QueuedRender
 from .session import Session
 
@@ -49,14 +50,14 @@ class FlipbookStrip:
         output, path = export.destinations[0]
         outputs = export.job.graph.outputs
         found = outputs.get(output or next(iter(outputs), ""))
-        frames = export.job.order.frames or _list_disk_frames(path) or (1,)
+        frames = export.job.order.frames or _list_disk_frames(path, export.job.order.sandbox) or (1,)
         return FlipbookStrip(path, (min(frames), max(frames)), found.view if found else "", export)
 
     @staticmethod
-    def from_file(path: Path) -> FlipbookStrip:
+    def from_file(path: Path, sandbox: Sandbox) -> FlipbookStrip:
         """The sequence that a file on the disk belongs to, else that picture alone. Raises InputError, UsageError."""
-        path = Path(suggest_pattern(str(path)) or path)
-        frames = _list_disk_frames(path)
+        path = Path(suggest_pattern(str(path), sandbox=sandbox) or path)
+        frames = _list_disk_frames(path, sandbox=sandbox)
         if not frames:
             raise InputError(f"{path}: there is no such picture")
         return FlipbookStrip(path, (frames[0], frames[-1]))
@@ -113,7 +114,7 @@ def _make_session(strips: Sequence[FlipbookStrip], rate: float, frame: int) -> S
         graph = graph.add_output(name, Output(view=view)).connect(Port(node, "out"), Port(OUTPUTS, name))
     first, last = min(strip.frames[0] for strip in strips), max(strip.frames[1] for strip in strips)
     graph = replace(graph, settings=replace(graph.settings, frames=(first, last), rate=rate))
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     session.open_text(document.dumps(graph))
     for side, name in zip(SIDES, names, strict=False):
         session.view(Port(OUTPUTS, name), side)
@@ -121,7 +122,7 @@ def _make_session(strips: Sequence[FlipbookStrip], rate: float, frame: int) -> S
     return session
 
 
-def _list_disk_frames(path: Path) -> tuple[int, ...]:
+def _list_disk_frames(path: Path, sandbox: Sandbox) -> tuple[int, ...]:
     """The frames that are on the disk; a picture alone is the first."""
-    sequence = find_sequence(str(path))
+    sequence = find_sequence(str(path), sandbox=sandbox)
     return (1,) if sequence is None and path.is_file() else sequence.frames if sequence else ()

@@ -17,6 +17,7 @@ import platformdirs
 
 from ..errors import OutputError, UsageError
 from ..resources.atomic_write import write_text_atomically
+from ..resources.sandbox import UNRESTRICTED
 from .recovery.file_locks import hold_lock
 
 MAX_RECENT = 20
@@ -135,7 +136,9 @@ class PreferenceStore:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             with hold_lock(self.file.with_suffix(".lock")):
                 self.current = self._merge_with_file()
-                write_text_atomically(self.file, json.dumps(_tree(self.current), indent=2, sort_keys=True) + "\n")
+                write_text_atomically(
+                    self.file, json.dumps(_tree(self.current), indent=2, sort_keys=True) + "\n", sandbox=UNRESTRICTED
+                )
         except OSError as fault:
             self._report(f"preferences cannot be kept in {self.file.parent} ({fault.strerror})")
             return False

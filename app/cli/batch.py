@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..resources.sandbox import Sandbox
 from .outcome import print_note
 
 if TYPE_CHECKING:
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
     from ..graph import Graph
     from ..renderer import Renderer
+    from ..resources.sandbox import Sandbox
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ def find_middle_frame(renderer: Renderer, graph: Graph) -> int:
 
 
 @contextmanager
-def open_batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
+def open_batch(output: Path, total: int, budget: int = 0, *, sandbox: Sandbox) -> Iterator[Batch]:
     """Create the folder, open a device and show a progress bar; close both at the end.
 
     `budget` is how many bytes of results the device may keep from one picture to the next.
@@ -55,13 +57,15 @@ def open_batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     from ..errors import OutputError
     from ..renderer import Renderer, open_device
 
+    if reason := sandbox.fault(output):
+        raise OutputError(f"{output}: {reason}")
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise OutputError(
             f"{output}: the folder cannot be created ({fault.strerror}); choose another with -o"
         ) from None
-    renderer = Renderer(open_device(), budget=budget)
+    renderer = Renderer(open_device(sandbox=sandbox), budget=budget, sandbox=sandbox)
     with show_progress(renderer, total) as batch:
         yield batch
     renderer.close()

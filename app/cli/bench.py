@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..resources.render_choices import DEFAULT_TIMEOUT
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .batch import show_progress
 from .options import (
@@ -68,6 +69,8 @@ def bench(
     form: Form = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Measure how long each node takes.
 
@@ -90,7 +93,7 @@ def bench(
         parsing.parse_scale(scale),
         parsing.parse_frame_options(frame, frames),
     )
-    opened_graph = open_graph(graph, parsing.parse_sets(sets))
+    opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
     if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
@@ -98,14 +101,14 @@ def bench(
         resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
         parsing.find_targets(opened_graph, node),
     )
-    measured_frames = named_frames or (LazyResourceProvider().find_frames(opened_graph, bindings)[0],)
-    renderer = Renderer(open_device(pass_form), budget=0)
+    measured_frames = named_frames or (LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0],)
+    renderer = Renderer(open_device(pass_form, sandbox=sandbox), budget=0, sandbox=sandbox)
     request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
     with show_progress(renderer, len(measured_frames)) as batch:
         benchmark = measure_graph(renderer, opened_graph, request, measured_frames, repeats, warm_up, batch.step)
     if not benchmark.passes:
         raise UsageError(f"{graph}: there is nothing to measure: the graph needs no pass")
-    comparison = compare_with_baseline(benchmark, compare) if compare else None
+    comparison = compare_with_baseline(benchmark, compare, sandbox) if compare else None
     slower = comparison.slower(highest_ratio) if comparison and highest_ratio is not None else ()
     if as_json:
         print_json(_benchmark_facts(graph, benchmark, renderer.device.description, measured_frames, comparison, slower))

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .options import AsJson, read_standard_input
 from .outcome import print_json, print_note
@@ -41,6 +42,8 @@ def check(
         ),
     ] = "",
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Find faults in graphs without rendering.
 
@@ -56,10 +59,10 @@ def check(
         raise UsageError("no graph is given: name files, folders or patterns; see halation check --help")
     if as_json and sarif == "-":
         raise UsageError("--json and --sarif -: both write to standard output; choose one, or name a file for --sarif")
-    checker = GraphChecker(frozenset(_check_rules(off or (), RULES)))
+    checker = GraphChecker(sandbox, frozenset(_check_rules(off or (), RULES)))
     reports = _check_and_print(checker, graphs, quiet=as_json or sarif == "-")
     if sarif:
-        _write_sarif(reports, RULES, sarif)
+        _write_sarif(reports, RULES, sarif, sandbox=sandbox)
     if as_json:
         refused = list_refused_plugins()
         plugin_facts = {"refused_plugins": refused} if refused else {}
@@ -74,7 +77,7 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
     from ..lint.files import find_graphs
 
     reports: list[CheckReport] = []
-    for path in find_graphs(graphs):
+    for path in find_graphs(graphs, checker.sandbox):
         text = read_standard_input() if str(path) == "-" else None
         report = checker.check_file(path) if text is None else checker.check_text(text, "-", "")
         reports.append(report)
@@ -138,7 +141,7 @@ def _report_facts(report: CheckReport, strict: bool) -> dict[str, Any]:
     }
 
 
-def _write_sarif(reports: Sequence[CheckReport], rules: Mapping[str, Rule], file: str) -> None:
+def _write_sarif(reports: Sequence[CheckReport], rules: Mapping[str, Rule], file: str, sandbox: Sandbox) -> None:
     """Write the SARIF log, with paths relative to the repository of the current folder, or else to that folder."""
     from ..lint.sarif import sarif
     from ..lint.surroundings import Surroundings
@@ -149,4 +152,4 @@ def _write_sarif(reports: Sequence[CheckReport], rules: Mapping[str, Rule], file
     if file == "-":
         print_json(log)
     else:
-        write_text_atomically(Path(file), json.dumps(log, indent=2, ensure_ascii=False) + "\n")
+        write_text_atomically(Path(file), json.dumps(log, indent=2, ensure_ascii=False) + "\n", sandbox=sandbox)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..resources.sandbox import UNRESTRICTED, read_process_sandbox
 from .batch import find_middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
@@ -27,12 +28,13 @@ def demo(
     from ..renderer import RenderRequest
     from ..renderer.jobs.job import OutputSettings, run_job
 
+    sandbox = read_process_sandbox()
     rows: list[dict[str, object]] = []
-    with open_batch(output, len(paths())) as batch:
+    with open_batch(output, len(paths()), sandbox=sandbox) as batch:
         for path in paths():
             batch.step(path.stem)
             started = time.perf_counter()
-            graph = document.load(path)
+            graph = document.load(path, sandbox=UNRESTRICTED)
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
             report = run_job(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import AsJson, Inputs, Scale, SizeText
 from .outcome import print_json
@@ -37,6 +38,8 @@ def diff(
     scale: Scale = 1.0,
     frame: Annotated[int | None, typer.Option(help="Render this frame; by default the first frame of A.")] = None,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Show what changed between two graphs.
 
@@ -54,7 +57,7 @@ def diff(
         raise UsageError(f"-o {output}: pictures side by side are written as .png")
     if render and "-" in (a, b):
         raise UsageError("--render reads both graphs twice: name files instead of -")
-    before, after = load_version(a), load_version(b)
+    before, after = load_version(a, sandbox=sandbox), load_version(b, sandbox=sandbox)
     changes = compare_graphs(before, after, layout=layout)
     lines = describe_difference(changes, before, after)
     report: dict[str, Any] = {"a": a, "b": b, "same": not changes, **difference_facts(changes, lines)}
@@ -65,7 +68,7 @@ def diff(
 
         choices = (parsing.parse_inputs(inputs), parsing.parse_size(size), parsing.parse_scale(scale), frame)
         try:
-            report["pictures"] = render_and_compare(a, b, choices, output)
+            report["pictures"] = render_and_compare(a, b, choices, output, sandbox)
         except RenderError as fault:
             fault.exit_code = TROUBLE
             raise

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..resources.sandbox import read_process_sandbox
 from . import parsing
 from .options import Inputs, resolve_inputs
 
@@ -22,12 +23,13 @@ def edit(
 
     if graph is None and inputs:
         raise UsageError("-i needs a graph: name the graph file too")
+    sandbox = read_process_sandbox()
     bindings: dict[str, str] = {}
     if graph is not None:
         from .. import document
 
-        bindings = resolve_inputs(document.load(graph), parsing.parse_inputs(inputs))
+        bindings = resolve_inputs(document.load(graph, sandbox=sandbox), parsing.parse_inputs(inputs))
     from ..editor import edit as open_editor
 
-    open_editor(graph, bindings)
+    open_editor(graph, bindings, sandbox)
     return 0

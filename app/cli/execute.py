@@ -33,7 +33,7 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     from msgspec.structs import replace
 
     started = time.perf_counter()
-    graph = open_graph(Path(job.graph), job.sets, job.document)
+    graph = open_graph(Path(job.graph), job.sets, job.document, sandbox=job.sandbox)
     report_problems(Path(job.graph), graph)
     if job.codec and not job.videos:
         raise UsageError(f"--codec {job.codec}: a codec needs a video: write -o NAME.mp4, .mov, .mkv or .webm")
@@ -88,14 +88,14 @@ def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) ->
         warm()
     from ..inputs.prefetch import Prefetcher
 
-    return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs)
+    return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs, sandbox=job.sandbox)
 
 
 def _choose_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
     """The frames of a job that names none: all of the graph if its files can hold them, else the first."""
     from ..inputs.lazy_provider import LazyResourceProvider
 
-    provider = LazyResourceProvider()
+    provider = LazyResourceProvider(job.sandbox)
     first, last = provider.find_frames(graph, job.inputs)
     return tuple(range(first, last + 1)) if parsing.have_frame_number(job.files) else (first,)
 
@@ -123,7 +123,7 @@ def _is_independent(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -
 
     if graph.settings.preroll is not None:
         return True
-    provider = LazyResourceProvider()
+    provider = LazyResourceProvider(job.sandbox)
     plan = compile_graph(graph, Request(targets, provider.bind(graph, job.inputs), frame=job.frames[0]), provider)
     for node in plan.remembering:
         print_note(f"one process renders all frames: node '{node}' needs the frame before each")
@@ -144,10 +144,16 @@ def _render_here(
     from ..renderer.jobs.job import OutputSettings, run_job
 
     loaded_at = time.perf_counter()
-    device = open_pinned(job.memory) if job.deterministic else open_device(job.form, job.memory)
+    device = (
+        open_pinned(job.memory, sandbox=job.sandbox)
+        if job.deterministic
+        else open_device(job.form, job.memory, sandbox=job.sandbox)
+    )
     # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
     leads_up = len(job.frames) > 1 and graph.settings.preroll is not None
-    renderer = Renderer(device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, ahead=prefetcher)
+    renderer = Renderer(
+        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, ahead=prefetcher, sandbox=job.sandbox
+    )
     print_note(renderer.device.description)
     opened_at = time.perf_counter()
     precision = "float" if job.deterministic else job.precision

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import (
     AsJson,
@@ -47,6 +48,8 @@ def explain(
     memory: Memory = None,
     dot: Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")] = False,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Print the passes that a graph compiles to.
 
@@ -63,9 +66,9 @@ def explain(
         raise UsageError("--dot and --json: choose one")
     form_or_device, memory_limit = parsing.parse_form_or_device(form), parsing.parse_memory(memory)
     parsed_precision = parsing.parse_precision(precision) if precision is not None else None
-    opened_graph = open_graph(graph, parsing.parse_sets(sets))
+    opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
-    provider = LazyResourceProvider()
+    provider = LazyResourceProvider(sandbox)
     bindings = resolve_inputs(opened_graph, parsing.parse_inputs(inputs))
     request = compiler.Request(
         parsing.find_targets(opened_graph, node),
@@ -74,7 +77,7 @@ def explain(
         parsing.parse_scale(scale),
         frame if frame is not None else provider.find_frames(opened_graph, bindings)[0],
     )
-    target = replace(_choose_target(form_or_device), memory=memory_limit)
+    target = replace(_choose_target(form_or_device, sandbox), memory=memory_limit)
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
@@ -85,7 +88,7 @@ def explain(
     return 0
 
 
-def _choose_target(form: Form | Literal["device"]) -> Target:
+def _choose_target(form: Form | Literal["device"], sandbox: Sandbox) -> Target:
     """The device to plan for: that of this machine, or a null device with a form."""
     from msgspec.structs import replace
 
@@ -95,4 +98,4 @@ def _choose_target(form: Form | Literal["device"]) -> Target:
         return replace(NULL, form=form)
     from ..renderer import open_device
 
-    return open_device().target
+    return open_device(sandbox=sandbox).target

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import AsJson, GraphFile, Node, Sets, SizeText, open_graph, report_problems
 from .outcome import print_json, print_note
@@ -31,6 +32,8 @@ def export_isf(
     ] = "",
     size: SizeText = None,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Write a graph as one ISF shader.
 
@@ -43,7 +46,7 @@ def export_isf(
 
     if as_json and output is None:
         raise UsageError("--json and the shader would both go to standard output: write the shader to a file with -o")
-    opened_graph = open_graph(graph, parsing.parse_sets(sets))
+    opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
     if selection:
         from ..graph.selection import select_nodes
@@ -53,7 +56,7 @@ def export_isf(
         except GraphError as fault:
             raise UsageError(f"--select {selection}: {fault}") from None
     target = _choose_port(opened_graph, node)
-    shader = export_shader(opened_graph, target, LazyResourceProvider(), size=parsing.parse_size(size))
+    shader = export_shader(opened_graph, target, LazyResourceProvider(sandbox), size=parsing.parse_size(size))
     if shader.reasons:
         reasons = [f"{_name_owner(owner)} {why}" for owner, why in shader.reasons]
         for line in reasons[1:] if len(reasons) > 1 else ():
@@ -67,7 +70,7 @@ def export_isf(
     else:
         from ..resources.atomic_write import write_text_atomically
 
-        write_text_atomically(output, shader.text)
+        write_text_atomically(output, shader.text, sandbox=sandbox)
     if as_json:
         print_json({"file": str(output), "notes": list(shader.notes)})
     return 0

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from .options import AsJson, read_standard_input
 from .outcome import print_json, print_note
 
@@ -29,6 +30,8 @@ def fmt(
         ),
     ] = "",
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Rewrite graph files in the canonical format.
 
@@ -39,18 +42,21 @@ def fmt(
     from ..errors import UsageError
     from ..lint.files import find_graphs
     from ..resources.atomic_write import write_text_atomically
+    from ..resources.input_files import read_bytes
 
     if any(str(path) == "-" for path in graphs):
         if len(graphs) > 1 or as_json:
             raise UsageError(
                 "- cannot be combined with files or --json: standard input is formatted to standard output"
             )
-        return _format_input(name, check)
+        return _format_input(name, check, sandbox=sandbox)
     # All files are read before the first is written: an invalid file leaves all of them as they are.
-    formatted = {path: document.dumps(document.load(path)) for path in find_graphs(graphs)}
-    changed = [path for path, text in formatted.items() if path.read_bytes() != text.encode()]
+    formatted = {
+        path: document.dumps(document.load(path, sandbox=sandbox)) for path in find_graphs(graphs, sandbox=sandbox)
+    }
+    changed = [path for path, text in formatted.items() if read_bytes(path, sandbox) != text.encode()]
     for path in changed if not check else ():
-        write_text_atomically(path, formatted[path])
+        write_text_atomically(path, formatted[path], sandbox=sandbox)
     if as_json:
         print_json({"changed": [str(path) for path in changed], "checked": len(formatted), "written": not check})
     else:
@@ -60,12 +66,14 @@ def fmt(
     return 1 if check and changed else 0
 
 
-def _format_input(name: str, check: bool) -> int:
+def _format_input(name: str, check: bool, sandbox: Sandbox) -> int:
     """Format standard input to standard output, as text editors do when they save the file `name`."""
     from .. import document
 
     text = read_standard_input()
-    formatted = document.dumps(document.loads(text, name or "-", str(Path(name).parent) if name else ""))
+    formatted = document.dumps(
+        document.loads(text, name or "-", str(Path(name).parent) if name else "", sandbox=sandbox)
+    )
     if not check:
         sys.stdout.buffer.write(formatted.encode())
     return 1 if check and text != formatted else 0

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.sandbox import UNRESTRICTED, read_process_sandbox
 from .batch import find_middle_frame, open_batch
 from .options import AsJson
 from .outcome import print_json
@@ -54,17 +55,18 @@ def gallery(
     from ..media.comparison.contact_sheet import write_sheet
     from .specimen import drawable_outputs
 
+    sandbox = read_process_sandbox()
     rows: list[dict[str, object]] = []
     picture_count = (
         len(paths()) + len(load_animated_presets()) + sum(bool(drawable_outputs(node)) for node in catalogue().values())
     )
-    with open_batch(output, picture_count) as batch:
+    with open_batch(output, picture_count, sandbox=sandbox) as batch:
         for name, make_sheet in (("presets", make_preset_sheet), ("time", make_time_sheet), ("nodes", make_node_sheet)):
             if make_sheet is make_time_sheet and not load_animated_presets():
                 continue
             started, file = time.perf_counter(), output / f"{name}.jpg"
             sheet = make_sheet(batch.renderer, batch.step)
-            write_sheet(file, sheet.light, ", ".join(sheet.names))
+            write_sheet(file, sheet.light, ", ".join(sheet.names), sandbox=sandbox)
             seconds = time.perf_counter() - started
             batch.say(f"{name:<24} {len(sheet.names):>3} pictures  {seconds:5.2f} s  {file}")
             rows.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(seconds, 3)})
@@ -83,7 +85,7 @@ def make_preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> She
     pictures: dict[str, Array] = {}
     for path in paths():
         step(path.stem)
-        graph = document.load(path)
+        graph = document.load(path, sandbox=UNRESTRICTED)
         (pictures[path.stem],) = render_display_frames(graph, renderer, (find_middle_frame(renderer, graph),)).values()
     return Sheet(make_grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
 
@@ -107,7 +109,9 @@ def load_animated_presets() -> dict[str, Graph]:
 
     from .. import document
 
-    return {path.stem: graph for path in paths() if (graph := document.load(path)).settings.frames}
+    return {
+        path.stem: graph for path in paths() if (graph := document.load(path, sandbox=UNRESTRICTED)).settings.frames
+    }
 
 
 def render_display_frames(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:

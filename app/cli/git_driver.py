@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.sandbox import read_process_sandbox
 from .outcome import print_note
 from .versions import is_colored, paint, print_lines
 
@@ -89,11 +90,11 @@ def _merge(base: str, ours: str, theirs: str, path: str) -> int:
             ["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs], check=False
         ).returncode
     try:
-        merge_result = merge_versions(base, ours, theirs)
+        merge_result = merge_versions(base, ours, theirs, read_process_sandbox())
     except DocumentError as fault:
         print_note(f"halation: {path}: it cannot be merged, and our side stays as it is: {fault}")
         return CONFLICTS
-    write_text_atomically(Path(ours), merge_result.text)
+    write_text_atomically(Path(ours), merge_result.text, sandbox=read_process_sandbox())
     report_conflicts(merge_result, path)
     return CONFLICTS if merge_result.conflicts else 0
 
@@ -104,7 +105,7 @@ def _parse_graph(text: str, name: str) -> Graph | None:
     from ..errors import DocumentError
 
     try:
-        return document.loads(text, name, follow=False)
+        return document.loads(text, name, sandbox=None)
     except DocumentError:
         return None
 

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from ..resources.sandbox import read_process_sandbox
 from .options import AsJson
 from .outcome import print_json
 
@@ -107,11 +108,11 @@ def _change_attributes(file: Path, patterns: Sequence[str], only_these: bool, re
         if removed and not remaining:
             file.unlink()
         elif removed:
-            write_text_atomically(file, "".join(f"{line}\n" for line in remaining))
+            write_text_atomically(file, "".join(f"{line}\n" for line in remaining), sandbox=read_process_sandbox())
         return [f"{file}: removed {line}" for line in removed]
     new = sorted(own_lines.difference(lines))
     if new:
-        write_text_atomically(file, "".join(f"{line}\n" for line in (*lines, *new)))
+        write_text_atomically(file, "".join(f"{line}\n" for line in (*lines, *new)), sandbox=read_process_sandbox())
     return [f"{file}: {line}" for line in new]
 
 
@@ -127,7 +128,7 @@ def _find_patterns(root: Path) -> list[str]:
 def _select_graphs(files: Iterable[Path]) -> list[Path]:
     from ..lint.files import is_graph
 
-    return [path for path in files if path.is_file() and is_graph(path)]
+    return [path for path in files if path.is_file() and is_graph(path, sandbox=read_process_sandbox())]
 
 
 def _folder_pattern(path: Path, root: Path) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json
 
@@ -29,6 +30,8 @@ def info(
         ),
     ] = None,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Show layers, metadata and camera of a picture.
 
@@ -38,18 +41,18 @@ def info(
     from ..render_layers.analysis import analyze_render
     from ..render_layers.report import format_report
 
-    sequence = find_sequence(str(file))
+    sequence = find_sequence(str(file), sandbox=sandbox)
     if sequence is not None:
-        check_has_files(sequence)
-    analysis = analyze_render(sequence.path(sequence.frames[0]) if sequence else file, before)
+        check_has_files(sequence, sandbox=sandbox)
+    analysis = analyze_render(sequence.path(sequence.frames[0]) if sequence else file, before, sandbox=sandbox)
     if as_json:
-        print_json({**(_sequence_facts(sequence) if sequence else {}), **_analysis_facts(analysis)})
+        print_json({**(_sequence_facts(sequence) if sequence else {}), **_analysis_facts(analysis, sandbox=sandbox)})
         return 0
     first_block, gap, rest = "\n".join(format_report(analysis)).partition("\n\n")
     print(
         f"{_format_sequence(sequence)}\n\n{first_block}"
         if sequence
-        else f"{first_block}{_describe_neighbors(str(file))}",
+        else f"{first_block}{_describe_neighbors(str(file), sandbox=sandbox)}",
         rest,
         sep=gap,
     )
@@ -62,12 +65,12 @@ def _format_sequence(sequence: FrameSequence) -> str:
     return "\n".join([*lines, f"  {sequence.missing} missing: {sequence.gaps_text}"] if sequence.missing else lines)
 
 
-def _describe_neighbors(path: str) -> str:
+def _describe_neighbors(path: str, sandbox: Sandbox) -> str:
     """A line about the sequence that a picture is part of; empty for a single picture."""
     from ..media.sequences import find_sequence, suggest_pattern
 
-    pattern = suggest_pattern(path)
-    sequence = find_sequence(pattern) if pattern else None
+    pattern = suggest_pattern(path, sandbox=sandbox)
+    sequence = find_sequence(pattern, sandbox=sandbox) if pattern else None
     return (
         f"\n  one of {len(sequence.frames)} frames of {sequence.pattern.text}: {sequence.frames_text}"
         if sequence
@@ -94,7 +97,7 @@ def _sequence_facts(sequence: FrameSequence) -> dict[str, Any]:
     }
 
 
-def _analysis_facts(analysis: RenderAnalysis) -> dict[str, Any]:
+def _analysis_facts(analysis: RenderAnalysis, sandbox: Sandbox) -> dict[str, Any]:
     """All facts about a picture, as JSON."""
     from ..media.color_spaces import describe_color_spaces
 
@@ -129,7 +132,7 @@ def _analysis_facts(analysis: RenderAnalysis) -> dict[str, Any]:
             }
             for item in analysis.passes
         ],
-        "color_spaces": [list(row) for row in describe_color_spaces(header.info.path)],
+        "color_spaces": [list(row) for row in describe_color_spaces(header.info.path, sandbox=sandbox)],
         "roles": {role: layer.name if (layer := analysis.find_layer(role)) else None for role in analysis.roles},
         "undecided": {role: [layer.name for layer in layers] for role, layers in analysis.rivals.items()},
         "conventions": {

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json, print_note
 from .versions import read_version
@@ -42,6 +43,8 @@ def merge(
         ),
     ] = None,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Merge two versions of a graph.
 
@@ -54,16 +57,16 @@ def merge(
         if resolve:
             if output:
                 raise UsageError("--resolve changes the named graphs themselves: leave out -o")
-            return _resolve(graphs, resolve, as_json)
+            return _resolve(graphs, resolve, as_json, sandbox=sandbox)
         if len(graphs) != 3:
             raise UsageError("merging needs three versions: name BASE, OURS and THEIRS; see halation merge --help")
         if graphs.count("-") > 1:
             raise UsageError("- can be used only once: name files for the others")
-        merge_result = merge_versions(*graphs)
+        merge_result = merge_versions(*graphs, sandbox=sandbox)
         if output:
             from ..resources.atomic_write import write_text_atomically
 
-            write_text_atomically(output, merge_result.text)
+            write_text_atomically(output, merge_result.text, sandbox=sandbox)
     except OutputError as fault:
         fault.exit_code = TROUBLE
         raise
@@ -77,21 +80,25 @@ def merge(
     return 1 if merge_result.conflicts else 0
 
 
-def merge_versions(base: str, ours: str, theirs: str) -> MergedGraph:
+def merge_versions(base: str, ours: str, theirs: str, sandbox: Sandbox) -> MergedGraph:
     """Merge three versions; an empty file as base is an empty graph. Raises DocumentError that names the side."""
     from ..document.diff_merge import merge_graphs
 
-    return merge_graphs(_load_side(base, "base"), _load_side(ours, "ours"), _load_side(theirs, "theirs"))
+    return merge_graphs(
+        _load_side(base, "base", sandbox=sandbox),
+        _load_side(ours, "ours", sandbox=sandbox),
+        _load_side(theirs, "theirs", sandbox=sandbox),
+    )
 
 
-def _load_side(source: str, side: str) -> Graph:
+def _load_side(source: str, side: str, sandbox: Sandbox) -> Graph:
     from .. import document
     from ..graph import Graph
 
-    text, folder = read_version(source)
+    text, folder = read_version(source, sandbox=sandbox)
     if side == "base" and not text.strip():
         return Graph()
-    return document.loads(text, f"{source} ({side})", folder, follow=False)
+    return document.loads(text, f"{source} ({side})", folder, sandbox=None)
 
 
 def report_conflicts(merge_result: MergedGraph, name: str) -> None:
@@ -99,12 +106,12 @@ def report_conflicts(merge_result: MergedGraph, name: str) -> None:
     from ..document import loads
     from ..graph import problems
 
-    for problem in problems(loads(merge_result.text, follow=False)) if merge_result.conflicts else ():
+    for problem in problems(loads(merge_result.text, sandbox=None)) if merge_result.conflicts else ():
         if problem.rule.name == "unmerged":
             print_note(f"{name}: {problem.sentence}")
 
 
-def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> int:
+def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool, sandbox: Sandbox) -> int:
     """Resolve conflicts in files; the exit code is 1 if some are left."""
     from .. import document
     from ..document.canonical import pretty
@@ -118,13 +125,13 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     texts: dict[Path, str] = {}
     for path in map(Path, graphs):
         try:
-            tree = resolve_conflicts(parse(read_text(path), str(path)), chosen)
+            tree = resolve_conflicts(parse(read_text(path, sandbox=sandbox), str(path)), chosen)
         except UsageError as fault:
             raise UsageError(f"{path}: {fault}") from None
-        texts[path] = document.dumps(document.loads(pretty(tree), str(path), str(path.parent), follow=False))
+        texts[path] = document.dumps(document.loads(pretty(tree), str(path), str(path.parent), sandbox=None))
     open_conflicts: dict[str, list[str]] = {}
     for path, text in texts.items():
-        write_text_atomically(path, text)
+        write_text_atomically(path, text, sandbox=sandbox)
         open_conflicts[str(path)] = [conflict.path for conflict in read_conflicts(parse(text, str(path)))]
     if as_json:
         print_json({"graphs": [{"graph": path, "conflicts": open} for path, open in open_conflicts.items()]})

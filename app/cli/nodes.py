@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from .facts import default_text, hard_range, node_doc, node_facts, plan_facts, socket_note, socket_type, soft_range
 from .options import AsJson
 from .outcome import print_json
@@ -23,6 +24,8 @@ def nodes(
         bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
     ] = False,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """List all nodes, or describe one.
 
@@ -35,7 +38,7 @@ def nodes(
 
     classes = catalogue()
     if id.endswith((".fs", ".glsl")):
-        classes = {id: _load_code(id)}
+        classes = {id: _load_code(id, sandbox=sandbox)}
     if id and id not in classes:
         raise UsageError(f"there is no node '{id}'{did_you_mean(id, classes)}")
     if markdown and (id or as_json):
@@ -64,14 +67,14 @@ def _plugin_facts() -> dict[str, Any]:
     return {"refused_plugins": refused} if refused else {}
 
 
-def _load_code(file: str) -> type[Node]:
+def _load_code(file: str, sandbox: Sandbox) -> type[Node]:
     """The node that a code file defines. Raises UsageError."""
     from ..custom_nodes import CodeFault, node_type
-    from ..document.code import read_code
+    from ..document.code import read_code_file
     from ..errors import UsageError
 
     try:
-        return node_type(read_code("isf" if file.endswith(".fs") else "glsl", None, file, ""))
+        return node_type(read_code_file("isf" if file.endswith(".fs") else "glsl", file, "", sandbox=sandbox))
     except CodeFault as fault:
         raise UsageError(f"{file}, {fault}" if fault.line else str(fault)) from None
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.sandbox import Sandbox, read_process_sandbox
 from . import parsing
 from .outcome import print_note
 
@@ -84,19 +85,21 @@ def add_root(command: Callable[..., int]) -> Callable[..., int]:
 
     @functools.wraps(command)
     def run(*args: Any, root: Root = None, **options: Any) -> int:
-        from ..resources.sandbox import fenced
-
-        with fenced(root):
-            return command(*args, **options)
+        outer = read_process_sandbox()
+        return command(*args, sandbox=outer if root is None else outer.narrow(root), **options)
 
     signature = inspect.signature(command, eval_str=True)
+    parameters = [parameter for name, parameter in signature.parameters.items() if name != "sandbox"]
     root_parameter = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
-    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), root_parameter])  # type: ignore[attr-defined]
+    run.__signature__ = signature.replace(parameters=[*parameters, root_parameter])  # type: ignore[attr-defined]
     run.__annotations__ = {**command.__annotations__, "root": Root}
+    del run.__annotations__["sandbox"]
     return run
 
 
-def open_graph(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "") -> Graph:
+def open_graph(
+    path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "", *, sandbox: Sandbox
+) -> Graph:
     """Load a graph and set the values of `--set` in it. Raises DocumentError, UsageError.
 
     The path "-" stands for the text `document`, or for standard input if that is empty; relative paths in it start at
@@ -104,7 +107,11 @@ def open_graph(path: Path, sets: Mapping[str, str] = MappingProxyType({}), docum
     """
     from ..document import load, loads
 
-    graph = loads(document or read_standard_input(), "-") if str(path) == "-" else load(path)
+    graph = (
+        loads(document or read_standard_input(), "-", sandbox=sandbox)
+        if str(path) == "-"
+        else load(path, sandbox=sandbox)
+    )
     for name, text in sets.items():
         graph = override_value(graph, name, text)
     return graph

@@ -14,6 +14,7 @@ from .versions import load_version
 if TYPE_CHECKING:
     from ..graph import Graph
     from ..media.comparison.metrics import PictureDifference
+    from ..resources.sandbox import Sandbox
 
 Pictures = Mapping[str, Any]
 """Arrays [h, w, c] by output."""
@@ -22,7 +23,9 @@ RenderChoices = tuple[Mapping[str, str], tuple[int, int] | None, float, int | No
 """Files of inputs, size, scale, and the frame or None for the first of the first graph."""
 
 
-def render_and_compare(a: str, b: str, choices: RenderChoices, output: Path | None) -> list[dict[str, Any]]:
+def render_and_compare(
+    a: str, b: str, choices: RenderChoices, output: Path | None, sandbox: Sandbox
+) -> list[dict[str, Any]]:
     """Measure how much each output of two graphs differs; `output` is a file for the pictures side by side.
 
     Raises HalationError.
@@ -31,11 +34,11 @@ def render_and_compare(a: str, b: str, choices: RenderChoices, output: Path | No
     from ..renderer import Renderer, open_device
 
     inputs, size, scale, frame = choices
-    graphs = [load_version(source, follow=True) for source in (a, b)]
+    graphs = [load_version(source, follow=True, sandbox=sandbox) for source in (a, b)]
     for source, graph in zip((a, b), graphs, strict=True):
         report_problems(Path(source), graph)
     bindings = _resolve_both_inputs(graphs, inputs)
-    renderer = Renderer(open_device())
+    renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
     print_note(renderer.device.description)
     rendered: list[Pictures] = []
     try:
@@ -54,7 +57,7 @@ def render_and_compare(a: str, b: str, choices: RenderChoices, output: Path | No
         else:
             measurements.append({"output": name, "same": False, "words": f"only {a if name in before else b} has it"})
     if output:
-        _write_side_by_side(output, (a, b), graphs, before, after)
+        _write_side_by_side(output, (a, b), graphs, before, after, sandbox)
     return measurements
 
 
@@ -119,7 +122,7 @@ def _is_color(graphs: Sequence[Graph], name: str) -> bool:
 
 
 def _write_side_by_side(
-    output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures
+    output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures, sandbox: Sandbox
 ) -> None:
     """Write both graphs' pictures side by side, in a row per output."""
     from ..media.comparison.side_by_side import PicturePair, write_side_by_side
@@ -128,5 +131,5 @@ def _write_side_by_side(
     for name in dict.fromkeys((*before, *after)):
         view = next(graph.outputs[name].view for graph in graphs if name in graph.outputs)
         pairs[name] = PicturePair(before.get(name), after.get(name), _is_color(graphs, name), view)
-    write_side_by_side(output, pairs, names)
+    write_side_by_side(output, pairs, names, sandbox=sandbox)
     print_note(str(output))

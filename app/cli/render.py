@@ -8,6 +8,7 @@ import typer
 
 from ..errors import UsageError
 from ..resources.render_choices import DEFAULT_TIMEOUT
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .execute import execute
 from .options import (
@@ -89,6 +90,8 @@ def render(
     ] = "bar",
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Render a graph to files: one frame, or many.
 
@@ -99,7 +102,6 @@ def render(
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     from ..renderer.jobs.render_job import RenderJob
-    from ..resources.sandbox import sandbox_root
 
     job = RenderJob(
         graph=str(graph),
@@ -124,6 +126,6 @@ def render(
         resume=resume,
         processes=jobs,
         timeout=timeout,
-        root=sandbox_root(),
+        sandbox=sandbox,
     )
     return execute(job, parsing.parse_progress(progress), as_json)

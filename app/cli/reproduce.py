@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..resources.render_choices import DEFAULT_TIMEOUT
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import AsJson, report_problems
 from .outcome import print_json, print_note
@@ -56,6 +57,8 @@ def reproduce(
     ] = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Render a picture again from its header, and compare.
 
@@ -65,9 +68,9 @@ def reproduce(
     from ..renderer.provenance.recipe import read_recipe
 
     given_files = parsing.parse_assignments(inputs or (), "-i")
-    recipe = read_recipe(picture)
-    located_files = FileFinder(recipe, given_files, search or ()).find_all()
-    saved_path = _save_graph(recipe, located_files, graph) if graph else ""
+    recipe = read_recipe(picture, sandbox=sandbox)
+    located_files = FileFinder(recipe, given_files, search or (), sandbox=sandbox).find_all()
+    saved_path = _save_graph(recipe, located_files, graph, sandbox=sandbox) if graph else ""
     if graph and not output:
         if as_json:
             print_json(
@@ -82,7 +85,7 @@ def reproduce(
     from ..renderer import Renderer
     from ..renderer.provenance.reproduction import open_matching_device, reproduce
 
-    renderer = Renderer(open_matching_device(recipe), budget=0)
+    renderer = Renderer(open_matching_device(recipe, sandbox=sandbox), budget=0, sandbox=sandbox)
     print_note(renderer.device.description)
     reproduction = reproduce(renderer, recipe, located_files, tuple(output or ()), tolerance)
     if as_json:
@@ -92,7 +95,7 @@ def reproduce(
     return 0 if reproduction.same else 1
 
 
-def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path) -> str:
+def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path, sandbox: Sandbox) -> str:
     """Save the graph with the paths of the located files; the path that it was saved to."""
     from dataclasses import replace
 
@@ -106,7 +109,7 @@ def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path) -> s
     if str(path) == "-":
         print(document.dumps(moved_graph), end="")
         return "-"
-    document.save(moved_graph, path)
+    document.save(moved_graph, path, sandbox=sandbox)
     print_note(f"{path}: the graph of {recipe.path}")
     return str(path)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..resources.render_choices import DEFAULT_TIMEOUT
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .batch import open_batch
 from .options import (
@@ -73,6 +74,8 @@ def sweep(
     precision: Precision = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Render a graph at many values onto one sheet.
 
@@ -91,7 +94,7 @@ def sweep(
     parsed_precision = parsing.parse_precision(precision) if precision is not None else None
     named_frames = parsing.parse_frame_options(frame, frames) or ()
     canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
-    opened_graph, sweep_axes = parse_axes(open_graph(graph), sets or (), named_frames)
+    opened_graph, sweep_axes = parse_axes(open_graph(graph, sandbox=sandbox), sets or (), named_frames)
     report_problems(graph, opened_graph)
     if (code := rerun_watched(context, graph, opened_graph, timeout)) is not None:
         return code
@@ -99,11 +102,13 @@ def sweep(
         resolve_inputs(opened_graph, parsing.parse_inputs(inputs)),
         parsing.find_targets(opened_graph, node),
     )
-    frame_of_all = named_frames[0] if named_frames else LazyResourceProvider().find_frames(opened_graph, bindings)[0]
+    frame_of_all = (
+        named_frames[0] if named_frames else LazyResourceProvider(sandbox).find_frames(opened_graph, bindings)[0]
+    )
     shown_output = _choose_output(opened_graph, show, node)
     shown_view = view or ("" if node else opened_graph.outputs[shown_output].view)
     count = len(sweeping.list_cells(opened_graph, sweep_axes, frame_of_all))
-    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=shown_view)
+    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=shown_view, sandbox=sandbox)
     if output.suffix.casefold() in (".exr", ".hdr"):
         raise UsageError(f"{output}: a sheet cannot be written in this format: use .png, .jpg, .tif or .webp")
     cell_files = (
@@ -111,14 +116,16 @@ def sweep(
     )
     request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
     title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in sweep_axes)}"
-    with open_batch(cells or output.parent, count, DEFAULT_BUDGET) as batch:
+    with open_batch(cells or output.parent, count, DEFAULT_BUDGET, sandbox=sandbox) as batch:
         sweep_request = sweeping.SweepRequest(
             request, shown_output, shown_view, cell, columns, cell_files, _add_dot(ending), title
         )
         sheet = sweeping.render_sweep(batch.renderer, opened_graph, sweep_axes, sweep_request, frame_of_all, batch.step)
         device = batch.device
     metadata = {"ImageDescription": "\n".join(item.label for item in sheet.cells)}
-    media.write_picture(output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata)
+    media.write_picture(
+        output, {"": sheet.light}, kinds={"": Kind.IMAGE}, view="none", metadata=metadata, sandbox=sandbox
+    )
     seconds = time.perf_counter() - started
     if as_json:
         print_json(_sweep_facts(output, sheet, device, seconds))

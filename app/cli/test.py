@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json, print_note
 
@@ -56,6 +57,8 @@ def test(
         ),
     ] = True,
     as_json: AsJson = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Compare renders with golden pictures.
 
@@ -64,7 +67,7 @@ def test(
     from ..regression.selection import select_cases
     from ..regression.suites import load_suites
 
-    cases = select_cases(load_suites(suites or [Path()]), select)
+    cases = select_cases(load_suites(suites or [Path()], sandbox), select)
     if listed:
         return _list_cases(cases, as_json)
     from ..regression.case_runner import RunOptions
@@ -74,7 +77,7 @@ def test(
     from ..regression.results import as_json as for_machines
 
     check_report(report, junit)
-    options = RunOptions(update, out, pictures=report is not None, deterministic=deterministic)
+    options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
     session = run_cases(
         cases,
         options,
@@ -83,9 +86,9 @@ def test(
         hears=None if as_json else lambda outcome: print(_format_outcome(outcome)),
     )
     if report is not None:
-        write_report(session, report)
+        write_report(session, report, sandbox=sandbox)
     if junit is not None:
-        write_junit(session, junit)
+        write_junit(session, junit, sandbox=sandbox)
     if as_json:
         print_json(for_machines(session))
     else:

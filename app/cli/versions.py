@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..resources.sandbox import Sandbox
 from .options import read_standard_input
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 _COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}
 
 
-def read_version(source: str) -> tuple[str, str]:
+def read_version(source: str, sandbox: Sandbox) -> tuple[str, str]:
     """The text of a file, of `REV:path` in git or of standard input (`-`), and the folder of its relative paths.
 
     Raises DocumentError, UsageError.
@@ -30,15 +31,15 @@ def read_version(source: str) -> tuple[str, str]:
     path = Path(source)
     if ":" in source and not path.drive and not os.path.lexists(path):
         return read_revision(source)
-    return read_text(path), str(path.parent)
+    return read_text(path, sandbox=sandbox), str(path.parent)
 
 
-def load_version(source: str, *, follow: bool = False, name: str = "") -> Graph:
+def load_version(source: str, *, follow: bool = False, name: str = "", sandbox: Sandbox) -> Graph:
     """Load a version of a graph, with `follow` also the groups in other files. Raises DocumentError, UsageError."""
     from .. import document
 
-    text, folder = read_version(source)
-    return document.loads(text, name or source, folder, follow=follow)
+    text, folder = read_version(source, sandbox=sandbox)
+    return document.loads(text, name or source, folder, sandbox=sandbox if follow else None)
 
 
 def is_colored() -> bool:

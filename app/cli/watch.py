@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import HalationError, UsageError
+from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import (
     Frames,
@@ -51,6 +52,8 @@ def watch(
     view: Annotated[str, typer.Option(help="OpenColorIO view of files that are not EXR.")] = "",
     compression: Annotated[str, typer.Option(help="EXR compression, as for render.")] = "zip",
     as_json: Annotated[bool, typer.Option("--json", help="Print a line with a JSON object for every render.")] = False,
+    *,
+    sandbox: Sandbox,
 ) -> int:
     """Render again whenever a file changes, until Ctrl-C.
 
@@ -66,11 +69,11 @@ def watch(
     parsed_precision = parsing.parse_precision(precision) if precision is not None else None
     canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
     destinations, named_frames = parsing.parse_destinations(output), parsing.parse_frame_options(frame, frames)
-    renderer = Renderer(open_device())
+    renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
     print_note(renderer.device.description)
 
     def load_graph() -> Graph:
-        graph_now = open_graph(graph, parsing.parse_sets(sets))
+        graph_now = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
         report_problems(graph, graph_now)
         return graph_now
 
@@ -79,7 +82,7 @@ def watch(
             resolve_inputs(graph_now, parsing.parse_inputs(inputs)),
             parsing.find_targets(graph_now, node),
         )
-        first, last = (0, 0) if named_frames else LazyResourceProvider().find_frames(graph_now, bindings)
+        first, last = (0, 0) if named_frames else LazyResourceProvider(sandbox).find_frames(graph_now, bindings)
         every = named_frames or (tuple(range(first, last + 1)) if parsing.have_frame_number(destinations) else (first,))
         request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
         return run_job(
@@ -92,7 +95,7 @@ def watch(
         )
 
     continuous_renderer = ContinuousRenderer(
-        graph, lambda graph_now: resolve_inputs(graph_now, parsing.parse_inputs(inputs)), load_graph, render
+        graph, lambda graph_now: resolve_inputs(graph_now, parsing.parse_inputs(inputs)), load_graph, render, sandbox
     )
     has_rendered = False
     try:

@@ -8,9 +8,12 @@ from .options import AsJson, read_standard_input
 
 def worker(as_json: AsJson = True) -> int:
     """Run the render job that is read as JSON from standard input, and report in JSON."""
+    from msgspec.structs import replace
+
     from ..renderer.jobs.render_job import RenderJob
-    from ..resources.sandbox import fenced
+    from ..resources.sandbox import read_process_sandbox
 
     job = RenderJob.from_json(read_standard_input())
-    with fenced(job.root or None):
-        return execute(job, "json", as_json)
+    if job.sandbox.root:
+        job = replace(job, sandbox=read_process_sandbox().narrow(job.sandbox.root))
+    return execute(job, "json", as_json)

@@ -1,18 +1,17 @@
-"""The files that a color config reads besides itself: with `--root` they must lie inside of the fence too."""
+"""The files that a color config reads besides itself: with `--root` they must lie inside of the folder too."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from typing import Any
 
-from ..resources.sandbox import ROOT, outside
+from ..resources.sandbox import Sandbox
 
 
-def find_config_fault(config: Any) -> str:
+def find_config_fault(config: Any, sandbox: Sandbox) -> str:
     """Why a config may not be used, as the rest of a sentence about it; "" if it may be."""
-    for table in _find_tables(config) if os.environ.get(ROOT) else ():
-        if reason := outside(table):
+    for table in _find_tables(config) if sandbox.root else ():
+        if reason := sandbox.fault(table):
             return f"its table {table} {reason}"
     return ""
 

@@ -12,14 +12,12 @@ from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
-from halation.nodes import ColorSettings
 
 from ..errors import UsageError
 from .management import (
     BUILT_IN,
-    DEFAULT_COLOR,
     ColorManager,
-    get_color_manager,
+    get_default_color_manager,
     load_builtin_config,
     load_ocio,
     load_studio_config,
@@ -33,60 +31,60 @@ _PLAIN_VIEW = "Un-tone-mapped"
 """The view of the built-in config that only encodes."""
 
 
-def list_displays(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_displays(manager: ColorManager | None = None) -> tuple[str, ...]:
     """The kinds of screen that pictures can be shown on, the default first.
 
     Raises:
         GraphError, UsageError: no config.
     """
-    config = get_color_manager(color).config
+    config = (manager or get_default_color_manager()).config
     first = config.getDefaultDisplay()
     return (*([first] if first else ()), *(name for name in config.getDisplays() if name != first))
 
 
-def list_views(display: str = "", color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_views(display: str = "", manager: ColorManager | None = None) -> tuple[str, ...]:
     """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
 
     Raises:
         UsageError: unknown display.
         GraphError, UsageError: no config.
     """
-    config, screen = get_color_manager(color).config, find_display(display, color)
+    config, screen = (manager or get_default_color_manager()).config, find_display(display, manager)
     first = config.getDefaultView(screen) if screen else ""
     names = tuple(config.getViews(screen)) if screen else ()
     return (*([first] if first in names else ()), *(name for name in names if name != first), NO_VIEW)
 
 
-def list_looks(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
+def list_looks(manager: ColorManager | None = None) -> tuple[str, ...]:
     """The looks of the config. Raises GraphError, UsageError: no config."""
-    return tuple(get_color_manager(color).config.getLookNames())
+    return tuple((manager or get_default_color_manager()).config.getLookNames())
 
 
-def find_view(name: str, display: str = "", color: ColorSettings = DEFAULT_COLOR) -> str:
+def find_view(name: str, display: str = "", manager: ColorManager | None = None) -> str:
     """The view that `name`, or its beginning in any case, means; "" is the default.
 
     Raises:
         UsageError: there is none, or more than one.
     """
-    choices = list_views(display, color)
+    choices = list_views(display, manager)
     return choices[0] if not name else _match_name(name, choices, "view")
 
 
-def find_display(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
+def find_display(name: str, manager: ColorManager | None = None) -> str:
     """The display that `name`, or its beginning in any case, means; "" is the default. Raises UsageError."""
-    choices = list_displays(color)
+    choices = list_displays(manager)
     return (choices[0] if choices else "") if not name else _match_name(name, choices, "display")
 
 
-def find_look(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
+def find_look(name: str, manager: ColorManager | None = None) -> str:
     """The look that `name` means: "" is that of the view, `none` none at all. Raises UsageError."""
-    return name if name in ("", NO_LOOK) else _match_name(name, (*list_looks(color), NO_LOOK), "look")
+    return name if name in ("", NO_LOOK) else _match_name(name, (*list_looks(manager), NO_LOOK), "look")
 
 
-def check_view(view: str, display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR) -> None:
+def check_view(view: str, display: str = "", look: str = "", manager: ColorManager | None = None) -> None:
     """Raise UsageError for a view, display or look that the config does not have."""
-    find_view(view, display, color)
-    find_look(look, color)
+    find_view(view, display, manager)
+    find_look(look, manager)
 
 
 def _match_name(name: str, choices: tuple[str, ...], noun: str) -> str:
@@ -109,7 +107,7 @@ def to_display(
     bits: Literal[8, 16, 32] = 8,
     display: str = "",
     look: str = "",
-    color: ColorSettings = DEFAULT_COLOR,
+    manager: ColorManager | None = None,
 ) -> Array:
     """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.
 
@@ -122,7 +120,7 @@ def to_display(
         UsageError: unknown view, display or look.
         GraphError, UsageError: no config.
     """
-    processor = make_display_processor(view, display, look, color).getDefaultCPUProcessor()
+    processor = make_display_processor(view, display, look, manager).getDefaultCPUProcessor()
     pixels = unpremultiply(array)
     rgb = np.ascontiguousarray(pixels[..., :3])
     apply_processor(processor, rgb)
@@ -130,7 +128,7 @@ def to_display(
     return pixels if bits == 32 else quantize(pixels, bits)
 
 
-def make_display_processor(view: str, display: str, look: str = "", color: ColorSettings = DEFAULT_COLOR) -> Any:
+def make_display_processor(view: str, display: str, look: str = "", manager: ColorManager | None = None) -> Any:
     """From the working space to what a display shows. A `look` stands in place of those of the view.
 
     Raises:
@@ -138,15 +136,15 @@ def make_display_processor(view: str, display: str, look: str = "", color: Color
         GraphError, UsageError: no config, or one that lacks something.
     """
     if view.casefold() == NO_VIEW and look in ("", NO_LOOK):
-        return _make_plain_processor(get_color_manager(color))
+        return _make_plain_processor(manager or get_default_color_manager())
     screen, chosen_view, chosen_look = (
-        find_display(display, color),
-        find_view(view, display, color),
-        find_look(look, color),
+        find_display(display, manager),
+        find_view(view, display, manager),
+        find_look(look, manager),
     )
     if chosen_view == NO_VIEW and chosen_look in ("", NO_LOOK):
-        return _make_plain_processor(get_color_manager(color))
-    return _make_view_processor(get_color_manager(color), screen, chosen_view, chosen_look)
+        return _make_plain_processor(manager or get_default_color_manager())
+    return _make_view_processor((manager or get_default_color_manager()), screen, chosen_view, chosen_look)
 
 
 @lru_cache(maxsize=64)

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from halation.nodes import ColorSettings
 from msgspec import Struct, field
 
 from ..errors import UsageError
 from .display import check_view, find_display, find_view, to_display
-from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_default_color_manager
 from .primaries import find_chromaticities
 from .transforms import Array, convert_premultiplied, from_working, is_matrix, quantize, unpremultiply
 
@@ -25,12 +24,8 @@ class Encoding(Struct, frozen=True):
     display: str = ""
     look: str = ""
     space: str = ""
-    color: ColorSettings = field(default_factory=ColorSettings)
-
-    @property
-    def manager(self) -> ColorManager:
-        """How colors are managed."""
-        return get_color_manager(self.color)
+    manager: ColorManager = field(default_factory=get_default_color_manager)
+    """How colors are managed; by default as where no graph says so."""
 
     @property
     def is_plain(self) -> bool:
@@ -44,7 +39,7 @@ class Encoding(Struct, frozen=True):
         if self.space:
             _ = self._target
         if self.view or self.display or self.look:
-            check_view(self.view, self.display, self.look, self.color)
+            check_view(self.view, self.display, self.look, self.manager)
 
     def to_numbers(self, array: Array) -> Array:
         """Working-space color [h, w, c], premultiplied where it has four channels, in the space that is written."""
@@ -69,7 +64,7 @@ class Encoding(Struct, frozen=True):
                 bits=32 if bits == 10 else depth,
                 display=self.display,
                 look=self.look,
-                color=self.color,
+                manager=self.manager,
             )
         else:
             encoded = unpremultiply(array)
@@ -101,8 +96,8 @@ class Encoding(Struct, frozen=True):
             return self.manager.find_header_name(self._target)
         if not self.display and self.manager.is_plain:
             return SRGB
-        config, display = self.manager.config, find_display(self.display, self.color)
-        view = find_view(self.view, display, self.color)
+        config, display = self.manager.config, find_display(self.display, self.manager)
+        view = find_view(self.view, display, self.manager)
         name = config.getDisplayViewColorSpaceName(display, view) if view in config.getViews(display) else ""
         space = config.getColorSpace(display if name == _USE_DISPLAY_NAME else name)
         interop_name = str(getattr(space, "getInteropID", str)() or "") if space else ""

@@ -8,17 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from halation.nodes import ColorChange, ColorSettings, LookupFile, SpaceChange
+from halation.nodes import ColorChange, LookupFile, SpaceChange
 
 from ..errors import InputError, UsageError
 from ..glsl import parse
 from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
+from ..resources.sandbox import Sandbox
 from .display import make_display_processor
-from .management import DEFAULT_COLOR, OcioColorSpace, get_color_manager, load_ocio, mark_color_settings, ocio_errors
+from .management import ColorManager, OcioColorSpace, get_color_manager, load_ocio, ocio_errors
 
 
-def write_color_change(change: ColorChange) -> ColorProgram:
+def write_color_change(change: ColorChange, sandbox: Sandbox) -> ColorProgram:
     """The program of a change of color.
 
     Raises:
@@ -26,9 +27,9 @@ def write_color_change(change: ColorChange) -> ColorProgram:
         UsageError: a color space that nobody knows.
         GraphError, UsageError: no config.
     """
-    return _write_color_change(
-        change, fingerprint(change.path) if isinstance(change, LookupFile) else mark_color_settings(change.color)
-    )
+    is_file = isinstance(change, LookupFile)
+    mark = fingerprint(change.path, sandbox) if is_file else get_color_manager(change.color, sandbox).mark
+    return _write_color_change(change, mark, sandbox)
 
 
 @cache
@@ -57,7 +58,7 @@ def write_color_program(processor: Any, name: str) -> ColorProgram:
 
 
 def write_view_program(
-    view: str = "", display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR
+    view: str = "", display: str = "", look: str = "", manager: ColorManager | None = None
 ) -> ColorProgram:
     """The program that computes what `to_display` computes, from straight working-space color.
 
@@ -65,20 +66,21 @@ def write_view_program(
         UsageError: unknown view, display or look.
         GraphError, UsageError: no config.
     """
-    return write_color_program(make_display_processor(view, display, look, color), "view_transform")
+    return write_color_program(make_display_processor(view, display, look, manager), "view_transform")
 
 
 @lru_cache(maxsize=64)
-def _write_color_change(change: ColorChange, mark: str) -> ColorProgram:
+def _write_color_change(change: ColorChange, mark: str, sandbox: Sandbox) -> ColorProgram:
     name = f"recolor_{blake2b(f'{change} {mark}'.encode(), digest_size=8).hexdigest()}"
     return write_color_program(
-        _make_file_processor(change) if isinstance(change, LookupFile) else _make_space_processor(change), name
+        _make_file_processor(change, sandbox)
+        if isinstance(change, LookupFile)
+        else _make_space_processor(change, get_color_manager(change.color, sandbox)),
+        name,
     )
 
 
-def _make_space_processor(change: SpaceChange) -> Any:
-    manager = get_color_manager(change.color)
-
+def _make_space_processor(change: SpaceChange, manager: ColorManager) -> Any:
     def find_space(name: str) -> OcioColorSpace:
         space = manager.find(name)
         if space is None:
@@ -88,7 +90,7 @@ def _make_space_processor(change: SpaceChange) -> Any:
     return manager.make_processor(find_space(change.source), find_space(change.target))
 
 
-def _make_file_processor(change: LookupFile) -> Any:
+def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
     api = load_ocio()
     if not Path(change.path).is_file():
         raise InputError(f"{change.path}: there is no such file: choose a table (.cube, .3dl, .clf, ...)")

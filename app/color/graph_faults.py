@@ -9,6 +9,7 @@ from halation.nodes import Kind
 
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
+from ..resources.sandbox import Sandbox
 from .display import NO_VIEW, find_view
 from .file_space import find_requested_space
 from .management import get_color_manager
@@ -24,10 +25,10 @@ class ColorFault:
     at: str
 
 
-def find_color_faults(graph: Graph) -> Iterator[ColorFault]:
+def find_color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
     """A config that cannot be read, a working space, views of outputs and color spaces of inputs that nobody knows."""
     color = color_settings(graph)
-    manager = get_color_manager(color)
+    manager = get_color_manager(color, sandbox)
     views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}
     spaces = {
         name: end.color_space
@@ -45,7 +46,7 @@ def find_color_faults(graph: Graph) -> Iterator[ColorFault]:
         return
     for name, view in views.items():
         try:
-            find_view(view, "", color)
+            find_view(view, "", manager)
         except HalationError as error:
             fault = type(error)(f"output '{name}': {error}")
             yield ColorFault(fault, OUTPUTS, name, f"outputs.{name}.view")

@@ -18,7 +18,6 @@ import difflib
 import os
 from collections.abc import Iterable
 from functools import cache, cached_property, lru_cache
-from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +25,12 @@ from halation.nodes import WORKING_SPACE, ColorSettings
 from halation.nodes.color._spaces import SPACES
 from msgspec import Struct
 
-from ..errors import GraphError, HalationError, UsageError
-from ..resources.sandbox import outside
+from ..errors import GraphError, HalationError, InputError, UsageError
+from ..resources.input_files import content_hash
+from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .config_files import find_config_fault
 
 BUILT_IN = "ocio://default"
-DEFAULT_COLOR = ColorSettings()
 LINEAR_REC709 = "lin_rec709_scene"
 _STUDIO = "ocio://studio-config-latest"
 _DEFAULT_NAMES = frozenset({"", "linear rec709", LINEAR_REC709, "linear rec.709 (srgb)"})
@@ -53,9 +52,19 @@ class ColorManager:
     Asking for anything loads the config, which raises GraphError or UsageError where it cannot be read.
     """
 
-    def __init__(self, source: str, chosen: bool, fault: type[HalationError], working: str) -> None:
-        self.source, self.is_chosen = source, chosen
+    def __init__(
+        self,
+        source: str,
+        version: str,
+        chosen: bool,
+        fault: type[HalationError],
+        working: str,
+        sandbox: Sandbox,
+    ) -> None:
+        self.source, self.is_chosen, self._sandbox = source, chosen, sandbox
         """Where the config comes from, and whether anyone asked for it."""
+        self.mark = f"{source} {version} {working}"
+        """Changes when the config or the working space does."""
         self._error, self._working_name = fault, working
         self._spaces_by_name: dict[str, OcioColorSpace | None] = {}
 
@@ -68,6 +77,18 @@ class ColorManager:
     def where(self) -> str:
         """What messages call the config."""
         return f"$OCIO: {self.source}" if self._error is UsageError and self.is_chosen else self.source
+
+    @property
+    def digest(self) -> str:
+        """The same wherever colors are managed in the same way: "" for linear Rec.709 in the built-in config."""
+        if self.is_plain:
+            return ""
+        if self.source.startswith(_BUILT_IN_MARK):
+            return f"{self.source} {self._working_name}"
+        try:
+            return f"{content_hash(self.source, self._sandbox)} {self._working_name}"
+        except InputError:
+            return f"{self.source} {self._working_name}"
 
     @cached_property
     def config(self) -> Any:
@@ -205,8 +226,7 @@ class ColorManager:
             raise self._error(f"{self.where}: {_first_line(error)}") from error
 
     def _read_config(self, source: str) -> Any:
-        is_from_graph = self._error is GraphError and not source.startswith("ocio://")
-        if is_from_graph and (reason := outside(source)):
+        if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
             raise self._error(f"{self._describe_source(source)}: {reason}")
         if not source.startswith("ocio://") and not Path(source).is_file():
             folder = Path(source).parent
@@ -218,7 +238,7 @@ class ColorManager:
                 if source.startswith("ocio://")
                 else load_ocio().Config.CreateFromFile(source)
             )
-            if is_from_graph and (reason := find_config_fault(config)):
+            if reason := find_config_fault(config, self._sandbox):
                 raise self._error(f"{self._describe_source(source)}: {reason}")
             return config
         except ocio_errors() as error:
@@ -232,43 +252,36 @@ class ColorManager:
         return f"$OCIO: {source}" if self._error is UsageError else f"settings.color.config: {source}"
 
 
-def get_color_manager(color: ColorSettings = DEFAULT_COLOR) -> ColorManager:
-    """How colors are managed by these settings, whose config is a path as it stands."""
+def get_color_manager(color: ColorSettings, sandbox: Sandbox) -> ColorManager:
+    """How colors are managed by these settings, whose config is a path as it stands; the same one while that stays.
+
+    A config that $OCIO names is the user's and may lie outside of the sandbox.
+    """
     environment_config = os.environ.get("OCIO", "").strip()
     source = color.config or environment_config or BUILT_IN
     fault = GraphError if color.config or not environment_config else UsageError
-    return _make_manager(
-        source, _config_version(source), bool(color.config or environment_config), fault, color.working
-    )
+    reach = sandbox if color.config else UNRESTRICTED
+    is_chosen = bool(color.config or environment_config)
+    return _make_manager(source, _config_version(source, reach), is_chosen, fault, color.working, reach)
 
 
-def mark_color_settings(color: ColorSettings) -> str:
-    """Changes when the config does."""
-    manager = get_color_manager(color)
-    return f"{manager.source} {_config_version(manager.source)} {color.working}"
-
-
-def digest_color_settings(color: ColorSettings) -> str:
-    """The same wherever colors are managed in the same way: "" for linear Rec.709 in the built-in config."""
-    manager = get_color_manager(color)
-    if manager.is_plain:
-        return ""
-    if manager.source.startswith(_BUILT_IN_MARK):
-        return f"{manager.source} {color.working}"
-    try:
-        return f"{sha256(Path(manager.source).read_bytes()).hexdigest()} {color.working}"
-    except OSError:
-        return f"{manager.source} {color.working}"
+def get_default_color_manager() -> ColorManager:
+    """How colors are managed where no graph says so: by the config that $OCIO names, else the built-in one."""
+    return get_color_manager(ColorSettings(), UNRESTRICTED)
 
 
 @lru_cache(maxsize=16)
-def _make_manager(source: str, version: str, chosen: bool, fault: type[HalationError], working: str) -> ColorManager:
-    return ColorManager(source, chosen, fault, working)
+def _make_manager(
+    source: str, version: str, chosen: bool, fault: type[HalationError], working: str, sandbox: Sandbox
+) -> ColorManager:
+    return ColorManager(source, version, chosen, fault, working, sandbox)
 
 
-def _config_version(source: str) -> str:
+def _config_version(source: str, sandbox: Sandbox) -> str:
     if source.startswith("ocio://"):
         return ""
+    if sandbox.fault(source):
+        return "outside"
     try:
         status = Path(source).stat()
     except (OSError, ValueError):

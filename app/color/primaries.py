@@ -6,11 +6,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from halation.nodes import ColorSettings
 
 from .file_space import CHROMATICITIES
 from .header_space import primaries_to_xyz
-from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_color_manager, load_studio_config
+from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_studio_config
 
 if TYPE_CHECKING:
     from ..resources.working_space import WorkingSpace
@@ -18,14 +17,13 @@ if TYPE_CHECKING:
 _MATRIX_TOLERANCE = 2e-4
 
 
-def find_working_space(color: ColorSettings) -> WorkingSpace | None:
+def find_working_space(manager: ColorManager) -> WorkingSpace | None:
     """What shaders know of the working space; None is linear Rec.709.
 
     Raises:
         GraphError: nobody knows the space, or it is not linear.
         UsageError: $OCIO names no config.
     """
-    manager = get_color_manager(color)
     return None if manager.is_plain else _make_working_space(manager)
 
 

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from ..custom_nodes import Code, CodeFault, CustomNode, Language
 from ..errors import DocumentError
+from ..resources.sandbox import Sandbox
 from .disk import read_text
 
 
-def read_code(language: Language, lines: Sequence[str] | None, file: str, folder: str) -> Code:
-    """The code of a node. Raises CodeFault for a file that cannot be read."""
-    if lines is not None:
-        return Code(language, "\n".join(lines))
+def read_code_file(language: Language, file: str, folder: str, sandbox: Sandbox) -> Code:
+    """The code of a node whose code is in a file. Raises CodeFault for one that cannot be read."""
     path = Path(folder, file)
-    return Code(language, _text(path), file, _vertex(path) if language == "isf" else "")
+    return Code(
+        language, _text(path, sandbox=sandbox), file, _vertex(path, sandbox=sandbox) if language == "isf" else ""
+    )
 
 
 def describe_code(code: Code) -> dict[str, object]:
@@ -23,20 +23,20 @@ def describe_code(code: Code) -> dict[str, object]:
     return {"file": code.file} if code.file else {"code": code.text.split("\n")}
 
 
-def reread_code(kind: type[CustomNode], folder: str) -> Code:
+def reread_code(kind: type[CustomNode], folder: str, sandbox: Sandbox) -> Code:
     """The code of a node as its file has it now. Raises CodeFault."""
     code = kind.code
-    return read_code(code.language, None, code.file, folder) if code.file else code
+    return read_code_file(code.language, code.file, folder, sandbox=sandbox) if code.file else code
 
 
-def _vertex(path: Path) -> str:
+def _vertex(path: Path, sandbox: Sandbox) -> str:
     """The vertex shader that lies beside a shader under the same name, if any does."""
     beside = path.with_suffix(".vs")
-    return _text(beside) if beside.is_file() else ""
+    return _text(beside, sandbox=sandbox) if beside.is_file() else ""
 
 
-def _text(path: Path) -> str:
+def _text(path: Path, sandbox: Sandbox) -> str:
     try:
-        return read_text(path)
+        return read_text(path, sandbox=sandbox)
     except DocumentError as fault:
         raise CodeFault(0, str(fault)) from None

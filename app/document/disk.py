@@ -5,17 +5,16 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..errors import DocumentError
-from ..resources.sandbox import outside
+from ..errors import DocumentError, InputError
+from ..resources.input_files import open_file
+from ..resources.sandbox import Sandbox, make_path_printable
 from .limits import MAX_BYTES, size_fault
 
 
-def read_text(path: Path) -> str:
+def read_text(path: Path, sandbox: Sandbox) -> str:
     """The text of a graph file. Raises DocumentError; a file that is too large is not read."""
-    if reason := outside(path):
-        raise DocumentError(str(path), "", reason, rule="unreadable-graph")
     try:
-        with path.open("rb") as file:
+        with open_file(path, sandbox) as file:
             if fault := size_fault(max(os.fstat(file.fileno()).st_size, 1)):
                 raise DocumentError(str(path), "", fault, rule="unreadable-graph")
             content = file.read(MAX_BYTES + 1)
@@ -23,6 +22,9 @@ def read_text(path: Path) -> str:
         raise DocumentError(str(path), "", "there is no such file", rule="unreadable-graph") from None
     except IsADirectoryError:
         raise DocumentError(str(path), "", "this is a folder, not a graph file", rule="unreadable-graph") from None
+    except InputError as refusal:
+        reason = str(refusal).removeprefix(f"{make_path_printable(path)}: ")
+        raise DocumentError(str(path), "", reason, rule="unreadable-graph") from None
     except (OSError, ValueError) as error:
         raise DocumentError(str(path), "", f"it cannot be read ({_reason(error)})", rule="unreadable-graph") from None
     try:

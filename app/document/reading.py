@@ -24,16 +24,16 @@ from typing import Any, cast, get_args
 from halation.nodes import ColorSettings, Node, Plain, Value, catalogue
 from msgspec import Struct, field
 
-from ..custom_nodes import CodeFault, Language, node_type
+from ..custom_nodes import Code, CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapt_animation
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerce, describe_type
-from ..resources.sandbox import outside
+from ..resources.sandbox import Sandbox
 from . import limits, records
 from .animation import read_animation
-from .code import read_code
+from .code import read_code_file
 from .disk import read_text
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
@@ -47,9 +47,11 @@ _DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """What a migration raises when the old file is not what it claims to be."""
 
 
-def load(path: str | Path, catalogue: Types | None = None, migrations: Migrations = MIGRATIONS) -> Graph:
+def load(
+    path: str | Path, catalogue: Types | None = None, migrations: Migrations = MIGRATIONS, *, sandbox: Sandbox
+) -> Graph:
     """The graph in a file, with the groups that it names. Raises DocumentError."""
-    return _DocumentLoader(_default_types(catalogue), migrations).load_file(Path(path))[0]
+    return _DocumentLoader(_default_types(catalogue), migrations, sandbox).load_file(Path(path), sandbox)[0]
 
 
 def loads(
@@ -59,13 +61,13 @@ def loads(
     catalogue: Types | None = None,
     migrations: Migrations = MIGRATIONS,
     *,
-    follow: bool = True,
+    sandbox: Sandbox | None,
 ) -> Graph:
     """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start.
 
-    Without `follow` no other file is read: groups and code in files of their own are nodes of unknown types.
+    With None as `sandbox` no other file is read: groups and code in files of their own are nodes of unknown types.
     """
-    return _DocumentLoader(_default_types(catalogue), migrations, follow).load_text(text, file, folder, ())[0]
+    return _DocumentLoader(_default_types(catalogue), migrations, sandbox).load_text(text, file, folder, ())[0]
 
 
 def _default_types(types: Types | None) -> Types:
@@ -77,14 +79,17 @@ class _DocumentLoader(Struct):
 
     types: Types
     migrations: Migrations
-    follow: bool = True
+    sandbox: Sandbox | None
+    """Where files of groups and of code may lie; None where none is read."""
     loaded: dict[Path, tuple[Graph, int]] = field(default_factory=dict[Path, tuple[Graph, int]])
 
-    def load_file(self, path: Path, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
+    def load_file(self, path: Path, sandbox: Sandbox, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
         real = _resolve(path) or path
         if real not in self.loaded:
-            self.loaded[real] = self.load_text(read_text(path), str(path), str(path.parent), (*outer, real))
+            self.loaded[real] = self.load_text(
+                read_text(path, sandbox=sandbox), str(path), str(path.parent), (*outer, real)
+            )
         return self.loaded[real]
 
     def load_text(self, text: str, file: str, folder: str, outer: tuple[Path, ...]) -> tuple[Graph, int]:
@@ -222,9 +227,10 @@ class _BodyReader(Struct):
 
     def read_item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
         """A node, and how many nodes it has when groups are expanded."""
-        if type == "group" and (self.loading.follow or not raw.get("path")):
+        reads_files = self.loading.sandbox is not None
+        if type == "group" and (reads_files or not raw.get("path")):
             return self.read_group(id, raw, at, depth)
-        if type in get_args(Language) and (self.loading.follow or not raw.get("file")):
+        if type in get_args(Language) and (reads_files or not raw.get("file")):
             return self.read_code_node(id, raw, cast("Language", type), at), 1
         if type not in self.loading.types:
             return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1
@@ -259,12 +265,19 @@ class _BodyReader(Struct):
             fault = f'a node of type "{language}" needs either "code", its lines, or "file", the name of a file'
             raise DocumentError(self.file, at, fault)
         try:
-            kind = node_type(read_code(language, record.code, record.file or "", self.folder))
+            kind = node_type(self.find_code(record, language))
         except CodeFault as fault:
             reason = f"{record.file or 'its code'}, {fault}" if fault.line else str(fault)
             return Unknown(language, unknown_keys(raw, records.TypeRecord), reason)
         self.keep_unknown(f"nodes.{id}", raw, records.CodeRecord)
         return kind(**self.read_values(f"nodes.{id}", record.values, kind.values, at))
+
+    def find_code(self, record: records.CodeRecord, language: Language) -> Code:
+        """The code in a record, or in the file that it names. Raises CodeFault."""
+        if record.code is not None:
+            return Code(language, "\n".join(record.code))
+        assert self.loading.sandbox is not None, "code in files is not read without a sandbox"
+        return read_code_file(language, record.file or "", self.folder, self.loading.sandbox)
 
     def read_values(self, path: str, raw: dict[str, Any], declared: Mapping[str, Value], at: str) -> dict[str, Plain]:
         """The declared values, converted to their types; others are kept. `problems` checks ranges and choices."""
@@ -297,8 +310,9 @@ class _BodyReader(Struct):
 
     def read_group_file(self, path: str, at: str) -> tuple[Graph, int]:
         """The graph in a group's file."""
-        inner = Path(self.folder, path)
-        if reason := outside(inner):
+        inner, sandbox = Path(self.folder, path), self.loading.sandbox
+        assert sandbox is not None, "groups in files are not read without a sandbox"
+        if reason := sandbox.fault(inner):
             raise DocumentError(self.file, at, f"the group file '{inner}' {reason}")
         real = _resolve(inner)
         if real is None:
@@ -308,7 +322,7 @@ class _BodyReader(Struct):
         if real in self.outer:
             loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real) :], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
-        return self.loading.load_file(inner, self.outer)
+        return self.loading.load_file(inner, sandbox, self.outer)
 
 
 def _resolve(path: Path) -> Path | None:

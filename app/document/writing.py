@@ -15,6 +15,7 @@ from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknow
 from ..graph.names import name_fault
 from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
+from ..resources.sandbox import Sandbox
 from .animation import describe_animation
 from .canonical import pretty
 from .code import describe_code
@@ -35,7 +36,7 @@ def dumps(graph: Graph) -> str:
     return text
 
 
-def save(graph: Graph, path: str | Path) -> None:
+def save(graph: Graph, path: str | Path, sandbox: Sandbox) -> None:
     """Write a graph, whole or not at all: after any failure the old file is still there.
 
     Raises OutputError, or GraphError as `dumps` does.
@@ -43,7 +44,7 @@ def save(graph: Graph, path: str | Path) -> None:
     text = dumps(graph)
     if fault := size_fault(len(text.encode())):
         raise OutputError(f"{path}: it is not saved, because it could not be read again: {fault}")
-    write_text_atomically(Path(path), text)
+    write_text_atomically(Path(path), text, sandbox=sandbox)
 
 
 def _graph(graph: Graph) -> Section:

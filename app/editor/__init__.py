@@ -45,8 +45,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..resources.sandbox import Sandbox
 
-def edit(path: Path | None = None, bindings: Mapping[str, str] | None = None) -> None:
+
+def edit(path: Path | None, bindings: Mapping[str, str] | None, sandbox: Sandbox) -> None:
     """Open the editor on a graph file, or on the start screen; returns when its window is closed.
 
     `bindings` are files for graph inputs by name. Raises DocumentError for a file that cannot be read, DeviceError
@@ -54,4 +56,4 @@ def edit(path: Path | None = None, bindings: Mapping[str, str] | None = None) ->
     """
     from .window import open_window
 
-    open_window(path, dict(bindings or {}))
+    open_window(path, dict(bindings or {}), sandbox)

@@ -12,9 +12,10 @@ from halation.nodes import Kind
 from ..errors import InputError
 from ..graph import Input
 from ..media.layers import ImageInfo, Layer, find_layer, has_layer
+from ..resources.sandbox import Sandbox
 
 
-def choose_layer(info: ImageInfo, socket: Input, *, is_bound: bool = True) -> str:
+def choose_layer(info: ImageInfo, socket: Input, sandbox: Sandbox, *, is_bound: bool = True) -> str:
     """The layer of this file that an input asks for, by name or by role.
 
     A picture without any layers of a render stands for a layer of color that the user bound it to; `is_bound` is False
@@ -26,7 +27,7 @@ def choose_layer(info: ImageInfo, socket: Input, *, is_bound: bool = True) -> st
     from ..render_layers.naming import Role
     from ..render_layers.recognition import find_named_role
 
-    analysis, role = analyze_render(info.path), find_named_role(socket.layer)
+    analysis, role = analyze_render(info.path, sandbox=sandbox), find_named_role(socket.layer)
     if role and (layer := analysis.find_layer(role)):
         return layer.full_name
     if role and role in analysis.rivals:
@@ -38,13 +39,13 @@ def choose_layer(info: ImageInfo, socket: Input, *, is_bound: bool = True) -> st
     return socket.layer
 
 
-def find_input_layer(info: ImageInfo, name: str) -> Layer:
+def find_input_layer(info: ImageInfo, name: str, sandbox: Sandbox) -> Layer:
     """The layer that a user names, as `find_layer`; the error suggests the layer of that role."""
 
     def suggest(unknown: str) -> list[str]:
         from ..render_layers.analysis import analyze_render
         from ..render_layers.recognition import suggest_by_role
 
-        return suggest_by_role(analyze_render(info.path).passes, unknown)
+        return suggest_by_role(analyze_render(info.path, sandbox=sandbox).passes, unknown)
 
     return find_layer(info, name, suggest)

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from ..resources.sandbox import Sandbox
+
 if TYPE_CHECKING:
     from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
 
@@ -21,12 +23,15 @@ if TYPE_CHECKING:
 class LazyResourceProvider:
     """A `ResourceProvider` for graphs that may read no file: media libraries are imported with the first one."""
 
+    def __init__(self, sandbox: Sandbox) -> None:
+        self.sandbox = sandbox
+
     @cached_property
     def pictures(self) -> MediaProvider:
         """The provider that reads files."""
         from .provider import MediaProvider
 
-        return MediaProvider()
+        return MediaProvider(sandbox=self.sandbox)
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""

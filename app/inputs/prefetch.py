@@ -7,6 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import islice
 from pathlib import Path, PurePath
 
+from ..color.management import get_color_manager
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, color_settings
 from ..graph.frames import Pattern, is_video
@@ -14,6 +15,7 @@ from ..media.convert import LayerRequest, Pixels
 from ..media.info import read_info
 from ..media.layers import split_layer
 from ..media.pixels import read_layers
+from ..resources.sandbox import Sandbox
 from .layer_choice import choose_layer
 
 MAX_WAITING = 4
@@ -31,11 +33,11 @@ class Prefetcher:
     is raised when its pixels are taken.
     """
 
-    def __init__(self, graph: Graph, inputs: Mapping[str, str]) -> None:
+    def __init__(self, graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox) -> None:
         threads = ThreadPoolExecutor(1, thread_name_prefix="ahead")
         self._pending: dict[PixelRequest, Future[Pixels]] = {
-            request: threads.submit(_read, *request)
-            for request in islice(dict.fromkeys(_predict_requests(graph, inputs)), MAX_WAITING)
+            request: threads.submit(_read, *request, sandbox)
+            for request in islice(dict.fromkeys(_predict_requests(graph, inputs, sandbox)), MAX_WAITING)
         }
         threads.shutdown(wait=False)
 
@@ -45,11 +47,11 @@ class Prefetcher:
         return pending.result() if pending else None
 
 
-def _read(path: str, request: LayerRequest) -> Pixels:
-    return read_layers(path, [request])[0]
+def _read(path: str, request: LayerRequest, sandbox: Sandbox) -> Pixels:
+    return read_layers(path, [request], sandbox=sandbox)[0]
 
 
-def _predict_requests(graph: Graph, inputs: Mapping[str, str]) -> Iterator[PixelRequest]:
+def _predict_requests(graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox) -> Iterator[PixelRequest]:
     """The requests that rendering will make, as far as that is certain before the graph is compiled.
 
     Sequences and videos are left out, as their frame is not known yet, and so are inputs whose file follows another
@@ -59,21 +61,24 @@ def _predict_requests(graph: Graph, inputs: Mapping[str, str]) -> Iterator[Pixel
     links = ((target, source) for target, source in graph.links.items() if source.node == INPUTS)
     linked = {source.socket for target, source in links if target.node in needed}
     replaced = {graph.inputs[name].file for name in inputs}
+    manager = get_color_manager(color_settings(graph), sandbox)
     for name, socket in graph.inputs.items():
         if name not in linked or socket.socket().single or (name not in inputs and socket.file in replaced):
             continue
-        path, layer = _find_file(graph, socket, inputs.get(name))
+        path, layer = _find_file(graph, socket, inputs.get(name), sandbox=sandbox)
         if path and not is_video(path) and Pattern.parse(path) is None and Path(path).is_file():
             width = socket.socket().channels
-            yield path, LayerRequest(layer, socket.kind, width, socket.color_space, color_settings(graph))
+            yield path, LayerRequest(layer, socket.kind, width, socket.color_space, manager)
 
 
-def _find_file(graph: Graph, socket: Input, bound: str | None) -> tuple[str, str]:
+def _find_file(graph: Graph, socket: Input, bound: str | None, sandbox: Sandbox) -> tuple[str, str]:
     """The file of an input and the layer of it; "" without one."""
     if bound is None:
         return (str(PurePath(graph.folder, socket.file)), socket.layer) if socket.file else ("", "")
     path, layer = split_layer(bound)
     try:
-        return path, layer or (choose_layer(read_info(path), socket) if Path(path).is_file() else "")
+        return path, layer or (
+            choose_layer(read_info(path, sandbox=sandbox), socket, sandbox) if Path(path).is_file() else ""
+        )
     except HalationError:
         return "", ""

@@ -16,6 +16,7 @@ from ..graph.frames import is_video
 from ..media.layers import split_layer
 from ..resources.picture import Picture
 from ..resources.provider import PictureProbe
+from ..resources.sandbox import Sandbox
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -38,7 +39,8 @@ if TYPE_CHECKING:
 class MediaProvider:
     """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` reads some files already."""
 
-    def __init__(self, prefetcher: Prefetcher | None = None) -> None:
+    def __init__(self, prefetcher: Prefetcher | None = None, *, sandbox: Sandbox) -> None:
+        self.sandbox = sandbox
         self.prefetcher = prefetcher
         self.repaired_pixels: dict[str, int] = {}
         """How many pixels were repaired, by path."""
@@ -66,7 +68,7 @@ class MediaProvider:
         if graph.settings.frames is not None:
             return graph.settings.frames
         for path, _, _ in find_named_files(graph, bound):
-            if (sequence := find_sequence(path)) and sequence.frames:
+            if (sequence := find_sequence(path, sandbox=self.sandbox)) and sequence.frames:
                 return sequence.frames[0], sequence.frames[-1]
         return find_key_range(graph)
 
@@ -76,7 +78,7 @@ class MediaProvider:
 
         usual = type(graph.settings)().rate
         for path, _, _ in find_named_files(graph, bound) if graph.settings.rate == usual else ():
-            if is_video(path) and (sequence := find_sequence(path)) and sequence.rate:
+            if is_video(path) and (sequence := find_sequence(path, sandbox=self.sandbox)) and sequence.rate:
                 return sequence.rate
         return graph.settings.rate
 
@@ -92,7 +94,7 @@ class MediaProvider:
         """The file of a frame. Raises InputError for a frame that has none."""
         from ..media.sequences import find_frame_file
 
-        return find_frame_file(path, frame, missing)
+        return find_frame_file(path, frame, missing, sandbox=self.sandbox)
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
@@ -105,10 +107,10 @@ class MediaProvider:
         if picture.within:
             _check_within(picture.path, picture.within)
         header = self.find_info(picture.path)
-        layer = find_input_layer(header, picture.layer)
+        layer = find_input_layer(header, picture.layer, self.sandbox)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
-        mark = _conversion_mark(picture) if color else ""
-        half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name))
+        mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
+        half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
     def load_pixels(self, picture: Picture) -> Array:
@@ -119,14 +121,21 @@ class MediaProvider:
             pixels: Any = picture.pixels
             array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
             return fit_channels(array, picture.kind, picture.width)
+        from ..color.management import get_color_manager
         from ..media.convert import LayerRequest
 
         path = picture.path
-        request = LayerRequest(picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        request = LayerRequest(
+            picture.layer,
+            picture.kind,
+            picture.width,
+            picture.space,
+            get_color_manager(picture.color, self.sandbox),
+        )
         if picture.rows is not None:
             from ..media.pictures.row_reader import read_rows
 
-            pixels = read_rows(path, request, *picture.rows)
+            pixels = read_rows(path, request, *picture.rows, sandbox=self.sandbox)
             repaired = (
                 self.repaired_pixels.get(path, 0) + pixels.repaired
             )  # rows of one picture come one after the other
@@ -134,7 +143,7 @@ class MediaProvider:
             from ..media.pixels import read_layers
 
             pixels = self.prefetcher and self.prefetcher.take((path, request))
-            pixels = pixels or read_layers(path, [request], picture.frame)[0]
+            pixels = pixels or read_layers(path, [request], picture.frame, sandbox=self.sandbox)[0]
             repaired = pixels.repaired
         if pixels.repaired:
             self.repaired_pixels[path] = repaired
@@ -146,32 +155,33 @@ class MediaProvider:
         """The program of a change of color. Raises InputError for a file that cannot be read."""
         from ..color.gpu_programs import write_color_change
 
-        return write_color_change(change)
+        return write_color_change(change, self.sandbox)
 
     def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space. Raises GraphError for one that nobody knows."""
+        from ..color.management import get_color_manager
         from ..color.primaries import find_working_space
 
-        return find_working_space(color)
+        return find_working_space(get_color_manager(color, self.sandbox))
 
     def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds. Raises InputError for one that cannot be read."""
         from ..render_layers.render import read_render
 
-        return (self.describer or read_render)(path, named)
+        return self.describer(path, named) if self.describer else read_render(path, named, sandbox=self.sandbox)
 
     def load_mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""
         from ..media.meshes.load import load_mesh
 
-        return load_mesh(scene)
+        return load_mesh(scene, sandbox=self.sandbox)
 
     def find_info(self, path: str) -> ImageInfo:
         """A file's header, read once."""
         if path not in self._infos:
             from ..media.info import read_info
 
-            self._infos[path] = read_info(path)
+            self._infos[path] = read_info(path, sandbox=self.sandbox)
         return self._infos[path]
 
     def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
@@ -220,7 +230,8 @@ class MediaProvider:
 
         if not socket.layer:
             return ""
-        return choose_layer(self.find_info(self.find_frame_file(path, 1, "nearest").path), socket, is_bound=is_bound)
+        info = self.find_info(self.find_frame_file(path, 1, "nearest").path)
+        return choose_layer(info, socket, self.sandbox, is_bound=is_bound)
 
 
 def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Array:
@@ -231,29 +242,30 @@ def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Ar
     return array.reshape(1, 1, -1) if single and array.ndim < 2 else array
 
 
-def _conversion_mark(picture: Picture) -> str:
+def _conversion_mark(picture: Picture, sandbox: Sandbox) -> str:
     """A mark that changes when the color of a file is converted in another way."""
     from ..color.file_space import find_requested_space
-    from ..color.management import get_color_manager, mark_color_settings
+    from ..color.management import get_color_manager
 
-    manager = get_color_manager(picture.color)
+    manager = get_color_manager(picture.color, sandbox)
     find_requested_space(picture.space, manager)
     if not manager.is_plain:
         _ = manager.config, manager.working  # a config that is wrong is an error before anything is read
-    return "" if manager.is_plain and not picture.space else f" {picture.space} {mark_color_settings(picture.color)}"
+    return "" if manager.is_plain and not picture.space else f" {picture.space} {manager.mark}"
 
 
-def _changes_numbers(picture: Picture, layer: str) -> bool:
+def _changes_numbers(picture: Picture, layer: str, sandbox: Sandbox) -> bool:
     """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
     from ..color.management import get_color_manager
     from ..color.transforms import is_in_working_space
     from ..media.color_spaces import find_layer_spaces
 
+    manager = get_color_manager(picture.color, sandbox)
     try:
-        space = find_layer_spaces(picture.path, picture.color, picture.space).get(layer)
+        space = find_layer_spaces(picture.path, manager, picture.space, sandbox=sandbox).get(layer)
     except InputError:  # reading the file raises it again
         return True
-    return space is not None and not is_in_working_space(space, get_color_manager(picture.color))
+    return space is not None and not is_in_working_space(space, manager)
 
 
 def _array_fingerprint(array: Array) -> str:

@@ -16,6 +16,7 @@ from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
+from ..resources.sandbox import Sandbox
 from . import allowing, compiled, surroundings, texts
 from .rules import CHECKS
 from .sheet import GraphFacts, bodies
@@ -65,9 +66,14 @@ class CheckReport:
 class GraphChecker:
     """Checks files, without the rules that are `off`. What several files name is looked at once."""
 
+    sandbox: Sandbox
     off: frozenset[str] = frozenset()
-    world: compiled.NotingProvider = field(default_factory=compiled.NotingProvider)
     around: surroundings.Surroundings = field(default_factory=surroundings.Surroundings)
+
+    @cached_property
+    def world(self) -> compiled.NotingProvider:
+        """What is known of files that graphs name."""
+        return compiled.NotingProvider(self.sandbox)
 
     @cached_property
     def types(self) -> Mapping[str, type[Node]]:
@@ -77,7 +83,7 @@ class GraphChecker:
     def check_file(self, path: Path) -> CheckReport:
         """A graph file. Nothing is raised: what cannot be read is found too."""
         try:
-            text = read_text(path)
+            text = read_text(path, sandbox=self.sandbox)
         except DocumentError as fault:
             return self._report(str(path), "", None, self._document_problem(fault, ""))
         return self.check_text(text, str(path), str(path.parent))
@@ -85,7 +91,7 @@ class GraphChecker:
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
         """The text of a graph. Relative paths in it start at `folder`."""
         try:
-            whole_graph = document.loads(text, file, folder, self.types)
+            whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
         except DocumentError as fault:
             return self._report(file, text, None, self._document_problem(fault, file, text))
         return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))

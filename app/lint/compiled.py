@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path, PurePath
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
@@ -15,9 +16,11 @@ from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageE
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, find_key_range
 from ..graph.rules import Rule
 from ..resources.color_program import ColorProgram
+from ..resources.input_files import open_file
 from ..resources.mesh import Mesh
 from ..resources.picture import Picture
 from ..resources.provider import FrameFile, PictureProbe
+from ..resources.sandbox import Sandbox
 from ..resources.working_space import WorkingSpace
 from .rules.paths import named_paths
 
@@ -66,6 +69,7 @@ T = TypeVar("T")
 class NotingProvider:
     """Files as the compiler asks for them. Each is looked at once, and one that cannot be read is noted."""
 
+    sandbox: Sandbox
     faults: dict[str, str] = field(default_factory=dict[str, str])
     """Sentences about files, and the path that the graph has for each."""
     _answers: dict[Any, Any] = field(default_factory=dict[Any, Any])
@@ -78,7 +82,7 @@ class NotingProvider:
         """The real ones; what reads files is loaded when the first is asked for."""
         from ..inputs.provider import MediaProvider
 
-        return MediaProvider()
+        return MediaProvider(sandbox=self.sandbox)
 
     def first_frame(self, graph: Graph) -> int:
         """The first frame of a graph. A file that is missing in a sequence is noted."""
@@ -98,7 +102,7 @@ class NotingProvider:
         def ask() -> bool:
             from ..media.sequences import find_sequence
 
-            return find_sequence(path) is not None
+            return find_sequence(path, sandbox=self.sandbox) is not None
 
         try:
             return self._answer("sequence", path, ask)
@@ -167,7 +171,7 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
     for name in free.keys() & read:
         sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
         yield 0, Problem(INPUTS, name, sentence, UNBOUND_INPUT, f"inputs.{name}")
-    colors = list(_color_faults(graph))
+    colors = list(_color_faults(graph, world.sandbox))
     for fault in colors:
         problem = Problem(fault.node, fault.name, str(fault.error), BAD_SETTING, fault.at)
         yield fault.error.exit_code, problem
@@ -187,16 +191,16 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
     if world.faults:
         places = _places(graph)
         for sentence, path in world.faults.items():
-            yield InputError.exit_code, _unreadable(sentence, path, places)
+            yield InputError.exit_code, _unreadable(sentence, path, places, world.sandbox)
 
 
-def _color_faults(graph: Graph) -> Iterator[ColorFault]:
+def _color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
     """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
     named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
     if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
         from ..color.graph_faults import find_color_faults
 
-        yield from find_color_faults(graph)
+        yield from find_color_faults(graph, sandbox)
 
 
 def _rule(fault: HalationError) -> Rule:
@@ -204,22 +208,23 @@ def _rule(fault: HalationError) -> Rule:
     return next((rule for kind, rule in kinds if isinstance(fault, kind)), CANNOT_COMPILE)
 
 
-def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, str]]) -> Problem:
+def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, str]], sandbox: Sandbox) -> Problem:
     """The problem of a file, with whoever names it."""
     path = path or next(
         (candidate for candidate in sorted(places, key=len, reverse=True) if sentence.startswith(candidate)), ""
     )
     node, socket, at = places.get(path, ("", "", ""))
-    if path and _is_pointer(Path(path)):
+    if path and _is_pointer(path, sandbox):
         words = f"{path}: this is a pointer of git LFS, not the file itself: run git lfs pull"
         return Problem(node, socket, words, LFS_POINTER, at)
     return Problem(node, socket, sentence, UNREADABLE_FILE, at)
 
 
-def _is_pointer(path: Path) -> bool:
+def _is_pointer(path: str, sandbox: Sandbox) -> bool:
     try:
-        return path.is_file() and path.stat().st_size <= _POINTER_SIZE and path.read_bytes().startswith(_POINTER)
-    except (OSError, ValueError):
+        with open_file(path, sandbox) as file:
+            return os.fstat(file.fileno()).st_size <= _POINTER_SIZE and file.read(len(_POINTER)) == _POINTER
+    except (InputError, OSError, ValueError):
         return False
 
 

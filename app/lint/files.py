@@ -12,11 +12,12 @@ from pathlib import Path
 from ..document.disk import read_text
 from ..errors import DocumentError
 from ..resources.folders import is_foreign, walk_project
+from ..resources.sandbox import Sandbox
 
 _KEY = re.compile(r'"halation"\s*:')
 
 
-def find_graphs(paths: Iterable[Path]) -> Iterator[Path]:
+def find_graphs(paths: Iterable[Path], sandbox: Sandbox) -> Iterator[Path]:
     """Every file that is meant, once, in order.
 
     A folder stands for all graphs in it and below, without hidden folders, virtual environments and installed packages;
@@ -25,16 +26,16 @@ def find_graphs(paths: Iterable[Path]) -> Iterator[Path]:
     """
     real_paths = set[str]()
     for path in paths:
-        for graph_path in _expand(path):
+        for graph_path in _expand(path, sandbox=sandbox):
             key = os.path.realpath(graph_path)
             if key not in real_paths:
                 real_paths.add(key)
                 yield graph_path
 
 
-def _expand(path: Path) -> Iterator[Path]:
+def _expand(path: Path, sandbox: Sandbox) -> Iterator[Path]:
     if path.is_dir():
-        yield from _graphs_in_folder(path)
+        yield from _graphs_in_folder(path, sandbox=sandbox)
     elif path.exists() or not (matches := sorted(glob.glob(str(path), recursive=True))):  # noqa: PTH207
         yield path
     else:
@@ -43,20 +44,20 @@ def _expand(path: Path) -> Iterator[Path]:
             steps = Path(match).parts
             if any(is_foreign(Path(*steps[:end])) for end in range(depth + 1, len(steps) + 1)):
                 continue
-            yield from _graphs_in_folder(Path(match)) if Path(match).is_dir() else (Path(match),)
+            yield from _graphs_in_folder(Path(match), sandbox=sandbox) if Path(match).is_dir() else (Path(match),)
 
 
-def _graphs_in_folder(folder: Path) -> Iterator[Path]:
+def _graphs_in_folder(folder: Path, sandbox: Sandbox) -> Iterator[Path]:
     """The graphs in a folder: JSON files that say they are one."""
     for path in walk_project(folder):
-        if path.name.lower().endswith(".json") and is_graph(path):
+        if path.name.lower().endswith(".json") and is_graph(path, sandbox=sandbox):
             yield path
 
 
-def is_graph(path: Path) -> bool:
+def is_graph(path: Path, sandbox: Sandbox) -> bool:
     """True for a text with the key that all graphs have, damaged or not."""
     try:
-        text = read_text(path)
+        text = read_text(path, sandbox=sandbox)
         return _KEY.search(text) is not None and "halation" in json.loads(text)
     except DocumentError:
         return False

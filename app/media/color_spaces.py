@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from halation.nodes import ColorSettings
-
 from ..color.file_space import FileSpace, find_file_space
-from ..color.management import DEFAULT_COLOR, get_color_manager
+from ..color.management import ColorManager, get_default_color_manager
 from ..errors import HalationError
 from ..graph.frames import is_video
+from ..resources.sandbox import Sandbox
 from .pictures.color_hints import read_color_hints
 from .pictures.open import describe_picture, open_picture
 
 
 def find_layer_spaces(
-    path: str | Path, color: ColorSettings = DEFAULT_COLOR, space: str = ""
+    path: str | Path, manager: ColorManager, space: str = "", *, sandbox: Sandbox
 ) -> Mapping[str, FileSpace]:
     """The color space of every layer of color by its full name; data has none. `space` is what the user says it is.
 
@@ -27,20 +26,20 @@ def find_layer_spaces(
     if is_video(str(path)):
         return {}
     spaces: dict[str, FileSpace] = {}
-    with open_picture(path) as picture:
-        info = describe_picture(picture, str(path))
+    with open_picture(path, sandbox=sandbox) as picture:
+        info = describe_picture(picture, str(path), sandbox=sandbox)
         for layer in info.layers:
             if not layer.is_data:
                 picture.seek_subimage(layer.part, 0)
                 hints = read_color_hints(picture.spec(), info.format, layer.format)
-                spaces[layer.full_name] = find_file_space(str(path), hints, get_color_manager(color), space)
+                spaces[layer.full_name] = find_file_space(str(path), hints, manager, space)
     return spaces
 
 
-def describe_color_spaces(path: str | Path) -> list[tuple[str, ...]]:
+def describe_color_spaces(path: str | Path, sandbox: Sandbox) -> list[tuple[str, ...]]:
     """Rows of words: layer, color space, reason; one row where all are alike, or one that says what is wrong."""
     try:
-        spaces = find_layer_spaces(path)
+        spaces = find_layer_spaces(path, get_default_color_manager(), sandbox=sandbox)
     except HalationError as error:
         return [("unknown", str(error).removeprefix(f"{path}: "))]
     rows = {layer: _describe_space(space) for layer, space in spaces.items()}

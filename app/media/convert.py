@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import numpy as np
 import OpenImageIO as oiio
-from halation.nodes import ColorSettings, Kind
+from halation.nodes import Kind
 from msgspec import Struct, field
 
 from ..color.file_space import FileSpace, find_file_space
-from ..color.management import get_color_manager
+from ..color.management import ColorManager, get_default_color_manager
 from ..color.transforms import (
     Array,
     convert_premultiplied,
@@ -35,14 +35,14 @@ _RGBA_LAYOUTS = {(*"rgb", alpha) for alpha in _ALPHA_NAMES}
 class LayerRequest(Struct, frozen=True):
     """A layer, and the socket it is for; `width` counts the channels of a Vector.
 
-    `space` is what its color is in, by name or role, "" to find out; `color` says how colors are managed.
+    `space` is what its color is in, by name or role, "" to find out; `manager` says how colors are managed.
     """
 
     layer: str
     kind: Kind = Kind.IMAGE
     width: int = 4
     space: str = ""
-    color: ColorSettings = field(default_factory=ColorSettings)
+    manager: ColorManager = field(default_factory=get_default_color_manager)
 
     @property
     def wants_color(self) -> bool:
@@ -102,7 +102,7 @@ def _to_light(
     has to be divided out before it is undone, and alpha is applied to linear color in the end. Where nothing but a
     matrix is between the two, the order does not matter, and nothing is divided.
     """
-    manager = get_color_manager(request.color)
+    manager = request.manager
     hints = read_color_hints(spec, info.format, layer.format)
     space = find_file_space(info.path, hints, manager, request.space)
     is_straight = has_straight_alpha(spec, info.format)

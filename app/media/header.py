@@ -11,6 +11,7 @@ from typing import Any
 import OpenImageIO as oiio
 
 from ..graph.frames import is_video
+from ..resources.sandbox import Sandbox
 from .layers import ImageInfo
 from .pictures.open import describe_picture, make_printable, open_picture, read_color_tag
 from .video import VideoInfo, describe_video, describe_video_attributes, find_kept_tags, read_video_info
@@ -44,16 +45,16 @@ class FileHeader:
     attributes: Mapping[str, Value]
 
 
-def read_header(path: str | Path) -> FileHeader:
+def read_header(path: str | Path, sandbox: Sandbox) -> FileHeader:
     """Read all of it.
 
     Raises:
         InputError: as `info`.
     """
     if is_video(str(path)):
-        return _describe_video_header(read_video_info(str(path)))
-    with open_picture(path) as handle:
-        info = describe_picture(handle, str(path))
+        return _describe_video_header(read_video_info(str(path), sandbox=sandbox), sandbox=sandbox)
+    with open_picture(path, sandbox=sandbox) as handle:
+        info = describe_picture(handle, str(path), sandbox=sandbox)
         parts: list[PartHeader] = []
         attributes: dict[str, Value] = {}
         while handle.seek_subimage(len(parts), 0):
@@ -63,8 +64,8 @@ def read_header(path: str | Path) -> FileHeader:
     return FileHeader(info, tuple(parts), MappingProxyType(attributes))
 
 
-def _describe_video_header(video: VideoInfo) -> FileHeader:
-    info, window = describe_video(video), (0, 0, *video.size)
+def _describe_video_header(video: VideoInfo, sandbox: Sandbox) -> FileHeader:
+    info, window = describe_video(video, sandbox=sandbox), (0, 0, *video.size)
     layer = info.layers[0]
     formats = (layer.format,) * len(layer.channels)
     part = PartHeader(0, "", "", video.container, video.codec, window, window, layer.channels, formats, "")

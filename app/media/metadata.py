@@ -12,6 +12,7 @@ import OpenImageIO as oiio
 from msgspec import Struct
 
 from ..graph.frames import is_video
+from ..resources.sandbox import Sandbox
 from .pictures.open import open_picture
 
 _STRUCTURAL = re.compile(
@@ -35,7 +36,7 @@ class TypedAttribute(Struct, frozen=True):
     value: Any
 
 
-def read_metadata(path: str | Path) -> dict[str, int | float | str | TypedAttribute]:
+def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float | str | TypedAttribute]:
     """The attributes of the first part that still hold for another picture made from it.
 
     Those that describe how this file is stored (windows, compression, color encoding, date) are left out.
@@ -46,8 +47,8 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | TypedAttrib
     if is_video(str(path)):
         from .video import find_kept_tags, read_video_info
 
-        return {**find_kept_tags(read_video_info(str(path)))}
-    with open_picture(path) as handle:
+        return {**find_kept_tags(read_video_info(str(path), sandbox=sandbox))}
+    with open_picture(path, sandbox=sandbox) as handle:
         found: dict[str, int | float | str | TypedAttribute] = {}
         for item in handle.spec().extra_attribs:
             if is_structural(item.name):

@@ -16,10 +16,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from halation.nodes import ColorSettings, Kind
+from halation.nodes import Kind
 
-from ..color.management import DEFAULT_COLOR
+from ..color.management import ColorManager, get_default_color_manager
 from ..graph.frames import is_video
+from ..resources.sandbox import Sandbox
 from .convert import LayerRequest, Pixels
 from .pictures.reader import read_picture_layers
 
@@ -32,7 +33,8 @@ def read_layer(
     frame: int = 1,
     *,
     space: str = "",
-    color: ColorSettings = DEFAULT_COLOR,
+    manager: ColorManager | None = None,
+    sandbox: Sandbox,
 ) -> Pixels:
     """Read one layer over the whole display window; what the file has no data for is 0.
 
@@ -45,10 +47,14 @@ def read_layer(
         InputError: the file or the layer is missing, or the file is damaged.
         GraphError, UsageError: `space` is unknown, or there is no config.
     """
-    return read_layers(path, [LayerRequest(layer, kind, width, space, color)], frame)[0]
+    return read_layers(
+        path, [LayerRequest(layer, kind, width, space, manager or get_default_color_manager())], frame, sandbox=sandbox
+    )[0]
 
 
-def read_layers(path: str | Path, requests: Sequence[LayerRequest], frame: int = 1) -> list[Pixels]:
+def read_layers(
+    path: str | Path, requests: Sequence[LayerRequest], frame: int = 1, *, sandbox: Sandbox
+) -> list[Pixels]:
     """Read several layers of one file; those that lie in one part are decoded together.
 
     Raises:
@@ -57,5 +63,5 @@ def read_layers(path: str | Path, requests: Sequence[LayerRequest], frame: int =
     if is_video(str(path)):
         from .video.layers import read_video_layers
 
-        return read_video_layers(str(path), requests, frame)
-    return read_picture_layers(str(path), requests)
+        return read_video_layers(str(path), requests, frame, sandbox=sandbox)
+    return read_picture_layers(str(path), requests, sandbox=sandbox)

@@ -26,8 +26,8 @@ from msgspec import Struct
 
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
-from ..resources.input_files import check_inside
 from ..resources.provider import FrameFile
+from ..resources.sandbox import Sandbox
 from .pictures.thumbnail import list_readable_endings
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class FrameSequence(Struct, frozen=True, dict=True):
         return self.pattern.folder + self.names[frame]
 
 
-def find_sequence(path: str) -> FrameSequence | None:
+def find_sequence(path: str, sandbox: Sandbox) -> FrameSequence | None:
     """The numbered pictures or the video that a path means, maybe without a frame; None for a path that is one picture.
 
     Raises:
@@ -90,12 +90,12 @@ def find_sequence(path: str) -> FrameSequence | None:
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return _find_video(path) if is_video(path) else None
+        return _find_video(path, sandbox=sandbox) if is_video(path) else None
     if pattern := Pattern.parse(path):
-        return _match_names(pattern, _list_folder(pattern.folder))
+        return _match_names(pattern, _list_folder(pattern.folder, sandbox=sandbox))
     if not _is_folder(path):
         return None
-    names = _list_folder(path)
+    names = _list_folder(path, sandbox=sandbox)
     groups = _rank_patterns(names)
     if not groups:
         raise InputError(f"{path}: is a folder without numbered pictures: name a picture inside it")
@@ -104,7 +104,7 @@ def find_sequence(path: str) -> FrameSequence | None:
     return _match_names(pattern, names) if pattern else None
 
 
-def find_frame_file(path: str, frame: int, missing: Missing = "error") -> FrameFile:
+def find_frame_file(path: str, frame: int, missing: Missing = "error", *, sandbox: Sandbox) -> FrameFile:
     """The file that shows a frame; of a video, which of its frames. One picture is its own, whatever the frame.
 
     `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
@@ -115,14 +115,14 @@ def find_frame_file(path: str, frame: int, missing: Missing = "error") -> FrameF
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return _video_frame(path, frame, missing) if is_video(path) else FrameFile(path)
+        return _video_frame(path, frame, missing, sandbox=sandbox) if is_video(path) else FrameFile(path)
     pattern = Pattern.parse(path)
     if pattern and _is_file(usual_name := pattern.name(frame)):
         return FrameFile(usual_name)
-    sequence = find_sequence(path)
+    sequence = find_sequence(path, sandbox=sandbox)
     if sequence is None:
         return FrameFile(path)
-    check_has_files(sequence)
+    check_has_files(sequence, sandbox=sandbox)
     if frame in sequence.names:
         return FrameFile(sequence.path(frame))
     if missing == "error":
@@ -136,11 +136,11 @@ def find_frame_file(path: str, frame: int, missing: Missing = "error") -> FrameF
     return FrameFile(sequence.path(chosen), missing == "black")
 
 
-def _find_video(path: str) -> FrameSequence:
+def _find_video(path: str, sandbox: Sandbox) -> FrameSequence:
     """A video as a sequence of frames that are all in one file."""
     from .video import read_video_info
 
-    video = read_video_info(path)
+    video = read_video_info(path, sandbox=sandbox)
     return _make_video_sequence(path, video.count, video.rate)
 
 
@@ -151,10 +151,10 @@ def _make_video_sequence(path: str, count: int, rate: Fraction) -> FrameSequence
     return FrameSequence(pattern, MappingProxyType(dict.fromkeys(range(1, count + 1), name)), rate)
 
 
-def _video_frame(path: str, frame: int, missing: Missing) -> FrameFile:
+def _video_frame(path: str, frame: int, missing: Missing, sandbox: Sandbox) -> FrameFile:
     from .video import read_video_info
 
-    count = read_video_info(path).count
+    count = read_video_info(path, sandbox=sandbox).count
     if 1 <= frame <= count:
         return FrameFile(path, number=frame)
     if missing == "error":
@@ -165,27 +165,27 @@ def _video_frame(path: str, frame: int, missing: Missing) -> FrameFile:
     return FrameFile(path, missing == "black", 1 if frame < 1 else count)
 
 
-def check_has_files(sequence: FrameSequence) -> None:
+def check_has_files(sequence: FrameSequence, sandbox: Sandbox) -> None:
     """Raise InputError for a sequence without a single file, with the name that may have been meant."""
     if sequence.frames:
         return
     text, folder = sequence.pattern.text, sequence.pattern.folder
     if not _is_folder(folder or "."):
         raise InputError(f"{text}: no file has such a name; its folder is missing too")
-    names, sought = _list_folder(folder), text[len(folder) :]
+    names, sought = _list_folder(folder, sandbox=sandbox), text[len(folder) :]
     near = [*difflib.get_close_matches(sought, _rank_patterns(names), 1), *difflib.get_close_matches(sought, names, 1)]
     hint = f"; did you mean '{near[0]}'?" if near else ": check it"
     raise InputError(f"{text}: no file has such a name{hint}")
 
 
-def suggest_pattern(path: str) -> str | None:
+def suggest_pattern(path: str, sandbox: Sandbox) -> str | None:
     """The pattern of a picture that is one of several: `shot.0012.exr` beside shot.0011.exr is `shot.####.exr`."""
     if not _is_file(path):
         return None
     name = Path(path).name
     folder = path[: len(path) - len(name)]
     try:
-        groups = _rank_patterns(_list_folder(folder))
+        groups = _rank_patterns(_list_folder(folder, sandbox=sandbox))
     except InputError:
         return None
     fitting = [
@@ -277,10 +277,10 @@ def _is_read_back(text: str, before: str, after: str) -> bool:
     return pattern is not None and pattern.pieces == (before, after)
 
 
-def _list_folder(folder: str) -> tuple[str, ...]:
+def _list_folder(folder: str, sandbox: Sandbox) -> tuple[str, ...]:
     """The names of the files of a folder, from memory where it has not changed since; none if there is no folder."""
     place = Path(folder or ".").absolute()
-    check_inside(place)
+    sandbox.check(place)
     try:
         written = place.stat().st_mtime_ns
         settled = time.time_ns() - written > _CLOCK_STEP_NS

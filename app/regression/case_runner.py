@@ -20,6 +20,7 @@ from ..media.layers import split_layer
 from ..media.pictures.stored import StoredPart, copy_picture
 from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..renderer.jobs.job import OutputSettings, run_job
+from ..resources.sandbox import Sandbox
 from .cases import Case, Golden
 from .comparison import Parts, add_slow_measures, find_unusable, judge_picture
 from .pictures import leave_pictures, make_views
@@ -33,13 +34,14 @@ class RunOptions:
     `pictures` asks for views of what failed.
     """
 
+    sandbox: Sandbox
     update: bool = False
     out: Path | None = None
     pictures: bool = False
     deterministic: bool = True
 
 
-def run_case(case: Case, renderer: Renderer, how: RunOptions = RunOptions()) -> Outcome:
+def run_case(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     """What becomes of a case. A fault of the case is an outcome; OutputError is raised for `out` alone."""
     started = time.perf_counter()
     if case.skip:
@@ -65,10 +67,10 @@ def _run_failing(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
 def _run_rendering(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     if not case.goldens:
         return _render_only(case, renderer, how)
-    graph = _load_graph(case)
+    graph = _load_graph(case, sandbox=how.sandbox)
     wanted = _make_request(case, graph, how)
     frames = case.frames or (renderer.frames(graph, wanted)[0],)
-    with tempfile.TemporaryDirectory(prefix="halation-") as name:
+    with tempfile.TemporaryDirectory(prefix="halation-", dir=how.sandbox.root or None) as name:
         folders = [Path(name) / str(index) for index in range(len(case.goldens))]
         for folder in folders:
             folder.mkdir()
@@ -95,20 +97,20 @@ def _check_picture(
 ) -> tuple[PictureCheck, str]:
     """The verdict on one picture, and what was blessed."""
     path = _name_at_frame(golden.path, frame)
-    check, made, wanted = judge_picture(case, actual, path, frame)
+    check, made, wanted = judge_picture(case, actual, path, frame, sandbox=how.sandbox)
     if not check.sentence:
         return check, ""
     if how.update:
         refusal = find_unusable(case, made) or _explain_conflict(graph, case, path)
         if not refusal:
             old = check.sentence.removeprefix(f"{path}: ") if wanted else "new"
-            copy_picture(path, actual)
-            return judge_picture(case, actual, path, frame)[0], f"{path}: {old}"
+            copy_picture(path, actual, sandbox=how.sandbox)
+            return judge_picture(case, actual, path, frame, sandbox=how.sandbox)[0], f"{path}: {old}"
         check = replace(check, sentence=f"{path} is not blessed: {refusal}")
     if how.pictures or how.out is not None:
         check = _add_views(check, case, graph, made, wanted)
     if how.out is not None:
-        check = leave_pictures(check, case, actual, made, wanted, how.out)
+        check = leave_pictures(check, case, actual, made, wanted, how.out, sandbox=how.sandbox)
     return check, ""
 
 
@@ -120,7 +122,7 @@ def _add_views(check: PictureCheck, case: Case, graph: Graph, made: Parts, wante
 
 def _render_only(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     """A case without goldens: it must render, in finite numbers, and not only black."""
-    graph = _load_graph(case)
+    graph = _load_graph(case, sandbox=how.sandbox)
     wanted = _make_request(case, graph, how)
     reel = FrameRenderer(renderer, graph, wanted)
     try:
@@ -144,9 +146,9 @@ def _find_fault(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mappi
     )
 
 
-def _load_graph(case: Case) -> Graph:
+def _load_graph(case: Case, sandbox: Sandbox) -> Graph:
     """The graph with its values set. Raises GraphError, also for what `halation check` calls an error."""
-    graph = reduce(_set, case.values.items(), document.load(case.graph))
+    graph = reduce(_set, case.values.items(), document.load(case.graph, sandbox=sandbox))
     errors = [problem for problem in problems(graph) if problem.severity == "error"]
     if errors:
         raise GraphError(f"{case.graph}: {errors[0].sentence}")

@@ -12,20 +12,23 @@ import numpy as np
 from ..errors import HalationError
 from ..media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
 from ..media.pictures.stored import StoredPart, describe_maker, read_stored_parts
+from ..resources.sandbox import Sandbox
 from .cases import METRICS, PER_PIXEL, Case, format_number
 from .results import PictureCheck
 
 Parts = Mapping[str, StoredPart]
 
 
-def judge_picture(case: Case, actual: Path, golden: Path, frame: int) -> tuple[PictureCheck, Parts, Parts]:
+def judge_picture(
+    case: Case, actual: Path, golden: Path, frame: int, sandbox: Sandbox
+) -> tuple[PictureCheck, Parts, Parts]:
     """What there is to say of a picture, and the parts of both files. Nothing is raised for a bad golden."""
-    made, made_by = read_stored_parts(actual), describe_maker(actual)
+    made, made_by = read_stored_parts(actual, sandbox=sandbox), describe_maker(actual, sandbox=sandbox)
     fresh = PictureCheck(golden, frame, made_by=made_by)
     if not golden.is_file():
         return replace(fresh, sentence=f"the golden {golden} is missing: --update makes it"), made, {}
     try:
-        wanted, golden_by = read_stored_parts(golden), describe_maker(golden)
+        wanted, golden_by = read_stored_parts(golden, sandbox=sandbox), describe_maker(golden, sandbox=sandbox)
     except HalationError as fault:
         return replace(fresh, sentence=str(fault)), made, {}
     fresh = replace(fresh, golden_by=golden_by)

@@ -8,12 +8,13 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 from ..resources.atomic_write import write_text_atomically
+from ..resources.sandbox import Sandbox
 from .results import Outcome, RegressionRun
 
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def write_junit(session: RegressionRun, path: Path) -> None:
+def write_junit(session: RegressionRun, path: Path, sandbox: Sandbox) -> None:
     """One testsuite for every suite file, whole or not at all. Raises OutputError."""
     root = ET.Element("testsuites", name="halation", time=f"{session.seconds:.3f}")
     _count(root, session.outcomes)
@@ -30,7 +31,9 @@ def write_junit(session: RegressionRun, path: Path) -> None:
         for item in mine:
             _case(element, item)
     ET.indent(root)
-    write_text_atomically(path, f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n')
+    write_text_atomically(
+        path, f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n', sandbox=sandbox
+    )
 
 
 def _case(suite: ET.Element, outcome: Outcome) -> None:

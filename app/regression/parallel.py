@@ -16,6 +16,7 @@ from threading import current_thread, main_thread
 
 from .. import renderer as engine
 from ..errors import RenderError
+from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .case_runner import RunOptions, run_case
 from .cases import Case
@@ -68,7 +69,7 @@ def run_cases(
 
 
 def _run_alone(cases: Iterable[Case], how: RunOptions) -> Generator[_CaseResult, None, None]:
-    renderer = _open_renderer(how.deterministic)
+    renderer = _open_renderer(how.deterministic, how.sandbox)
     for case in cases:
         yield _run_and_describe(case, renderer, how)
 
@@ -90,7 +91,7 @@ def _run_shared(cases: Sequence[Case], how: RunOptions, jobs: int) -> Generator[
 
 def run_here(case: Case, how: RunOptions) -> Outcome:
     """What becomes of a case; the device stays open for the next one."""
-    return run_case(case, _open_renderer(how.deterministic), how)
+    return run_case(case, _open_renderer(how.deterministic, how.sandbox), how)
 
 
 @contextmanager
@@ -111,7 +112,7 @@ def _limit_threads(threads: str) -> None:
 
 
 def _run_in_worker(case: Case, how: RunOptions) -> _CaseResult:
-    return _run_and_describe(case, _open_renderer(how.deterministic), how)
+    return _run_and_describe(case, _open_renderer(how.deterministic, how.sandbox), how)
 
 
 def _run_and_describe(case: Case, renderer: engine.Renderer, how: RunOptions) -> _CaseResult:
@@ -119,6 +120,10 @@ def _run_and_describe(case: Case, renderer: engine.Renderer, how: RunOptions) ->
 
 
 @cache
-def _open_renderer(deterministic: bool) -> engine.Renderer:
+def _open_renderer(deterministic: bool, sandbox: Sandbox) -> engine.Renderer:
     """One device for all cases of a process; it ends with the process."""
-    return engine.Renderer(engine.open_pinned() if deterministic else engine.open_device(), budget=0)
+    return engine.Renderer(
+        engine.open_pinned(sandbox=sandbox) if deterministic else engine.open_device(sandbox=sandbox),
+        budget=0,
+        sandbox=sandbox,
+    )

@@ -12,6 +12,7 @@ from ..color.transforms import to_three_channels
 from ..errors import OutputError
 from ..media.comparison.metrics import amplify_difference
 from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing, encode_png, write_difference
+from ..resources.sandbox import Sandbox
 from .cases import Case
 from .comparison import Parts
 from .results import PictureCheck, PictureViews
@@ -40,7 +41,7 @@ def make_views(check: PictureCheck, made: Parts, wanted: Parts, view: str) -> Pi
 
 
 def leave_pictures(
-    check: PictureCheck, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path
+    check: PictureCheck, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path, sandbox: Sandbox
 ) -> PictureCheck:
     """The same check with its pictures in a folder: as stored and as PNG; differences as EXR and PNG.
 
@@ -53,14 +54,14 @@ def leave_pictures(
         raise OutputError(f"{folder}: the folder cannot be made ({fault.strerror}); choose another --out") from None
     stem = check.golden.stem
     files = [folder / f"{stem}.actual{actual.suffix}"]
-    copy_picture(files[0], actual)
+    copy_picture(files[0], actual, sandbox=sandbox)
     if wanted:
         files.append(folder / f"{stem}.expected{check.golden.suffix}")
-        copy_picture(files[1], check.golden)
+        copy_picture(files[1], check.golden, sandbox=sandbox)
         layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
         if layer in made and layer in wanted:
             files.append(folder / f"{stem}.difference.exr")
-            write_difference(files[2], {layer: _subtract(made[layer].array, wanted[layer].array)})
+            write_difference(files[2], {layer: _subtract(made[layer].array, wanted[layer].array)}, sandbox=sandbox)
     if check.views:
         for word in ("actual", "expected", "difference"):
             data: bytes = getattr(check.views, word)

@@ -44,10 +44,11 @@ class SuiteFile(pytest.File):
     def collect(self) -> Iterator[pytest.Item]:
         """Every case as a test."""
         from ..errors import HalationError
+        from ..resources.sandbox import read_process_sandbox
         from .suites import load_suite
 
         try:
-            cases = load_suite(self.path)
+            cases = load_suite(self.path, read_process_sandbox())
         except HalationError as fault:
             raise self.CollectError(str(fault)) from None
         for case in cases:
@@ -86,9 +87,10 @@ class CaseItem(pytest.Item):
         return self.path, None, f"{self.path.name}::{self.name}"
 
     def _how(self) -> RunOptions:
+        from ..resources.sandbox import read_process_sandbox
         from .case_runner import RunOptions
 
         update, out = self.config.getoption("--halation-update"), self.config.getoption("--halation-out")
         if out is None:
             out = self.config.cache.mkdir("halation") if self.config.cache else None
-        return RunOptions(bool(update), Path(str(out)) if out else None)
+        return RunOptions(read_process_sandbox(), bool(update), Path(str(out)) if out else None)

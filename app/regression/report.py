@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import UsageError
 from ..resources.atomic_write import write_text_atomically
+from ..resources.sandbox import Sandbox
 from .cases import METRICS, format_number
 from .results import Outcome, PictureCheck, PictureViews, RegressionRun
 
@@ -29,9 +30,9 @@ def check_report(*paths: Path | None) -> None:
             raise UsageError(f"{path}: there is no such folder: create it first")
 
 
-def write_report(session: RegressionRun, path: Path) -> None:
+def write_report(session: RegressionRun, path: Path, sandbox: Sandbox) -> None:
     """Write the page, whole or not at all. Raises OutputError."""
-    write_text_atomically(path, make_page(session))
+    write_text_atomically(path, make_page(session), sandbox=sandbox)
 
 
 def make_page(session: RegressionRun) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..errors import DocumentError, UsageError
 from ..resources.folders import walk_project
+from ..resources.sandbox import Sandbox
 from .cases import ENDING, METRICS, PER_PIXEL, Case
 from .toml_tables import TomlTable, parse_toml, read_frames, read_goldens, read_inputs, read_size
 
@@ -50,9 +51,9 @@ def find_suites(paths: Iterable[Path]) -> tuple[Path, ...]:
     return tuple(found)
 
 
-def load_suite(path: Path) -> tuple[Case, ...]:
+def load_suite(path: Path, sandbox: Sandbox) -> tuple[Case, ...]:
     """The cases of a file, in its order. Raises DocumentError that names the file and the key at fault."""
-    tree = TomlTable(str(path), "", parse_toml(path))
+    tree = TomlTable(str(path), "", parse_toml(path, sandbox=sandbox))
     tree.refuse_other_keys(("defaults", "cases"))
     defaults = tree.table("defaults")
     defaults.refuse_other_keys(tuple(name for name in _KEYS if name not in ("error", "skip")))
@@ -133,6 +134,6 @@ def _check_goldens(path: Path, cases: Iterable[Case]) -> None:
                 )
 
 
-def load_suites(paths: Sequence[Path]) -> tuple[Case, ...]:
+def load_suites(paths: Sequence[Path], sandbox: Sandbox) -> tuple[Case, ...]:
     """The cases of several files and folders. Raises UsageError, DocumentError."""
-    return tuple(case for path in find_suites(paths) for case in load_suite(path))
+    return tuple(case for path in find_suites(paths) for case in load_suite(path, sandbox))

@@ -13,13 +13,14 @@ from ..document.disk import read_text
 from ..errors import DocumentError, HalationError
 from ..graph import did_you_mean
 from ..graph.frames import parse_frames
+from ..resources.sandbox import Sandbox
 from .cases import Golden
 
 
-def parse_toml(path: Path) -> dict[str, Any]:
+def parse_toml(path: Path, sandbox: Sandbox) -> dict[str, Any]:
     """The tables of a TOML file. Raises DocumentError."""
     try:
-        return tomllib.loads(read_text(path))
+        return tomllib.loads(read_text(path, sandbox=sandbox))
     except tomllib.TOMLDecodeError as error:
         said = str(error)
         raise DocumentError(str(path), "", f"not valid TOML: {said[:1].lower()}{said[1:]}") from None

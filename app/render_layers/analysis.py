@@ -23,6 +23,7 @@ from ..media.header import FileHeader, read_header
 from ..media.layers import Layer, find_layer
 from ..media.pixels import read_layers
 from ..resources.input_files import fingerprint
+from ..resources.sandbox import Sandbox
 from . import evidence
 from .camera import CameraSolution, measure_camera, read_header_camera, solve_camera
 from .conventions import Convention, MotionDirection, VectorSpace, find_habit
@@ -59,6 +60,7 @@ class RenderAnalysis:
     header: FileHeader
     maker: FileMaker
     passes: tuple[RenderPass, ...]
+    sandbox: Sandbox
     before: RenderAnalysis | None = None
     chosen_layers: Mapping[Role, Layer] = field(default_factory=lambda: MappingProxyType[Role, Layer]({}))
 
@@ -127,7 +129,7 @@ class RenderAnalysis:
         roles = [*_ROLES_WITH_CONVENTIONS, *([Role.BEAUTY] if self.before and self.find_layer(Role.VELOCITY) else [])]
         layers = {role: layer for role in roles if (layer := self.find_layer(role))}
         requests = [LayerRequest(layer.full_name, Kind.VECTOR, len(layer.channels)) for layer in layers.values()]
-        arrays = read_layers(self.header.info.path, requests) if requests else []
+        arrays = read_layers(self.header.info.path, requests, sandbox=self.sandbox) if requests else []
         return {role: pixels.array for role, pixels in zip(layers, arrays, strict=True)}
 
     def _find_camera(self, pixels: Mapping[Role, Array]) -> RenderCamera:
@@ -185,7 +187,7 @@ class RenderAnalysis:
         picture = self.before.find_layer(Role.BEAUTY)
         if rule is None and picture is not None and Role.BEAUTY in pixels:
             want = LayerRequest(picture.full_name, Kind.VECTOR, len(picture.channels))
-            (earlier,) = read_layers(self.before.header.info.path, [want])
+            (earlier,) = read_layers(self.before.header.info.path, [want], sandbox=self.sandbox)
             rule = evidence.match_velocity_with_pictures(velocity, pixels[Role.BEAUTY], earlier.array)
             if rule is not None and habit_rule is not None and habit_rule.kind == MotionDirection.TO_NEXT:
                 rule = replace(rule, kind=habit_rule.kind)  # what pictures show is much the same before and after
@@ -195,7 +197,11 @@ class RenderAnalysis:
 
 
 def analyze_render(
-    path: str | Path, before: str | Path | None = None, named: Mapping[Role, str] = MappingProxyType({})
+    path: str | Path,
+    before: str | Path | None = None,
+    named: Mapping[Role, str] = MappingProxyType({}),
+    *,
+    sandbox: Sandbox,
 ) -> RenderAnalysis:
     """Look at a render; `before` is the same render one frame earlier, which shows which way motion points.
 
@@ -204,8 +210,10 @@ def analyze_render(
     Raises:
         InputError: as `info`, and as `find_layer` for a layer that is not there.
     """
-    earlier = (str(before), fingerprint(before)) if before is not None else None
-    analysis = _analyze_version(str(path), fingerprint(path), earlier, tuple(sorted(named.items())))
+    earlier = (str(before), fingerprint(before, sandbox=sandbox)) if before is not None else None
+    analysis = _analyze_version(
+        str(path), fingerprint(path, sandbox=sandbox), earlier, tuple(sorted(named.items())), sandbox=sandbox
+    )
     size, size_before = (item.header.info.size for item in (analysis, analysis.before or analysis))
     if size != size_before:
         raise InputError(
@@ -216,9 +224,9 @@ def analyze_render(
 
 @lru_cache(maxsize=64)
 def _analyze_version(
-    path: str, mark: str, before: tuple[str, str] | None, named: tuple[tuple[Role, str], ...] = ()
+    path: str, mark: str, before: tuple[str, str] | None, named: tuple[tuple[Role, str], ...] = (), *, sandbox: Sandbox
 ) -> RenderAnalysis:
-    header = read_header(path)
+    header = read_header(path, sandbox=sandbox)
     maker = find_maker(header.attributes, header.info.layers)
     views = {part.index: part.view for part in header.parts}
     passes = recognize_passes(header.info.layers, header.attributes, maker.renderer, views)
@@ -228,5 +236,10 @@ def _analyze_version(
 
     layers = {role: find_chosen(role, name) for role, name in named}
     return RenderAnalysis(
-        header, maker, passes, _analyze_version(*before, None) if before else None, MappingProxyType(layers)
+        header,
+        maker,
+        passes,
+        sandbox,
+        _analyze_version(*before, None, sandbox=sandbox) if before else None,
+        MappingProxyType(layers),
     )

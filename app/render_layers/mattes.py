@@ -22,7 +22,8 @@ from ..color.transforms import Array
 from ..errors import InputError
 from ..media.layers import normalize_name
 from ..media.pixels import read_layer
-from ..resources.sandbox import outside
+from ..resources.input_files import read_bytes
+from ..resources.sandbox import Sandbox
 from .analysis import RenderAnalysis, analyze_render
 from .naming import Role
 from .recognition import RenderPass
@@ -52,7 +53,11 @@ def find_mattes(analysis: RenderAnalysis) -> tuple[Matte, ...]:
     for name, items in groups.items():
         items.sort(key=lambda item: item.rank)
         key = keys.get(normalize_name(name))
-        ids = _read_manifest(attributes, key, Path(analysis.header.info.path).parent) if key else {}
+        ids = (
+            _read_manifest(attributes, key, Path(analysis.header.info.path).parent, sandbox=analysis.sandbox)
+            if key
+            else {}
+        )
         role = items[0].role
         assert role is not None
         mattes.append(Matte(_ROLES[role], tuple(item.layer.full_name for item in items), MappingProxyType(ids)))
@@ -73,35 +78,35 @@ class IdMap:
         return int(self.ids[y, x]) if 0 <= x < width and 0 <= y < height else 0
 
 
-def read_id_map(path: str, first: str) -> IdMap:
+def read_id_map(path: str, first: str, sandbox: Sandbox) -> IdMap:
     """What is where, by the first layer of a cryptomatte.
 
     Raises:
         InputError: as `read`, also for a layer that is none of a cryptomatte.
     """
-    matte = next((matte for matte in find_mattes(analyze_render(path)) if matte.layers[0] == first), None)
+    matte = next(
+        (matte for matte in find_mattes(analyze_render(path, sandbox=sandbox)) if matte.layers[0] == first),
+        None,
+    )
     if matte is None:
         raise InputError(f"{path}: '{first}' is no cryptomatte")
-    ranks = read_layer(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
+    ranks = read_layer(path, first, Kind.VECTOR, 4, sandbox=sandbox).array.astype(np.float32, copy=False)
     ids, covered = np.ascontiguousarray(ranks[..., 0::2]).view(np.uint32), ranks[..., 1::2]
     ids_on_top = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
     ids_on_top[~(covered.max(axis=2) > 0.0)] = 0
     return IdMap(ids_on_top, MappingProxyType({float_bits(bits): name for name, bits in matte.ids.items()}))
 
 
-def _read_manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[str, int]:
+def _read_manifest(attributes: Mapping[str, object], key: str, folder: Path, sandbox: Sandbox) -> dict[str, int]:
     """Ids by name."""
     try:
         embedded = attributes.get(f"cryptomatte/{key}/manifest")
         file_name = attributes.get(f"cryptomatte/{key}/manif_file")
         file = folder / Path(str(file_name)).name
-        text = (
-            file.read_text(encoding="utf-8")
-            if embedded is None and file_name and not outside(file)
-            else str(embedded or "{}")
-        )
+        is_beside = embedded is None and bool(file_name)
+        text = read_bytes(file, sandbox).decode() if is_beside else str(embedded or "{}")
         parsed = json.loads(text)
         names = cast("dict[str, object]", parsed if isinstance(parsed, dict) else {})
         return {name: int(str(number), 16) for name, number in names.items()}
-    except (OSError, ValueError):
+    except (InputError, ValueError):
         return {}

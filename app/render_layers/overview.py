@@ -10,6 +10,7 @@ from halation.nodes import Matte
 
 from ..errors import InputError
 from ..media.layers import find_layer
+from ..resources.sandbox import Sandbox
 from .analysis import RenderAnalysis, RenderCamera, analyze_render
 from .conventions import Convention
 from .mattes import find_mattes
@@ -52,18 +53,25 @@ class RenderOverview:
 
 
 def summarize_render(
-    path: str, roles: Sequence[Role], named: Mapping[Role, str] = MappingProxyType({})
+    path: str, roles: Sequence[Role], named: Mapping[Role, str] = MappingProxyType({}), *, sandbox: Sandbox
 ) -> RenderOverview:
     """Look at a render for some roles; `named` are layers that somebody chose for them.
 
     Raises:
         InputError: the file cannot be read.
     """
-    unchosen = analyze_render(path)
+    unchosen = analyze_render(path, sandbox=sandbox)
     faults = dict(_find_faults(unchosen, named))
-    analysis = analyze_render(path, named={role: layer for role, layer in named.items() if role not in faults})
+    analysis = analyze_render(
+        path, named={role: layer for role, layer in named.items() if role not in faults}, sandbox=sandbox
+    )
     try:
-        rules, camera, fault, text = analysis.conventions, analysis.camera, "", "\n".join(format_report(analysis))
+        rules, camera, fault, text = (
+            analysis.conventions,
+            analysis.camera,
+            "",
+            "\n".join(format_report(analysis)),
+        )
     except InputError as error:
         rules, camera, fault, text = {}, RenderCamera(None, str(error)), str(error), ""
     uses = {role: _find_use(unchosen, analysis, role, faults.get(role, ""), rules.get(role)) for role in roles}

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from halation.nodes import Meaning, Render
 
 from ..errors import HalationError
+from ..resources.sandbox import Sandbox
 from .analysis import analyze_render
 from .mattes import find_mattes
 from .naming import Role
@@ -34,7 +35,7 @@ _DATA = frozenset(
 """What makes a picture a render: layers that effects work from."""
 
 
-def read_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+def read_render(path: str, named: Mapping[str, str] = MappingProxyType({}), *, sandbox: Sandbox) -> Render:
     """What the file of a render holds; roles that several layers claim alike are left out.
 
     `named` are layers that are to have a role, by that.
@@ -42,7 +43,7 @@ def read_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> R
     Raises:
         InputError: the file cannot be read, or has no such layer.
     """
-    analysis = analyze_render(path, named={Role(role): layer for role, layer in named.items()})
+    analysis = analyze_render(path, named={Role(role): layer for role, layer in named.items()}, sandbox=sandbox)
     layers = {role: layer for role in analysis.roles if (layer := analysis.find_layer(role))}
     return Render(
         MappingProxyType({role.value: layer.full_name for role, layer in layers.items()}),
@@ -55,10 +56,10 @@ def read_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> R
     )
 
 
-def is_render(path: str | Path) -> bool:
+def is_render(path: str | Path, sandbox: Sandbox) -> bool:
     """True for a file of several layers of which one is, or may be, what effects work from; only its header is read."""
     try:
-        analysis = analyze_render(path)
+        analysis = analyze_render(path, sandbox=sandbox)
     except HalationError:
         return False
     roles = {role for item in analysis.passes for role in (item.role, *item.candidates) if role is not None}

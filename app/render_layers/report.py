@@ -36,7 +36,7 @@ def format_report(analysis: RenderAnalysis) -> Iterator[str]:
             for item in analysis.passes
         ],
     )
-    yield from _format_section("color", describe_color_spaces(analysis.header.info.path))
+    yield from _format_section("color", describe_color_spaces(analysis.header.info.path, sandbox=analysis.sandbox))
     yield from _format_section("to be decided", _list_open_questions(analysis))
     yield from _format_section(
         "conventions",

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import UsageError
+from ..errors import InputError, UsageError
+from ..resources.input_files import read_bytes
+from ..resources.sandbox import Sandbox
 from .bench import Benchmark, identify_passes
 
 JUDGED = 0.02
@@ -50,9 +52,9 @@ class BaselineComparison:
         return tuple(sorted((one for one in self.ratios if one.judged > limit), key=lambda one: -one.judged))
 
 
-def compare_with_baseline(bench: Benchmark, path: Path) -> BaselineComparison:
+def compare_with_baseline(bench: Benchmark, path: Path, sandbox: Sandbox) -> BaselineComparison:
     """Compare with what `halation bench --json` printed before. Raises UsageError for a file that is none of these."""
-    found = _read_baseline(path)
+    found = _read_baseline(path, sandbox)
     size = tuple(found["size"])
     if size != bench.size:
         then, now = ("x".join(map(str, sides)) for sides in (size, bench.size))
@@ -75,17 +77,17 @@ def _make_ratio(
     return Ratio(nodes, functions, middle / then["median"], fastest / then["fastest"], then["median"], middle)
 
 
-def _read_baseline(path: Path) -> dict[str, Any]:
+def _read_baseline(path: Path, sandbox: Sandbox) -> dict[str, Any]:
     try:
-        found: Any = json.loads(path.read_bytes())
+        found: Any = json.loads(read_bytes(path, sandbox))
         whole = [one[key] for one in (found, *found["passes"]) for key in ("median", "fastest")]
         for one in found["passes"]:
             _ = tuple(one["nodes"]), tuple(one["functions"]), int(one["number"])
         if not all(isinstance(item, int | float) and item > 0.0 for item in whole) or len(found["size"]) != 2:
             raise ValueError
         return {**found, "device": str(found["device"])}
-    except OSError as fault:
-        raise UsageError(f"--compare {path}: it cannot be read ({fault.strerror})") from None
+    except InputError as fault:
+        raise UsageError(f"--compare {fault}") from None
     except (ValueError, KeyError, TypeError, RecursionError):
         raise UsageError(
             f"--compare {path}: it is no measurement: make one with halation bench GRAPH --json > {path.name}"

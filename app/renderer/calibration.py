@@ -22,7 +22,7 @@ from ..errors import HalationError
 from ..graph import Graph, Port, Settings
 from ..inputs.provider import MediaProvider
 from ..resources.atomic_write import write_text_atomically
-from ..resources.sandbox import outside
+from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .device import Device
 from .execution.runner import Runner
 
@@ -35,23 +35,23 @@ VERSION = 1
 """Goes up when other passes are measured, or the compiler makes something else of them."""
 
 
-def load_or_measure(device: Device, folder: Path | None = None) -> FormTimings | None:
+def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sandbox) -> FormTimings | None:
     """What is kept of the device; else it is measured and kept. None where it cannot be kept.
 
     `folder` is by default that of the user.
     """
     path = (folder or _folder()) / f"{_digest(device)}.json"
-    if outside(path):
+    if sandbox.fault(path):
         return None
-    if (known := _read(path)) is not None:
+    if (known := _read(path, sandbox=sandbox)) is not None:
         return known
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         found = measure_forms(device)
-        known = _read(path)  # another process may have been quicker
+        known = _read(path, sandbox=sandbox)  # another process may have been quicker
         if known is None:
             said = {"renderer": device.target.renderer, "driver": device.driver, **asdict(found)}
-            write_text_atomically(path, json.dumps(said, indent=1) + "\n")
+            write_text_atomically(path, json.dumps(said, indent=1) + "\n", sandbox=sandbox)
     except (OSError, HalationError):
         return None
     return known or found
@@ -65,7 +65,7 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
     nodes = catalogue()
     graph = Graph(settings=Settings(size)).add("noise", nodes["noise"]()).add("blur", nodes["gaussian_blur"]())
     graph = graph.connect(Port("noise", "out"), Port("blur", "image"))
-    request, pictures = Request({"out": Port("blur", "out")}), MediaProvider()
+    request, pictures = Request({"out": Port("blur", "out")}), MediaProvider(sandbox=UNRESTRICTED)
     fastest, spent = dict.fromkeys(get_args(Form), math.inf), 0.0
     runners = {
         form: Runner(device.with_target(replace(device.target, form=form)), pictures.load_pixels, 0) for form in fastest
@@ -101,9 +101,9 @@ def _digest(device: Device) -> str:
     return blake2b(known.encode(), digest_size=12).hexdigest()
 
 
-def _read(path: Path) -> FormTimings | None:
+def _read(path: Path, sandbox: Sandbox) -> FormTimings | None:
     try:
-        found = json.loads(read_text(path))
+        found = json.loads(read_text(path, sandbox=sandbox))
         return FormTimings(float(found["compute"]), float(found["fragment"]))
     except (HalationError, ValueError, KeyError, TypeError):  # it is not there, or nobody can read it: measure again
         return None

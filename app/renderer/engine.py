@@ -12,6 +12,7 @@ from msgspec import Struct, field
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
 from ..inputs.provider import MediaProvider
+from ..resources.sandbox import Sandbox
 from .device import Device
 from .execution.decoding import Array
 from .execution.runner import Runner
@@ -72,10 +73,12 @@ class Renderer:
         library: Library | None = None,
         fusion: bool = True,
         ahead: Prefetcher | None = None,
+        sandbox: Sandbox,
     ) -> None:
+        self.sandbox = sandbox
         self._owns_device = device is None
-        self.device = device or open_device()
-        self.pictures = MediaProvider(prefetcher=ahead)
+        self.device = device or open_device(sandbox=sandbox)
+        self.pictures = MediaProvider(prefetcher=ahead, sandbox=sandbox)
         self.runner = Runner(self.device, self.pictures.load_pixels, budget)
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""

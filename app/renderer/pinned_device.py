@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ..resources.sandbox import Sandbox
 from .device import Device
 from .opening import open_device
 
@@ -59,10 +60,10 @@ def pin_driver() -> Iterator[None]:
                 os.environ[name] = text
 
 
-def open_pinned(memory: int = 0) -> Device:
+def open_pinned(memory: int = 0, *, sandbox: Sandbox) -> Device:
     """The software rasterizer; another device where there is none. Raises DeviceError where there is no OpenGL at all.
 
     `Device.target.software` says which it is.
     """
     with pin_driver():
-        return open_device("fragment", memory)
+        return open_device("fragment", memory, sandbox=sandbox)

@@ -25,7 +25,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import OutputError
-from .sandbox import outside
+from .input_files import find_special_kind
+from .sandbox import Sandbox
 
 _REASONS = {
     errno.ENOSPC: "the disk is full: make room or write elsewhere",
@@ -83,17 +84,14 @@ class Replacement:
 
 
 @contextmanager
-def replace_file(path: str | Path, suffix: str = _SUFFIX) -> Generator[Replacement]:
+def replace_file(path: str | Path, sandbox: Sandbox, suffix: str = _SUFFIX) -> Generator[Replacement]:
     """Make an empty temporary file beside `path`, which is removed unless it is committed. Raises OutputError.
 
     `suffix` is how its name ends, for encoders that tell the format by it.
     """
-    if reason := outside(path):
-        raise OutputError(f"{path}: {reason}")
     try:
+        check_replaceable(path, sandbox)
         target = Path(os.path.realpath(path))
-        if target.is_dir():
-            raise OutputError(f"{path}: is a folder: add the name of a file")
         unique = f"{temporary_prefix(os.getpid())}{os.urandom(6).hex()}"
         replacement = Replacement(path, target.with_name(f"{unique}-{target.name[:_LONGEST_NAME]}{suffix}"), target)
         replacement.temporary.open("xb").close()
@@ -110,9 +108,28 @@ def replace_file(path: str | Path, suffix: str = _SUFFIX) -> Generator[Replaceme
             replacement.temporary.unlink(missing_ok=True)
 
 
-def write_text_atomically(path: str | Path, text: str) -> None:
+def check_replaceable(path: str | Path, sandbox: Sandbox) -> None:
+    """Refuse what a file may not replace: a folder, a FIFO, a device or a socket, also behind a link.
+
+    Raises:
+        OutputError: it is one of these, or the sandbox forbids the path.
+        OSError, ValueError: the system cannot tell.
+    """
+    if reason := sandbox.fault(path):
+        raise OutputError(f"{path}: {reason}")
+    try:
+        mode = Path(path).stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return
+    if stat.S_ISDIR(mode):
+        raise OutputError(f"{path}: is a folder: add the name of a file")
+    if kind := find_special_kind(mode):
+        raise OutputError(f"{path}: is {kind}, which is not replaced: write to a regular file")
+
+
+def write_text_atomically(path: str | Path, text: str, sandbox: Sandbox) -> None:
     """Replace a file by a text in UTF-8. Raises OutputError, also for a file that is read-only."""
-    with replace_file(path) as replacement:
+    with replace_file(path, sandbox) as replacement:
         target = replacement.target
         if target.exists() and not target.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
             raise OutputError(f"{path}: the file is read-only: save under another name, or make it writable")
@@ -121,7 +138,7 @@ def write_text_atomically(path: str | Path, text: str) -> None:
     remove_abandoned_files(target.parent, target.name)
 
 
-def write_atomically(path: str | Path, encode: Callable[[str], None], size: int) -> None:
+def write_atomically(path: str | Path, encode: Callable[[str], None], size: int, sandbox: Sandbox) -> None:
     """Replace a file by what `encode` writes to the name that it is given: about `size` bytes at most.
 
     Encoders do not notice a full disk (OpenImageIO 3.2: PNG and WebP report success, JPEG ends the process), so they
@@ -131,7 +148,7 @@ def write_atomically(path: str | Path, encode: Callable[[str], None], size: int)
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
     """
-    with replace_file(path) as replacement:
+    with replace_file(path, sandbox) as replacement:
         if hasattr(os, "memfd_create") and Path("/proc/self/fd").is_dir():
             _encode_in_memory(replacement.temporary, encode)
         else:
@@ -139,9 +156,9 @@ def write_atomically(path: str | Path, encode: Callable[[str], None], size: int)
         replacement.commit(durable=False)
 
 
-def check_writable(path: str | Path) -> None:
+def check_writable(path: str | Path, sandbox: Sandbox) -> None:
     """Find out whether a file can be made here, by making a temporary one. Raises OutputError."""
-    with replace_file(path):
+    with replace_file(path, sandbox):
         pass
 
 

@@ -1,71 +1,119 @@
-"""Files that are read: where they may lie, which version of one is there, and what it holds byte by byte."""
+"""Files that are read: whether they may be, which version of one is there, and what it holds byte by byte.
+
+Everything that a graph or a command names is opened by `open_file`, or found by `check_file` for a library that opens
+files itself. Both refuse what is no regular file: a FIFO or a device would be waited for without end.
+"""
 
 from __future__ import annotations
 
 import difflib
 import hashlib
 import os
+import stat
+from io import BufferedReader
 from pathlib import Path
 
 from ..errors import InputError
-from .sandbox import outside
+from .sandbox import Sandbox, make_path_printable
+
+_OPEN_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
+"""Windows has only the last of them, and needs it."""
 
 
-def check_inside(path: str | Path) -> None:
-    """Raise InputError for a file that `--root` forbids."""
-    if refusal := outside(path):
-        raise InputError(f"{_printable(path)}: {refusal}")
+def open_file(path: str | Path, sandbox: Sandbox) -> BufferedReader:
+    """Open a regular file for reading.
+
+    What is none is refused before it is opened, which may block or change it, and again once it is open, as it may
+    have been exchanged meanwhile.
+
+    Raises:
+        InputError: the sandbox forbids it, or it is no regular file.
+        OSError, ValueError: the system cannot open it.
+    """
+    sandbox.check(path)
+    _check_regular(path, Path(path).stat())
+    descriptor = os.open(Path(path), _OPEN_FLAGS)
+    try:
+        _check_regular(path, os.fstat(descriptor))
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
 
 
-def check_file(path: str | Path) -> Path:
+def find_special_kind(mode: int) -> str:
+    """What a file is that is neither regular nor a folder, such as "a FIFO", by the mode of its status; else ""."""
+    kinds = (
+        (stat.S_ISFIFO, "a FIFO"),
+        (stat.S_ISSOCK, "a socket"),
+        (stat.S_ISCHR, "a device"),
+        (stat.S_ISBLK, "a device"),
+    )
+    if stat.S_ISREG(mode) or stat.S_ISDIR(mode):
+        return ""
+    return next((kind for is_kind, kind in kinds if is_kind(mode)), "no regular file")
+
+
+def check_file(path: str | Path, sandbox: Sandbox) -> Path:
     """The file, if there is one that may be read and holds something. Raises InputError."""
-    check_inside(path)
+    sandbox.check(path)
     file = Path(path)
     try:
-        file.stat()
+        status = file.stat()
     except FileNotFoundError:
-        pass
+        raise InputError(f"{path}: {_describe_missing(file)}") from None
     except (OSError, ValueError) as error:
         reason = (
             _describe_missing(file)
             if not isinstance(error, PermissionError)
             else "may not be read: check its permissions"
         )
-        raise InputError(f"{_printable(path)}: {reason}") from error
-    if file.is_dir():
+        raise InputError(f"{make_path_printable(path)}: {reason}") from error
+    if stat.S_ISDIR(status.st_mode):
         raise InputError(f"{path}: is a folder: name a picture inside it")
-    if not file.is_file():
-        raise InputError(f"{path}: {_describe_missing(file)}")
+    _check_regular(path, status)
     if not os.access(file, os.R_OK):
         raise InputError(f"{path}: may not be read: check its permissions")
-    if file.stat().st_size == 0:
+    if status.st_size == 0:
         raise InputError(f"{path}: is empty (0 bytes): copy or render it again")
     return file
 
 
-def fingerprint(path: str | Path) -> str:
+def fingerprint(path: str | Path, sandbox: Sandbox) -> str:
     """A cheap mark of this version of the file: where it is, when it was written, how long it is. Raises InputError."""
-    check_inside(path)
+    sandbox.check(path)
     try:
         status = Path(path).stat()
     except (OSError, ValueError) as error:
-        raise InputError(f"{_printable(path)}: {_describe_missing(Path(path))}") from error
+        raise InputError(f"{make_path_printable(path)}: {_describe_missing(Path(path))}") from error
     return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
 
 
-def content_hash(path: str | Path) -> str:
+def content_hash(path: str | Path, sandbox: Sandbox) -> str:
     """SHA-256 of the bytes of the file, in hexadecimal. Raises InputError."""
-    check_inside(path)
     try:
-        with Path(path).open("rb") as file:
+        with open_file(path, sandbox) as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except (OSError, ValueError) as error:
-        raise InputError(f"{_printable(path)}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{make_path_printable(path)}: cannot be read: {reason}") from error
 
 
-def _printable(path: str | Path) -> str:
-    """A path as a sentence can hold it."""
-    return str(path).replace("\0", "\\0")
+def read_bytes(path: str | Path, sandbox: Sandbox) -> bytes:
+    """All of a file. Raises InputError."""
+    try:
+        with open_file(path, sandbox) as file:
+            return file.read()
+    except FileNotFoundError:
+        raise InputError(f"{make_path_printable(path)}: {_describe_missing(Path(path))}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise InputError(f"{make_path_printable(path)}: cannot be read: {reason}") from error
+
+
+def _check_regular(path: str | Path, status: os.stat_result) -> None:
+    if kind := find_special_kind(status.st_mode):
+        raise InputError(f"{make_path_printable(path)}: is {kind}, not a file: name a regular file")
 
 
 def _describe_missing(path: Path) -> str:

@@ -1,59 +1,69 @@
 """The folder below which everything must lie that a command reads and writes, where `--root` names one.
 
-Whoever opens a file asks here first. The folder is in the environment, so that processes which share the work, and the
-libraries' threads, are inside of the same fence.
+A `Sandbox` is made once, where options are understood, and handed to whoever opens files. What a graph names is opened
+only by functions that take one, so a function that forgets it does not pass the type checker. It is a value: threads
+and helper processes have the same, and a render job that goes to another machine carries it.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Generator
-from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-from ..errors import UsageError
+from ..errors import InputError, UsageError
 
-ROOT = "HALATION_ROOT"
-"""The environment variable that names the folder; empty for no fence."""
+ROOT_VARIABLE = "HALATION_ROOT"
+"""The environment variable that does what `--root` does, for every command and for Python."""
 
 
-def outside(path: str | Path) -> str:
-    """Why a file may not be read or written, as the rest of a sentence that starts with its path; "" if it may be.
+@dataclass(frozen=True)
+class Sandbox:
+    """Which files may be read and written: those below the folder `root`, all of them where it is ""."""
 
-    Links are followed: what counts is where a file really lies. What is not there yet counts by its folder.
-    """
-    root = os.environ.get(ROOT, "")
-    if not root:
-        return ""
-    try:
-        if Path(path).resolve().is_relative_to(Path(root).resolve()):
+    root: str
+
+    def fault(self, path: str | Path) -> str:
+        """Why a file may not be read or written, as the rest of a sentence that starts with its path; "" if it may be.
+
+        Links are followed: what counts is where a file really lies. What is not there yet counts by its folder.
+        """
+        if not self.root:
             return ""
-    except (OSError, RuntimeError, ValueError):
-        return f"cannot be found: its links lead nowhere, and nothing outside of {root} may be read or written (--root)"
-    return f"lies outside of {root}: nothing else may be read or written (--root)"
+        try:
+            if Path(path).resolve().is_relative_to(Path(self.root).resolve()):
+                return ""
+        except (OSError, RuntimeError, ValueError):
+            return (
+                f"cannot be found: its links lead nowhere, and nothing outside of {self.root} may be read or written "
+                "(--root)"
+            )
+        return f"lies outside of {self.root}: nothing else may be read or written (--root)"
+
+    def check(self, path: str | Path) -> None:
+        """Raise InputError for a file that may not be read."""
+        if fault := self.fault(path):
+            raise InputError(f"{make_path_printable(path)}: {fault}")
+
+    def narrow(self, folder: str | Path) -> Sandbox:
+        """The sandbox of a folder inside this one. Raises UsageError for a folder outside, and for what is none."""
+        if fault := self.fault(folder):
+            raise UsageError(f"--root {folder}: {fault}")
+        if not Path(folder).is_dir():
+            raise UsageError(f"--root {folder}: there is no such folder")
+        return Sandbox(str(Path(folder).resolve()))
 
 
-def sandbox_root() -> str:
-    """The folder that `--root` names, "" without one: a render job that is sent to another machine carries it."""
-    return os.environ.get(ROOT, "")
+UNRESTRICTED = Sandbox("")
+"""All files: for those that the user chose, and not a graph."""
 
 
-@contextmanager
-def fenced(root: str | Path | None) -> Generator[None]:
-    """Nothing outside of that folder is read or written meanwhile. Raises UsageError for what is no folder."""
-    if root is None:
-        yield
-        return
-    if fault := outside(root):
-        raise UsageError(f"--root {root}: {fault}")
-    if not Path(root).is_dir():
-        raise UsageError(f"--root {root}: there is no such folder")
-    before = os.environ.get(ROOT)
-    os.environ[ROOT] = str(Path(root).resolve())
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[ROOT]
-        else:
-            os.environ[ROOT] = before
+def read_process_sandbox() -> Sandbox:
+    """The sandbox that the environment of this process asks for. Only commands and the Python interface call this."""
+    root = os.environ.get(ROOT_VARIABLE, "")
+    return Sandbox(str(Path(root).resolve())) if root else UNRESTRICTED
+
+
+def make_path_printable(path: str | Path) -> str:
+    """A path as a sentence can hold it."""
+    return str(path).replace("\0", "\\0")

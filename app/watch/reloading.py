@@ -159,7 +159,7 @@ def _load_fitting(tree: dict[str, Any], id: str, folder: str, known: Types) -> G
     values: Any = tree["nodes"][id].get("values")
     while True:
         try:
-            return document.loads(json.dumps(tree), folder=folder, catalogue=known)
+            return document.loads(json.dumps(tree), folder=folder, catalogue=known, sandbox=None)
         except DocumentError as fault:
             name = fault.path.removeprefix(f"nodes.{id}.values.")
             if not isinstance(values, dict) or values.pop(name, None) is None:

@@ -16,9 +16,11 @@ from pathlib import Path
 from typing import Any, cast
 
 from ..compiler import installed_library
-from ..errors import GraphError, HalationError
+from ..errors import GraphError, HalationError, InputError
 from ..graph import Graph
 from ..renderer.jobs.job import FrameReport, JobProgress, JobReport
+from ..resources.input_files import read_bytes
+from ..resources.sandbox import Sandbox
 from .code_files import code_files
 from .reloading import NodeFiles, shader_folder
 from .sequence_files import list_sequence_files
@@ -57,7 +59,9 @@ class ContinuousRenderer:
         bindings: Callable[[Graph], Mapping[str, str]],
         load: Callable[[], Graph],
         render: Callable[[Graph, JobProgress], JobReport],
+        sandbox: Sandbox,
     ) -> None:
+        self._sandbox = sandbox
         self._path, self._bindings = path.absolute(), bindings
         self._load, self._render = load, render
         self._watcher, self._nodes = FileWatcher(), NodeFiles()
@@ -92,10 +96,10 @@ class ContinuousRenderer:
                 graph = self._load()
                 bound = self._bindings(graph)
             except HalationError:
-                self._watched = (self._watched[0] + _find_named_files(self._path), *self._watched[1:])
+                self._watched = (self._watched[0] + _find_named_files(self._path, self._sandbox), *self._watched[1:])
                 self._watch()
                 raise
-            pictures = list_sequence_files(find_pictures(graph, bound))
+            pictures = list_sequence_files(find_pictures(graph, bound), sandbox=self._sandbox)
             files = (find_group_files(graph), pictures, code_files(graph))
             if files == self._watched:
                 return graph
@@ -152,15 +156,15 @@ class _OutdatedCheck:
         """A finished frame is no reason to stop."""
 
 
-def _find_named_files(path: Path) -> tuple[Path, ...]:
+def _find_named_files(path: Path, sandbox: Sandbox) -> tuple[Path, ...]:
     """All files that a document which cannot be loaded may name, and that these name: one may be missing."""
     files: dict[Path, None] = {}
     todo = [path]
     while todo:
         file = todo.pop()
         try:
-            tree: Any = json.loads(file.read_bytes())
-        except (OSError, ValueError, RecursionError):
+            tree: Any = json.loads(read_bytes(file, sandbox))
+        except (InputError, ValueError, RecursionError):
             continue
         for text in _texts(tree):
             named = Path(file.parent, text).absolute()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..errors import HalationError
 from ..media.sequences import find_frame_file, find_sequence, suggest_pattern
+from ..resources.sandbox import Sandbox
 
 MOST = 400
 """Files of one sequence that are watched."""
@@ -15,20 +16,20 @@ AFTER = 24
 """Frames after the last one that are waited for."""
 
 
-def representative_file(path: Path, frame: int = 1) -> Path:
+def representative_file(path: Path, frame: int = 1, *, sandbox: Sandbox) -> Path:
     """The picture itself; of a sequence the one at that frame, or the nearest one. A path that is wrong stays."""
     try:
-        return Path(find_frame_file(str(path), frame, "nearest").path)
+        return Path(find_frame_file(str(path), frame, "nearest", sandbox=sandbox).path)
     except HalationError:
         return path
 
 
-def list_sequence_files(paths: Iterable[Path]) -> tuple[Path, ...]:
+def list_sequence_files(paths: Iterable[Path], sandbox: Sandbox) -> tuple[Path, ...]:
     """Every file that is read for these paths, those included that a sequence lacks or may get soon."""
     files: list[Path] = []
     for path in paths:
         try:
-            sequence = find_sequence(str(path))
+            sequence = find_sequence(str(path), sandbox=sandbox)
         except HalationError:
             sequence = None
         if sequence is None or not sequence.frames:
@@ -40,9 +41,9 @@ def list_sequence_files(paths: Iterable[Path]) -> tuple[Path, ...]:
     return tuple(dict.fromkeys(files))
 
 
-def suggest_patterns(paths: Sequence[Path]) -> tuple[tuple[Path, ...], dict[Path, Path]]:
+def suggest_patterns(paths: Sequence[Path], sandbox: Sandbox) -> tuple[tuple[Path, ...], dict[Path, Path]]:
     """Dropped files with several of one sequence made one, and the sequence that each of the others is a frame of."""
-    suggested = {path: pattern for path in paths if (pattern := suggest_pattern(str(path)))}
+    suggested = {path: pattern for path in paths if (pattern := suggest_pattern(str(path), sandbox=sandbox))}
     counts = {found: [*suggested.values()].count(found) for found in suggested.values()}
     chosen = tuple(
         dict.fromkeys(

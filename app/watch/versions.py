@@ -7,6 +7,7 @@ from time import monotonic
 
 from ..errors import HalationError
 from ..resources.input_files import fingerprint
+from ..resources.sandbox import Sandbox
 
 LOOK_AGAIN = 1.0
 
@@ -14,7 +15,8 @@ LOOK_AGAIN = 1.0
 class FileVersions:
     """What tells one version of a file from the next."""
 
-    def __init__(self) -> None:
+    def __init__(self, sandbox: Sandbox) -> None:
+        self._sandbox = sandbox
         self._known: dict[str, tuple[float, str, str]] = {}
 
     def of(self, path: Path) -> tuple[str, str]:
@@ -23,7 +25,7 @@ class FileVersions:
         at, version, fault = self._known.get(str(path), (-LOOK_AGAIN, "", ""))
         if time_now - at >= LOOK_AGAIN:
             try:
-                version, fault = fingerprint(path), ""
+                version, fault = fingerprint(path, sandbox=self._sandbox), ""
             except HalationError as error:
                 version, fault = "", str(error)
             self._known[str(path)] = (time_now, version, fault)

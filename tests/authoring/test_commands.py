@@ -13,6 +13,7 @@ from halation.authoring.commands import EditCommand
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Graph, Keys, Port
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, chain
 
 
@@ -103,11 +104,11 @@ CLASSES = sorted(
 @pytest.fixture
 def session(tmp_path: Path) -> Session:
     """A document with one of everything."""
-    document.save(chain(1), tmp_path / "group.json")
+    document.save(chain(1), tmp_path / "group.json", sandbox=UNRESTRICTED)
     (tmp_path / "code.glsl").write_text(CODE)
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     types = {**session.types, **TOYS}
-    session = Session(types)
+    session = Session(types, sandbox=UNRESTRICTED)
     graph = chain(3).add("gain", TOYS["gain"]()).add("blend", TOYS["blend"]()).add("render", types["read_render"]())
     graph = graph.connect(port("n0.out"), port("blend.first")).connect(port("n0.out"), port("blend.second"))
     session.apply(c.ReplaceGraph("Start", dataclasses.replace(graph, folder=str(tmp_path))))

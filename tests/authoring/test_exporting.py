@@ -6,6 +6,7 @@ import os
 import sys
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,10 @@ from halation.errors import UsageError
 from halation.graph import Expression, Graph, Group, Input, Output, Port, Settings
 from halation.media import read_layer
 from halation.nodes import Kind, catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 LEVEL = 0.5
+make_job = partial(RenderJob, sandbox=UNRESTRICTED)
 
 
 @pytest.fixture
@@ -31,7 +34,7 @@ def folder(tmp_path):
 
 @pytest.fixture
 def exports():
-    made = RenderQueue()
+    made = RenderQueue(sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -55,7 +58,7 @@ def test_an_unsaved_graph_is_written_with_progress(exports, folder, tmp_path):
     assert one.written_files == (out, tmp_path / "out.png") and (one.done, one.total, one.node) == (1, 1, "n2")
     assert one.fraction == 1.0 and one.seconds > 0.0 and one.seconds_left is None
     assert any("OpenGL" in note for note in one.notes)
-    np.testing.assert_allclose(read_layer(str(out), "", Kind.IMAGE, 4).array, LEVEL, rtol=1e-3)
+    np.testing.assert_allclose(read_layer(str(out), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED).array, LEVEL, rtol=1e-3)
     exports.clear()
     assert exports.all == ()
 
@@ -67,11 +70,11 @@ def test_bindings_options_and_groups(exports, folder, tmp_path, monkeypatch):
     graph = Graph(folder=str(folder)).add_input("beauty", Input(file="a.exr")).add_output("image", Output())
     graph = graph.add("group", Group(body)).connect(Port("inputs", "beauty"), Port("group", "beauty"))
     graph = graph.connect(Port("group", "image"), Port("outputs", "image"))
-    options = RenderJob(size=(8, 6), scale=0.5, precision="float", compression="none")
+    options = make_job(size=(8, 6), scale=0.5, precision="float", compression="none")
     one = exports.start(graph, [("", Path("b out.exr"))], {"beauty": "b.exr:Combined"}, options)
     one.wait()
     assert one.state == "done", one.failure
-    array = read_layer(str(tmp_path / "b out.exr"), "", Kind.IMAGE, 4).array
+    array = read_layer(str(tmp_path / "b out.exr"), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED).array
     assert array.shape == (3, 4, 4)
     np.testing.assert_allclose(array[..., 0], 0.5)
 
@@ -109,7 +112,7 @@ def test_what_makes_no_sense_is_refused_at_once(exports, folder):
 def test_cancelling_leaves_nothing(exports, folder, tmp_path, passes):
     out = tmp_path / "out.exr"
     out.write_bytes(b"precious")
-    one = exports.start(brighter(folder, 200, sigma=30.0), [("", out)], options=RenderJob(size=(1600, 1200)))
+    one = exports.start(brighter(folder, 200, sigma=30.0), [("", out)], options=make_job(size=(1600, 1200)))
     while one.passes[0] < passes:
         assert one.state == "running", one.failure
         time.sleep(0.01)
@@ -145,7 +148,9 @@ def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder
 
 def test_one_that_dies_says_so(exports, folder):
     one = exports.start(
-        brighter(folder, 100, sigma=30.0), [("", folder / "out.exr")], options=RenderJob(size=(900, 900))
+        brighter(folder, 100, sigma=30.0),
+        [("", folder / "out.exr")],
+        options=make_job(size=(900, 900)),
     )
     one._process.kill()
     one.wait()
@@ -153,11 +158,11 @@ def test_one_that_dies_says_so(exports, folder):
 
 
 def test_closing_cancels_or_waits(folder, tmp_path):
-    waited, cancelled = RenderQueue(), RenderQueue()
+    waited, cancelled = RenderQueue(sandbox=UNRESTRICTED), RenderQueue(sandbox=UNRESTRICTED)
     one = waited.start(brighter(folder), [("", tmp_path / "one.exr")])
     waited.close(wait=True)
     long = brighter(folder, 200, sigma=30.0)
-    two = cancelled.start(long, [("", tmp_path / "two.exr")], options=RenderJob(size=(900, 900)))
+    two = cancelled.start(long, [("", tmp_path / "two.exr")], options=make_job(size=(900, 900)))
     cancelled.close()
     assert (one.state, two.state) == ("done", "cancelled")
     assert [path.name for path in tmp_path.glob("*.exr")] == ["one.exr"]
@@ -187,17 +192,25 @@ def names(folder):
 def test_many_frames_are_counted_and_shared(exports, folder, tmp_path, jobs):
     out = tmp_path / "out"
     out.mkdir()
-    one = exports.start(shot(folder), [("", out / "s.####.exr")], options=RenderJob(frames=(1, 2, 5), processes=jobs))
+    one = exports.start(
+        shot(folder),
+        [("", out / "s.####.exr")],
+        options=make_job(frames=(1, 2, 5), processes=jobs),
+    )
     assert (one.done, one.total) == (0, 3)
     assert one.wait(90) and one.state == "done", one.failure
     assert names(out) == ["s.0001.exr", "s.0002.exr", "s.0005.exr"]
     assert [path.name for path in one.written_files] == names(out) and (one.done, one.reused) == (3, 0)
-    np.testing.assert_allclose(read_layer(str(out / "s.0002.exr"), "", Kind.IMAGE, 4).array[..., 0], 1.0)
+    np.testing.assert_allclose(
+        read_layer(str(out / "s.0002.exr"), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED).array[..., 0], 1.0
+    )
 
 
 def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder, tmp_path):
     long = exports.start(
-        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=RenderJob(size=(1600, 1200))
+        brighter(folder, 200, sigma=30.0),
+        [("", tmp_path / "0.exr")],
+        options=make_job(size=(1600, 1200)),
     )
     rest = [exports.start(brighter(folder), [("", tmp_path / f"{number}.exr")]) for number in (1, 2, 3)]
     assert [one.state for one in exports.all] == ["running", "waiting", "waiting", "waiting"]
@@ -218,7 +231,7 @@ def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder
 def test_what_was_stopped_goes_on_where_it_was(exports, folder, tmp_path, jobs):
     out = tmp_path / "out"
     out.mkdir()
-    options = RenderJob(frames=tuple(range(1, 13)), processes=jobs, size=(1200, 900))
+    options = make_job(frames=tuple(range(1, 13)), processes=jobs, size=(1200, 900))
     one = exports.start(shot(folder, 12, sigma=20.0), [("", out / "s.####.exr")], options=options)
     while one.done < 2:
         assert one.state == "running", one.failure
@@ -243,9 +256,11 @@ def test_one_that_cannot_be_started_says_so_and_the_next_one_has_its_turn(export
 
 
 def test_closing_forgets_what_waits(folder, tmp_path):
-    exports = RenderQueue()
+    exports = RenderQueue(sandbox=UNRESTRICTED)
     long = exports.start(
-        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=RenderJob(size=(900, 900))
+        brighter(folder, 200, sigma=30.0),
+        [("", tmp_path / "0.exr")],
+        options=make_job(size=(900, 900)),
     )
     other = exports.start(brighter(folder), [("", tmp_path / "1.exr")])
     exports.close()

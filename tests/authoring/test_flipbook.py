@@ -10,6 +10,7 @@ from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRende
 from halation.errors import InputError
 from halation.graph import OUTPUTS, Graph, Output, Port
 from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED
 
 
 @pytest.fixture
@@ -23,7 +24,9 @@ def folder(tmp_path: Path) -> Path:
 def render(path: Path, frames: tuple[int, ...], view: str = "") -> QueuedRender:
     """A render that somebody else moves on."""
     graph = Graph().add_output("image", Output(view=view))
-    return QueuedRender(QueuedJob(RenderJob(destinations=(("", str(path)),), frames=frames), graph))
+    return QueuedRender(
+        QueuedJob(RenderJob(destinations=(("", str(path)),), frames=frames, sandbox=UNRESTRICTED), graph)
+    )
 
 
 def write(export: QueuedRender, *frames: int) -> None:
@@ -32,16 +35,18 @@ def write(export: QueuedRender, *frames: int) -> None:
 
 
 def test_a_file_stands_for_its_sequence(folder: Path) -> None:
-    strip = FlipbookStrip.from_file(folder / "shot_v1.0005.exr")
+    strip = FlipbookStrip.from_file(folder / "shot_v1.0005.exr", sandbox=UNRESTRICTED)
     assert (strip.path, strip.frames, strip.name) == (folder / "shot_v1.####.exr", (3, 8), "shot_v1.####.exr")
-    assert FlipbookStrip.from_file(folder / "alone.png") == FlipbookStrip(folder / "alone.png", (1, 1))
+    assert FlipbookStrip.from_file(folder / "alone.png", sandbox=UNRESTRICTED) == FlipbookStrip(
+        folder / "alone.png", (1, 1)
+    )
     with pytest.raises(InputError, match="no such picture"):
-        FlipbookStrip.from_file(folder / "gone.exr")
+        FlipbookStrip.from_file(folder / "gone.exr", sandbox=UNRESTRICTED)
 
 
 def test_it_is_a_document_of_its_own(folder: Path) -> None:
     one, other = (
-        FlipbookStrip.from_file(folder / "shot_v1.0005.exr"),
+        FlipbookStrip.from_file(folder / "shot_v1.0005.exr", sandbox=UNRESTRICTED),
         FlipbookStrip(folder / "shot_v1.####.png", (1, 4), "AgX"),
     )
     session = Flipbook((one, other), 12.0, 40).session

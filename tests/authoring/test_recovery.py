@@ -15,6 +15,7 @@ from halation.authoring.recovery.recovery import RecoveryFile
 from halation.errors import DocumentError
 from halation.graph import Graph, Group, Input
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 FAST = 0.02
 
@@ -52,7 +53,7 @@ def kept(tmp_path):
 
 def test_unsaved_work_is_kept_until_it_is_saved(editor, kept, tmp_path):
     path = tmp_path / "mine.json"
-    document.save(graph(1), path)
+    document.save(graph(1), path, sandbox=UNRESTRICTED)
     before = path.read_bytes()
     one = editor()
     one.note(graph(1), path, False)
@@ -81,7 +82,7 @@ def test_what_a_crash_leaves_is_found_loaded_and_discarded(editor, kept, tmp_pat
     second, first = new.find_abandoned()
     assert (first.path, first.title, first.nodes, first.fault) == (None, "Untitled", 1, "")
     assert (second.path, second.title) == (tmp_path / "mine.json", "mine.json") and second.time >= first.time > 1e9
-    assert first.load() == graph(1) and second.load() == graph(2)
+    assert first.load(UNRESTRICTED) == graph(1) and second.load(UNRESTRICTED) == graph(2)
     first.discard()
     assert new.find_abandoned() == (second,)
 
@@ -91,22 +92,22 @@ def test_what_is_the_same_in_its_own_file_is_no_loss(editor, kept, tmp_path):
     one = editor()
     one.note(graph(7), path, True)
     one.close(keep=True)
-    document.save(graph(7), path)
+    document.save(graph(7), path, sandbox=UNRESTRICTED)
     assert editor().find_abandoned() == () and not kept()
 
 
 def test_pictures_and_groups_are_found_where_the_original_found_them(editor, tmp_path, monkeypatch):
     folder = tmp_path / "project"
     folder.mkdir()
-    document.save(Graph().add_input("image", Input()), folder / "body.json")
+    document.save(Graph().add_input("image", Input()), folder / "body.json", sandbox=UNRESTRICTED)
     monkeypatch.chdir(tmp_path)
     whole = Graph(folder="project").add("read", catalogue()["read_image"](path="a.exr"))
-    whole = whole.add("group", Group(document.load("project/body.json"), "body.json"))
+    whole = whole.add("group", Group(document.load("project/body.json", sandbox=UNRESTRICTED), "body.json"))
     one = editor()
     one.note(whole, folder / "graph.json", True)
     one.close(keep=True)
     monkeypatch.chdir("/")
-    loaded = editor().find_abandoned()[0].load()
+    loaded = editor().find_abandoned()[0].load(UNRESTRICTED)
     assert loaded == whole and loaded.folder == str(folder)
     assert list(loaded.nodes["group"].graph.inputs) == ["image"]
 
@@ -121,10 +122,10 @@ def test_damaged_files_are_told_of_not_raised(editor, tmp_path, kept):
     for number, broken in enumerate(("", "{", text[:40], text.replace('"constant"', "3"), "[]", "\x00")):
         file.with_name(f"broken{number}.json").write_text(broken)
     found = new.find_abandoned()
-    assert len(found) == 7 and [one.load() for one in found if one.file == file] == [graph(1)]
+    assert len(found) == 7 and [one.load(UNRESTRICTED) for one in found if one.file == file] == [graph(1)]
     for one in (one for one in found if one.file != file):
         with pytest.raises(DocumentError):
-            one.load()
+            one.load(UNRESTRICTED)
         one.discard()
     assert [one.file for one in new.find_abandoned()] == [file]
 
@@ -135,7 +136,7 @@ def test_adopted_work_is_never_without_a_file(editor, kept, tmp_path):
     one.close(keep=True)
     [old] = kept()
     new = editor()
-    loaded = new.adopt(new.find_abandoned()[0])
+    loaded = new.adopt(new.find_abandoned()[0], UNRESTRICTED)
     assert kept() == [old]
     new.note(loaded, None, True)
     until(lambda: kept() != [old] and len(kept()) == 1)
@@ -149,7 +150,7 @@ def test_adopted_work_that_is_saved_at_once_goes(editor, kept):
     one.note(graph(1), None, True)
     one.close(keep=True)
     new = editor(5.0)
-    new.note(new.adopt(new.find_abandoned()[0]), None, True)
+    new.note(new.adopt(new.find_abandoned()[0], UNRESTRICTED), None, True)
     new.clear()
     until(lambda: not kept())
 
@@ -213,6 +214,7 @@ from halation import document
 from halation.authoring.recovery.recovery import RecoveryFile
 from halation.graph import Graph
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 folder, path = Path(sys.argv[1]), Path(sys.argv[2])
 graph = Graph(folder=str(path.parent))
@@ -224,7 +226,7 @@ for count in itertools.count(1):
     recovery.note(now, path, True)
     print("noted", count, time.monotonic(), flush=True)
     if count % 5 == 0:
-        document.save(now, path)
+        document.save(now, path, sandbox=UNRESTRICTED)
         print("saved", count, time.monotonic(), flush=True)
     time.sleep(0.002)
 """
@@ -242,12 +244,12 @@ def test_killed_at_any_moment_nothing_is_lost(tmp_path):
         saved = [count for word, count, _ in said if word == "saved"]
         if saved:
             saves += 1
-            assert document.load(path).ui["count"] >= saved[-1]
+            assert document.load(path, sandbox=UNRESTRICTED).ui["count"] >= saved[-1]
         new = RecoveryFile(state)
         for one in new.find_abandoned():
-            count, ended = one.load().ui["count"], said[-1][2]
+            count, ended = one.load(UNRESTRICTED).ui["count"], said[-1][2]
             recovered += 1
-            assert len(one.load().nodes) == 60 and one.path == path
+            assert len(one.load(UNRESTRICTED).nodes) == 60 and one.path == path
             assert all(number <= count for _, number, when in said if when < ended - 0.05 - 1.0)
             one.discard()
         new.close()

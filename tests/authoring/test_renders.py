@@ -13,13 +13,14 @@ from halation.presets import sample
 from halation.render_layers.mattes import IdMap
 from halation.render_layers.naming import Role
 from halation.render_layers.overview import RenderOverview
+from halation.resources.sandbox import UNRESTRICTED
 
 NEON = Path(str(sample()))
 
 
 @pytest.fixture
 def renders():
-    made = RenderOverviews()
+    made = RenderOverviews(sandbox=UNRESTRICTED)
     yield made
     made.close()
 

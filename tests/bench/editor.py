@@ -23,6 +23,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from halation.resources.sandbox import UNRESTRICTED
+
 sys.path.append(str(Path(__file__).parents[1]))
 
 import numpy as np
@@ -85,7 +87,7 @@ def measure_frame(folder: Path) -> dict[str, float]:
     """Python per frame, by panel, with 100 nodes in view."""
     graph = make_chain([_CAST[number % len(_CAST)] for number in range(99)], (320, 180))
     path = folder / "hundred.json"
-    document.save(graph, path)
+    document.save(graph, path, sandbox=UNRESTRICTED)
     times_by_panel: dict[str, list[float]] = {}
 
     def body(ui: Ui) -> None:
@@ -116,7 +118,7 @@ def _time_panel(panels: dict[str, Any], title: str, times_by_panel: dict[str, li
 def measure_drag(folder: Path) -> dict[str, float]:
     """Pictures per second while the mouse drags the last exposure in the inspector, without a coarser one meanwhile."""
     path = folder / "ten.json"
-    document.save(make_chain(list(_TEN), (1920, 1080)), path)
+    document.save(make_chain(list(_TEN), (1920, 1080)), path, sandbox=UNRESTRICTED)
     figures: dict[str, float] = {}
 
     def body(ui: Ui) -> None:
@@ -146,7 +148,7 @@ def measure_drag(folder: Path) -> dict[str, float]:
 def measure_zoomed(folder: Path) -> dict[str, Any]:
     """The first of six nodes, a blur and the last one, each changed while a ninth or a thirty-sixth is seen."""
     table: dict[str, Any] = {}
-    renderer = Renderer()
+    renderer = Renderer(sandbox=UNRESTRICTED)
     for width, height in ((1920, 1080), (3840, 2160)):
         box = (0.3, 0.3, 0.3 + 640 / width, 0.3 + 360 / height)
         glimpse, graph = VisibleRegion(box, (width, height), frozenset("A")), make_chain(list(_STACK), (width, height))

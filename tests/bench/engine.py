@@ -15,6 +15,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from halation.resources.sandbox import UNRESTRICTED
 
 sys.path.append(str(Path(__file__).parents[1]))
 
@@ -36,13 +37,13 @@ def main() -> None:
     task = TASKS[options.task]
     given = {name: read(picture_path(options.folder, name), half=name in "ab") for name in task.inputs}
     width = next(iter(given.values())).shape[1]
-    graph = document.load(task.path)
+    graph = document.load(task.path, sandbox=UNRESTRICTED)
     for name, value in task.values(width).items():
         graph = graph.override(name, value)
     for item in options.set:
         name, _, number = item.partition("=")
         graph = graph.override(name, float(number))
-    engine = Renderer(budget=0, fusion=not options.unfused)
+    engine = Renderer(budget=0, fusion=not options.unfused, sandbox=UNRESTRICTED)
     started = time.perf_counter()
     plan = engine.compile(graph, RenderRequest(given))
     planned = time.perf_counter()

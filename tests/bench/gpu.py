@@ -14,6 +14,8 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from halation.resources.sandbox import UNRESTRICTED
+
 sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.gpu_measuring import measure_copies, measure_presets, measure_work
@@ -71,7 +73,7 @@ def main() -> None:
 
 def measure(arguments: argparse.Namespace, say: Say) -> Results:
     """All that was asked for; kept after every part."""
-    device = open_device()
+    device = open_device(sandbox=UNRESTRICTED)
     software = device.target.software
     arguments.dry = arguments.dry or software
     if arguments.dry:

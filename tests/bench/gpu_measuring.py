@@ -26,6 +26,7 @@ from halation.media.comparison.metrics import measure_flip
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
 from halation.renderer.bench import load_frame_inputs, measure_graph
 from halation.renderer.opengl.device import OpenGLDevice
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec import structs
 
 Say = Callable[[str], None]
@@ -52,7 +53,7 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
     engines = {form: engine(device, form) for form in forms}
     for name in given.work:
         work = replace(WORK[name], size=DRY) if given.dry else WORK[name]
-        graph = document.load(work.path)
+        graph = document.load(work.path, sandbox=UNRESTRICTED)
         inputs = {name: make_picture(work.size) for name in work.inputs}
         for turn in range(given.rounds):
             for precision in PRECISIONS:
@@ -67,7 +68,7 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
 def engine(device: Device, form: Form) -> Renderer:
     """A renderer with another form of passes on the same context."""
     target = structs.replace(device.target, form=form, why="measured here")
-    return Renderer(device.with_target(target), budget=0)
+    return Renderer(device.with_target(target), budget=0, sandbox=UNRESTRICTED)
 
 
 def take(
@@ -124,7 +125,7 @@ def finish(device: Device) -> None:
 def measure_presets(results: Results, device: Device, given: argparse.Namespace, say: Say) -> None:
     """How far presets are from what the software rasterizer makes of them: means of FLIP."""
     names, scale = given.presets or list(PRESETS[:DRY_PRESETS] if given.dry else PRESETS), 0.2 if given.dry else 1.0
-    renderer, found = Renderer(device), dict[str, dict[str, Any]]()
+    renderer, found = Renderer(device, sandbox=UNRESTRICTED), dict[str, dict[str, Any]]()
     with tempfile.TemporaryDirectory(prefix="halation-bench-") as made:
         folder = given.software or Path(made)
         for precision in PRECISIONS:

@@ -19,6 +19,7 @@ from halation.errors import HalationError
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 
 
 def make_picture(size: int) -> np.ndarray:
@@ -73,7 +74,7 @@ def main() -> None:
     reader.add_argument("--only", default="", help="a part of the names")
     reader.add_argument("--sheet", type=Path, help="write all pictures, side by side")
     options = reader.parse_args()
-    engine, started = Renderer(), time.perf_counter()
+    engine, started = Renderer(sandbox=UNRESTRICTED), time.perf_counter()
     names_by_kind: dict[str, list[str]] = {}
     tiles: list[np.ndarray] = []
     paths = [path for path in sorted(options.folder.rglob("*.fs")) if options.only in path.name]

@@ -17,6 +17,7 @@ from halation import document
 from halation.compiler import Request, Target, compile_graph
 from halation.inputs.provider import MediaProvider
 from halation.renderer import RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
 
 HALF, FLOAT = 8, 16
 """Bytes of a pixel."""
@@ -24,7 +25,7 @@ HALF, FLOAT = 8, 16
 
 @pytest.fixture(scope="module")
 def device():
-    made = open_device()
+    made = open_device(sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -81,11 +82,13 @@ def test_a_copy_that_does_not_arrive_is_seen(device, monkeypatch):
 
 def planned(name, precision):
     """A work as a card would be given it, its pictures 3840x2160."""
-    work, pictures = WORK[name], MediaProvider()
+    work, pictures = WORK[name], MediaProvider(sandbox=UNRESTRICTED)
     inputs = {one: np.zeros((8, 8, 4), np.float16) for one in work.inputs}
-    request = Request(bindings=pictures.bind(document.load(work.path), inputs), size=UHD)
+    request = Request(bindings=pictures.bind(document.load(work.path, sandbox=UNRESTRICTED), inputs), size=UHD)
     target = Target("a card", 460, software=False, precision="half")
-    return compile_graph(document.load(work.path), request, pictures, target=target, precision=precision)
+    return compile_graph(
+        document.load(work.path, sandbox=UNRESTRICTED), request, pictures, target=target, precision=precision
+    )
 
 
 @pytest.mark.parametrize("precision", ["half", "float"])
@@ -124,17 +127,17 @@ def test_the_chain_is_one_pass_that_moves_no_byte_too_many(device):
     results, renderer = Results(), engine(device, "compute")
     work = replace(WORK["chain"], size=DRY)
     wanted = RenderRequest({"a": make_picture(DRY)}, precision="half")
-    take(results, work, "compute half", renderer, document.load(work.path), wanted, 2)
+    take(results, work, "compute half", renderer, document.load(work.path, sandbox=UNRESTRICTED), wanted, 2)
     known = results.extras["bytes"]["chain"]["compute half"]
     assert known["passes"] == 1 and known["moved"] == known["floor"] == 2 * HALF * DRY[0] * DRY[1]
     assert len(results.runs[0].op) == len(results.runs[0].wall) == 2
-    assert all(seconds > 0.0 for seconds in frames(renderer, document.load(work.path), wanted, 1))
+    assert all(seconds > 0.0 for seconds in frames(renderer, document.load(work.path, sandbox=UNRESTRICTED), wanted, 1))
     renderer.close()
 
 
 def test_bringing_the_sample_to_size_does_not_count(device):
     results, renderer, work = Results(), engine(device, "fragment"), replace(WORK["stack"], size=DRY)
-    graph, wanted = document.load(work.path), RenderRequest(size=DRY, precision="float")
+    graph, wanted = document.load(work.path, sandbox=UNRESTRICTED), RenderRequest(size=DRY, precision="float")
     plan = renderer.compile(graph, wanted)
     take(results, work, "fragment float", renderer, graph, wanted, 1)
     known = results.extras["bytes"]["stack"]["fragment float"]

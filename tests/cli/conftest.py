@@ -14,6 +14,7 @@ from commands import Cli, make_cli
 from exr_files import write_exr
 from halation import renderer
 from halation.compiler import Form
+from halation.resources.sandbox import UNRESTRICTED
 
 WIDTH, HEIGHT = 48, 32
 RED = np.linspace(0.0, 1.0, WIDTH, dtype=np.float32).astype(np.float16).astype(np.float32)
@@ -23,7 +24,7 @@ Graphs = Callable[..., Path]
 
 @cache
 def device(form: Form | None, memory: int) -> renderer.Device:
-    return REAL_DEVICE(form, memory)
+    return REAL_DEVICE(form, memory, sandbox=UNRESTRICTED)
 
 
 REAL_DEVICE = renderer.open_device
@@ -32,7 +33,7 @@ REAL_DEVICE = renderer.open_device
 @pytest.fixture
 def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Cli:
     """`cli("render", path, "-o", file)` runs a command; a thousand devices would be slow, so there is one per form."""
-    monkeypatch.setattr(renderer, "open_device", lambda form=None, memory=0: device(form, memory))
+    monkeypatch.setattr(renderer, "open_device", lambda form=None, memory=0, *, sandbox: device(form, memory))
 
     return make_cli(capfd)
 

@@ -8,8 +8,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import header, read
+from halation.color.management import get_color_manager
 from halation.media import read_layer as read_pixels
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, HOUSE, write_house
 
 
@@ -33,7 +35,7 @@ def test_rendering_into_a_space(cli, graphs, tmp_path):
     assert cli("render", graphs(), "-o", log, "--colorspace", "ARRI LogC4", "--precision", "float").code == 0
     assert cli("render", graphs(), "-o", dpx, "--colorspace", "arri logc4").code == 0
     assert header(log).get_string_attribute("colorInteropID") == "ocio:arrilogc4_awg4_scene"
-    back = read_pixels(log, "", Kind.IMAGE).array
+    back = read_pixels(log, "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(back, read(plain), atol=1e-4)
     assert np.abs(read(log) - read(plain)).max() > 0.1
     assert header(dpx).get_int_attribute("oiio:BitsPerSample") == 10
@@ -177,8 +179,14 @@ def test_an_input_in_another_space_by_flag(cli, graphs, tmp_path, shot):
     inputs = {"beauty": {"type": "Image", "file": "shot.exr", "layer": "Combined", "color_space": "ACEScg"}}
     out = tmp_path / "a.exr"
     assert cli("render", graphs(inputs=inputs), "-o", out, "--precision", "float").code == 0
-    expected = read_pixels(shot, "Combined", Kind.IMAGE, space="ACEScg").array[..., :3] * 2.0
+    expected = read_pixels(shot, "Combined", Kind.IMAGE, space="ACEScg", sandbox=UNRESTRICTED).array[..., :3] * 2.0
     np.testing.assert_allclose(read(out)[..., :3], expected, rtol=1e-5, atol=1e-6)
-    same = read_pixels(shot, "Combined", Kind.IMAGE, color=ColorSettings("", "ACEScg")).array
+    same = read_pixels(
+        shot,
+        "Combined",
+        Kind.IMAGE,
+        manager=get_color_manager(ColorSettings("", "ACEScg"), UNRESTRICTED),
+        sandbox=UNRESTRICTED,
+    ).array
     np.testing.assert_allclose(expected, 2.0 * same[..., :3] @ AP1_TO_REC709.T, rtol=1e-4, atol=1e-4)
     assert json.loads(graphs(inputs=inputs).read_text())["inputs"]["beauty"]["color_space"] == "ACEScg"

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
+from halation.resources.sandbox import UNRESTRICTED
 
 HALATION = [sys.executable, "-m", "halation.cli", "edit"]
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")
@@ -157,7 +158,7 @@ def test_it_ends_when_asked_to(place: dict[str, str], number: signal.Signals, co
 @POSIX
 def test_paths_start_where_it_was_started(place: dict[str, str], tmp_path: Path) -> None:
     (tmp_path / "work").mkdir()
-    document.save(document.load(LOOK), tmp_path / "work" / "look.json")
+    document.save(document.load(LOOK, sandbox=UNRESTRICTED), tmp_path / "work" / "look.json", sandbox=UNRESTRICTED)
     with running(place, "work/look.json", "-i", "beauty=work/none.exr", cwd=tmp_path) as process:
         until(lambda: recent(place), process)
         process.terminate()
@@ -169,7 +170,7 @@ def test_paths_start_where_it_was_started(place: dict[str, str], tmp_path: Path)
 def test_two_editors_at_once(place: dict[str, str], tmp_path: Path) -> None:
     files = [tmp_path / "one.json", tmp_path / "two.json"]
     for file in files:
-        document.save(document.load(LOOK), file)
+        document.save(document.load(LOOK, sandbox=UNRESTRICTED), file, sandbox=UNRESTRICTED)
     with running(place, files[0]) as first, running(place, files[1]) as second:
         until(lambda: len(held(place)) == 2, first)
         until(lambda: set(recent(place)) == set(map(str, files)), second)

@@ -21,6 +21,7 @@ from halation.media.comparison.contact_sheet import write_sheet
 from halation.nodes import Kind, Node, Source, catalogue
 from halation.presets import sample
 from halation.renderer import Renderer
+from halation.resources.sandbox import UNRESTRICTED
 
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
@@ -86,7 +87,7 @@ def test_what_a_node_makes_is_made_visible(renderer: Renderer) -> None:
 
 def written(sheet: gallery.Sheet, folder: Path) -> np.ndarray:
     """A sheet as its JPEG shows it."""
-    write_sheet(folder / "sheet.jpg", sheet.light)
+    write_sheet(folder / "sheet.jpg", sheet.light, sandbox=UNRESTRICTED)
     return cv2.imread(str(folder / "sheet.jpg")).astype(np.float32)
 
 
@@ -101,7 +102,7 @@ def renewed(renderer: Renderer) -> None:
     makers = {"nodes": gallery.make_node_sheet, "presets": gallery.make_preset_sheet, "time": gallery.make_time_sheet}
     for name, make in makers.items():
         sheet = make(renderer)
-        write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names))
+        write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names), sandbox=UNRESTRICTED)
 
 
 def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ import pytest
 from exr_files import write_exr
 from halation.cli.program import WITHOUT_ROOT, Commands
 from halation.renderer.jobs.render_job import RenderJob, worker_command
-from halation.resources.sandbox import ROOT
+from halation.resources.sandbox import ROOT_VARIABLE, Sandbox
 
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -110,7 +110,7 @@ def test_what_a_graph_names_outside_is_refused(cli, yard, what, way):
     graph, fence = written(yard, tree(path)), yard / "fence"
     refused = cli("render", graph, "-o", fence / "a.png", "--root", fence)
     assert refused.code in (3, 4) and "lies outside of" in refused.err, refused
-    assert not (fence / "a.png").exists() and ROOT not in os.environ
+    assert not (fence / "a.png").exists() and ROOT_VARIABLE not in os.environ
     if what != "a config":  # which nothing needs before there are pixels
         assert "lies outside of" in cli("explain", graph, "--root", fence).err
         assert "lies outside of" in cli("check", graph, "--root", fence).out
@@ -189,7 +189,7 @@ def test_a_job_carries_its_root(yard):
     fence = yard / "fence"
     for file, code in ((yard / "out" / "shot.exr", 4), (picture(fence / "shot.exr"), 0)):
         graph = written(yard, NAMED["an input"][1](str(file)))
-        job = RenderJob(graph=str(graph), destinations=(("", str(fence / "a.png")),), root=str(fence))
+        job = RenderJob(graph=str(graph), destinations=(("", str(fence / "a.png")),), sandbox=Sandbox(str(fence)))
         result = subprocess.run(worker_command(), input=job.to_json(), capture_output=True, text=True)
         assert result.returncode == code, result.stderr
 

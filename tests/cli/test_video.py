@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from halation.resources.sandbox import UNRESTRICTED
 
 av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
 
@@ -97,7 +98,7 @@ def test_all_frames_go_into_one_file_in_their_order(cli, movie, tmp_path, name):
     assert first.code == 0, first.err
     assert first.json["written"] == [str(tmp_path / name)]
     assert [number_in(frame) for frame in decode_frames(tmp_path / name)] == list(range(1, COUNT + 1))
-    found = media.find_sequence(str(tmp_path / name))
+    found = media.find_sequence(str(tmp_path / name), sandbox=UNRESTRICTED)
     assert found is not None and found.rate == 25  # that of the video that is read
     before = (tmp_path / name).read_bytes()
     assert cli("render", graph, "-o", tmp_path / name, *words).code == 0
@@ -111,8 +112,10 @@ def test_some_frames_backwards_beside_pictures(cli, movie, tmp_path):
     assert [Path(file).name for file in result.json["written"]] == ["a.0007.png", "a.0005.png", "a.0003.png", "a.mkv"]
     assert [number_in(frame) for frame in decode_frames(tmp_path / "a.mkv")] == [7, 5, 3]
     for place, frame in enumerate((7, 5, 3), 1):
-        still = media.read_layer(tmp_path / f"a.{frame:04d}.png", "", Kind.IMAGE).array
-        assert np.array_equal(media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=place).array, still)
+        still = media.read_layer(tmp_path / f"a.{frame:04d}.png", "", Kind.IMAGE, sandbox=UNRESTRICTED).array
+        assert np.array_equal(
+            media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=place, sandbox=UNRESTRICTED).array, still
+        )
 
 
 def test_the_rate_of_the_graph_counts(cli, graphs, clip, tmp_path):
@@ -121,7 +124,7 @@ def test_the_rate_of_the_graph_counts(cli, graphs, clip, tmp_path):
         settings={"rate": 29.97, "frames": [2, 4]},
     )
     assert cli("render", graph, "-o", tmp_path / "a.mp4").code == 0
-    assert str(media.find_sequence(str(tmp_path / "a.mp4")).rate) == "30000/1001"
+    assert str(media.find_sequence(str(tmp_path / "a.mp4"), sandbox=UNRESTRICTED).rate) == "30000/1001"
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie):

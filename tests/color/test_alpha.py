@@ -8,10 +8,11 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.color.encoding import Encoding
-from halation.color.management import OcioColorSpace, get_color_manager
+from halation.color.management import OcioColorSpace, get_color_manager, get_default_color_manager
 from halation.color.transforms import from_working
 from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import OCIO, studio
 from oiio_pictures import write_with_attributes
 
@@ -42,7 +43,7 @@ def reference(rgba: Array, source: str, target: str) -> Array:
 
 
 def read(path: Path, **options: object) -> Array:
-    return read_layer(path, "", Kind.IMAGE, **options).array
+    return read_layer(path, "", Kind.IMAGE, **options, sandbox=UNRESTRICTED).array
 
 
 @pytest.mark.parametrize("space", SPACES)
@@ -61,7 +62,12 @@ def test_every_space_in_and_out(tmp_path, space):
     if space == WORKING:
         return
     write_picture(
-        tmp_path / "b.exr", {"": rgba}, kinds={"": Kind.IMAGE}, precision="float", encoding=Encoding(space=space)
+        tmp_path / "b.exr",
+        {"": rgba},
+        kinds={"": Kind.IMAGE},
+        precision="float",
+        encoding=Encoding(space=space),
+        sandbox=UNRESTRICTED,
     )
     stored = oiio.ImageBuf(str(tmp_path / "b.exr")).get_pixels(oiio.FLOAT)
     np.testing.assert_allclose(stored[..., :3], reference(rgba, WORKING, space), rtol=1e-3, atol=1e-5)
@@ -85,7 +91,7 @@ def test_a_glow_without_cover_survives(tmp_path, format, space):
     rgba[..., :3] = (0.5, 0.4, 0.3)
     path = write_with_attributes(tmp_path / "a.exr", rgba, format=format, colorInteropID=space)
     for color in (ColorSettings(), ColorSettings("", "ACEScg"), ColorSettings("ocio://default", "ACES2065-1")):
-        pixels = read(path, color=color)
+        pixels = read(path, manager=get_color_manager(color, UNRESTRICTED))
         assert (pixels[..., :3] > 0.02).all() and not pixels[..., 3].any()
 
 
@@ -94,7 +100,7 @@ def test_a_tiny_alpha_never_makes_light_infinite(tmp_path):
     rgba = np.full((3, 3, 4), 0.5, np.float32)
     rgba[..., 3] = np.array([1e-6, 1e-20, 1e-41], np.float32)
     path = write_with_attributes(tmp_path / "a.exr", rgba, format="float", colorInteropID="arri_logc4")
-    pixels = read_layer(path, "", Kind.IMAGE)
+    pixels = read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED)
     assert np.isfinite(pixels.array).all() and pixels.repaired == 0
     np.testing.assert_allclose(pixels.array[..., :3], reference(rgba * (1, 1, 1, 0), "ARRI LogC4", WORKING), rtol=1e-4)
 
@@ -107,6 +113,7 @@ def test_light_above_half_is_kept_on_the_way_out(tmp_path):
         kinds={"": Kind.IMAGE},
         precision="float",
         encoding=Encoding(space="g22_rec709_scene"),
+        sandbox=UNRESTRICTED,
     )
     np.testing.assert_allclose(read(tmp_path / "a.exr"), rgba, rtol=1e-3)
 
@@ -132,6 +139,6 @@ def test_a_bitmap_without_any_cover_has_a_fourth_byte_that_nobody_wrote(tmp_path
 
 
 def test_data_spaces_stay_as_they_are():
-    manager = get_color_manager()
+    manager = get_default_color_manager()
     light = np.array([[0.1, 0.2, 0.3]], np.float32)
     np.testing.assert_array_equal(from_working(light, OcioColorSpace("Raw", True, True), manager), light)

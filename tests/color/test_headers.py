@@ -11,10 +11,12 @@ import OpenImageIO as oiio
 import pytest
 from film_scans import write_cineon
 from halation.color.header_space import REC709, HeaderSpace, make_gamut_matrix
+from halation.color.management import get_color_manager
 from halation.errors import InputError
 from halation.media import read_layer
 from halation.media.color_spaces import describe_color_spaces, find_layer_spaces
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, studio
 from oiio_pictures import write_picture
 
@@ -33,11 +35,13 @@ def with_chromaticities(path: Path, light: Array, numbers: tuple[float, ...], **
 
 
 def rgb(path: Path, color: ColorSettings | None = None) -> Array:
-    return read_layer(path, "", Kind.IMAGE, color=color or ColorSettings()).array[..., :3]
+    return read_layer(
+        path, "", Kind.IMAGE, manager=get_color_manager(color or ColorSettings(), UNRESTRICTED), sandbox=UNRESTRICTED
+    ).array[..., :3]
 
 
 def name_and_reason(path: Path) -> tuple[str, ...]:
-    (row,) = describe_color_spaces(path)
+    (row,) = describe_color_spaces(path, sandbox=UNRESTRICTED)
     return row
 
 
@@ -117,7 +121,7 @@ def test_impossible_ones_are_reported(tmp_path, light, numbers):
     if len(numbers) != 8:  # OpenEXR drops an attribute of another type
         return
     assert name == "lin_rec709_scene" and "those of no colors" in reason and "give the input a color_space" in reason
-    assert "those of no colors" in read_layer(path, "", Kind.IMAGE).warning
+    assert "those of no colors" in read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).warning
 
 
 def test_the_matrix_of_the_same_primaries_is_none_at_all():
@@ -185,7 +189,7 @@ def test_film_scans(tmp_path):
 def test_portable_maps(tmp_path, ending, format):
     codes = np.full((4, 5, 1 if ending in ("pgm", "pbm") else 3), 0.5, np.float32)
     path = write_picture(tmp_path / f"a.{ending}", codes, format=format)
-    stored = read_layer(path, "", Kind.FIELD).array
+    stored = read_layer(path, "", Kind.FIELD, sandbox=UNRESTRICTED).array
     if str(oiio.ImageBuf(str(path)).spec().format) == "float":
         np.testing.assert_array_equal(rgb(path), 0.5)
     else:
@@ -196,4 +200,4 @@ def test_portable_maps(tmp_path, ending, format):
 def test_a_name_that_the_author_wrote_is_refused(tmp_path, light):
     path = write_picture(tmp_path / "a.exr", light, attributes={"colorInteropID": ("string", "my studio log")})
     with pytest.raises(InputError, match="'my studio log' is unknown: give the input a color_space"):
-        find_layer_spaces(path)
+        find_layer_spaces(path, sandbox=UNRESTRICTED)

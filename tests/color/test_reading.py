@@ -11,10 +11,12 @@ import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
 from halation import document
+from halation.color.management import get_color_manager
 from halation.errors import GraphError, InputError
 from halation.media import read_layer
 from halation.media.color_spaces import find_layer_spaces
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, studio, through
 
 Array = np.ndarray
@@ -41,7 +43,9 @@ def codes() -> Array:
 
 
 def rgb(path: Path, color: ColorSettings, space: str = "") -> Array:
-    return read_layer(path, "", Kind.IMAGE, space=space, color=color).array[..., :3]
+    return read_layer(
+        path, "", Kind.IMAGE, space=space, manager=get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED
+    ).array[..., :3]
 
 
 RULES = [
@@ -61,7 +65,7 @@ def test_rules_of_the_config(tmp_path, color, reference, light, name, space, rea
     else:
         array = light / 64.0
         path, numbers = made(tmp_path / name, array), array
-    (found,) = find_layer_spaces(path, color).values()
+    (found,) = find_layer_spaces(path, get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED).values()
     assert (found.name, found.reason) == (space, reason)
     if space == "numbers":
         expected = numbers
@@ -81,7 +85,7 @@ def test_rules_of_the_config(tmp_path, color, reference, light, name, space, rea
 )
 def test_a_header_is_stronger_than_a_rule(tmp_path, color, light, attributes, reason):
     path = made(tmp_path / "plates" / "a.exr", light, **attributes)
-    (found,) = find_layer_spaces(path, color).values()
+    (found,) = find_layer_spaces(path, get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED).values()
     assert found.reason == reason and found.space is not None and found.space.name == "house linear"
     np.testing.assert_array_equal(rgb(path, color), light)
     np.testing.assert_allclose(rgb(path, REC709), light @ AP1_TO_REC709.T, rtol=1e-5, atol=1e-4)
@@ -92,7 +96,9 @@ def test_what_is_said_of_an_input_is_stronger_than_all(tmp_path, color, referenc
     np.testing.assert_allclose(
         rgb(path, color, "house dim"), through(reference, light / 64.0, "house dim", "house linear"), rtol=2e-5
     )
-    (found,) = find_layer_spaces(path, color, "HOUSE LOG").values()
+    (found,) = find_layer_spaces(
+        path, get_color_manager(color, UNRESTRICTED), "HOUSE LOG", sandbox=UNRESTRICTED
+    ).values()
     assert found.reason == "as color_space says"
     np.testing.assert_array_equal(rgb(path, color, "data"), light / np.float32(64.0))
     np.testing.assert_array_equal(rgb(path, color, "auto"), rgb(path, color))
@@ -102,7 +108,9 @@ def test_the_last_rule_says_nothing(tmp_path, light):
     """The built-in config takes every EXR for ACES2065-1, and whatever it does not know for sRGB."""
     path = made(tmp_path / "a.exr", light)
     np.testing.assert_array_equal(rgb(path, REC709), light)
-    (found,) = find_layer_spaces(path, ColorSettings("ocio://default")).values()
+    (found,) = find_layer_spaces(
+        path, get_color_manager(ColorSettings("ocio://default"), UNRESTRICTED), sandbox=UNRESTRICTED
+    ).values()
     assert (found.name, found.reason) == ("ACES2065-1", "the file rule 'EXR'")
 
 
@@ -120,7 +128,9 @@ def test_premultiplied_and_straight_color(tmp_path, light):
     alpha = np.linspace(0.0, 1.0, 32, dtype=np.float32)[None, :, None].repeat(24, axis=0)
     codes = through(studio(), light, "ACEScg", "ARRI LogC4")
     path = made(tmp_path / "a.exr", np.concatenate([codes * alpha, alpha], axis=2), colorInteropID="arri_logc4")
-    array = read_layer(path, "", Kind.IMAGE, color=ACESCG).array
+    array = read_layer(
+        path, "", Kind.IMAGE, manager=get_color_manager(ACESCG, UNRESTRICTED), sandbox=UNRESTRICTED
+    ).array
     expected = np.where(alpha > 0.0, through(studio(), codes, "ARRI LogC4", "ACEScg"), 0.0) * alpha
     seen = alpha[..., 0] > 0.0
     np.testing.assert_allclose(array[..., :3][seen], expected[seen], rtol=1e-4, atol=1e-5)
@@ -140,14 +150,29 @@ def test_data_is_never_converted(tmp_path, color, light):
             (Kind.FIELD, "Combined", 1, light[..., :1]),
             (Kind.VECTOR, "CryptoObject00", 3, light),
         ):
-            array = read_layer(path, layer, kind, width, space=space, color=color).array
+            array = read_layer(
+                path,
+                layer,
+                kind,
+                width,
+                space=space,
+                manager=get_color_manager(color, UNRESTRICTED),
+                sandbox=UNRESTRICTED,
+            ).array
             np.testing.assert_array_equal(array, expected)
-        shown = read_layer(path, "Normal", Kind.IMAGE, space=space, color=color).array[..., :3]
+        shown = read_layer(
+            path,
+            "Normal",
+            Kind.IMAGE,
+            space=space,
+            manager=get_color_manager(color, UNRESTRICTED),
+            sandbox=UNRESTRICTED,
+        ).array[..., :3]
         np.testing.assert_array_equal(shown, light)
     gray = made(tmp_path / "plates" / "m.png", (mask.clip(0, 1) * 255).astype(np.uint8), "uint8")
-    field = read_layer(gray, "", Kind.FIELD, color=color).array
+    field = read_layer(gray, "", Kind.FIELD, manager=get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(field, (mask.clip(0, 1) * 255).astype(np.uint8) / 255.0, atol=1e-7)
-    assert set(find_layer_spaces(path, color)) == {"Combined"}
+    assert set(find_layer_spaces(path, get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED)) == {"Combined"}
 
 
 def graph_of(tmp_path: Path, **parts: object):
@@ -159,7 +184,7 @@ def graph_of(tmp_path: Path, **parts: object):
         "nodes": {"r": {"type": "read_image", "values": {"path": "tex/wood.png", **parts}}},
         "links": {"outputs.o": "inputs.a"},
     }
-    return document.loads(json.dumps(tree), folder=str(tmp_path))
+    return document.loads(json.dumps(tree), folder=str(tmp_path), sandbox=UNRESTRICTED)
 
 
 @pytest.mark.parametrize("parts", [{}, {"color_space": "house dim"}])
@@ -171,7 +196,7 @@ def test_a_graph_reads_so_by_inputs_and_by_nodes(tmp_path, color, parts):
     np.testing.assert_array_equal(by_node[..., :3], expected)
     bound = hal.render(graph, {"a": str(path)}, precision="float")["o"][..., :3]
     np.testing.assert_array_equal(bound, expected)
-    again = document.loads(document.dumps(graph), folder=str(tmp_path))
+    again = document.loads(document.dumps(graph), folder=str(tmp_path), sandbox=UNRESTRICTED)
     assert again.inputs == graph.inputs and again.settings == graph.settings
 
 

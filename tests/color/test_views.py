@@ -16,6 +16,7 @@ from halation.color.gpu_programs import write_view_program
 from halation.errors import InputError, UsageError
 from halation.media import read_layer
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 Make = Callable[..., Path]
 Random = np.random.Generator
@@ -34,7 +35,7 @@ def encoded(linear: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp", "a.tga"])
 def test_every_8_bit_level(make: Make, name: str) -> None:
     levels = np.arange(256, dtype=np.uint8).reshape(16, 16, 1).repeat(3, axis=2)
-    array = read_layer(make(name, levels, format="uint8"), "", Kind.IMAGE).array
+    array = read_layer(make(name, levels, format="uint8"), "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     assert array.dtype == np.float32 and (array[..., 3] == 1.0).all()
     np.testing.assert_allclose(array[..., :3], decoded(levels / 255), atol=1e-7)
 
@@ -42,7 +43,7 @@ def test_every_8_bit_level(make: Make, name: str) -> None:
 @pytest.mark.parametrize("name", ["a.png", "a.tif"])
 def test_every_16_bit_level(make: Make, name: str) -> None:
     levels = np.arange(65536, dtype=np.uint16).reshape(256, 256, 1).repeat(3, axis=2)
-    array = read_layer(make(name, levels, format="uint16"), "", Kind.IMAGE).array
+    array = read_layer(make(name, levels, format="uint16"), "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(array[..., :3], decoded(levels / 65535), atol=1e-7)
 
 
@@ -51,21 +52,23 @@ def test_lossy_formats(make: Make, name: str) -> None:
     smooth = np.linspace(20, 230, 64 * 64 * 3).astype(np.uint8).reshape(64, 64, 3)
     path = make(name, smooth, format="uint8")
     stored = oiio.ImageInput.open(str(path)).read_image(0, 0, 0, 3, "uint8")
-    np.testing.assert_allclose(read_layer(path, "", Kind.IMAGE).array[..., :3], decoded(stored / 255), atol=1e-7)
+    np.testing.assert_allclose(
+        read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array[..., :3], decoded(stored / 255), atol=1e-7
+    )
 
 
 def test_radiance_is_linear(make: Make, rng: Random) -> None:
     path = make("a.hdr", rng.random((9, 16, 3), np.float32) * 50)
     stored = oiio.ImageInput.open(str(path)).read_image(0, 0, 0, 3, "float")
-    np.testing.assert_array_equal(read_layer(path, "", Kind.IMAGE).array[..., :3], stored)
+    np.testing.assert_array_equal(read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array[..., :3], stored)
 
 
 def test_gray_and_palette(make: Make, tmp_path: Path) -> None:
     gray = np.arange(256, dtype=np.uint8).reshape(16, 16, 1)
-    array = read_layer(make("g.png", gray, format="uint8", names=("Y",)), "", Kind.IMAGE).array
+    array = read_layer(make("g.png", gray, format="uint8", names=("Y",)), "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(array[..., :3], decoded(gray / 255).repeat(3, axis=2), atol=1e-7)
     colors = np.array([[[255, 0, 0], [0, 128, 255]], [[7, 7, 7], [255, 0, 0]]], np.uint8)
-    array = read_layer(make("p.gif", colors, format="uint8"), "", Kind.IMAGE).array
+    array = read_layer(make("p.gif", colors, format="uint8"), "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(array[..., :3], decoded(colors / 255), atol=1e-7)
 
 
@@ -80,14 +83,14 @@ def test_straight_alpha_is_applied_to_linear_color(make: Make, rng: Random, name
     wish = oiio.ImageSpec()
     wish.attribute("oiio:UnassociatedAlpha", 1)
     file = oiio.ImageInput.open(str(path), wish).read_image(0, 0, 0, len(channels), "uint8") / 255
-    array = read_layer(path, "", Kind.IMAGE).array
+    array = read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(array[..., 3:], file[..., -1:], atol=1e-7)
     np.testing.assert_allclose(array[..., :3], decoded(file[..., :-1]) * file[..., -1:] * np.ones(3), atol=1e-6)
 
 
 def test_associated_alpha_is_taken_out_of_the_encoding(make: Make) -> None:
     stored = np.array([[[100, 50, 25, 200], [0, 0, 0, 0], [255, 255, 255, 255]]], np.uint8)
-    array = read_layer(make("a.tif", stored, format="uint8"), "", Kind.IMAGE).array
+    array = read_layer(make("a.tif", stored, format="uint8"), "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     alpha = stored[..., 3:] / 255
     color = np.divide(stored[..., :3] / 255, alpha, out=np.zeros((1, 3, 3)), where=alpha > 0)
     np.testing.assert_allclose(array[..., :3], decoded(color) * alpha, atol=1e-6)
@@ -95,7 +98,7 @@ def test_associated_alpha_is_taken_out_of_the_encoding(make: Make) -> None:
 
 def test_a_mask_is_read_as_numbers(make: Make) -> None:
     levels = np.arange(256, dtype=np.uint8).reshape(16, 16, 1)
-    mask = read_layer(make("m.png", levels, format="uint8", names=("Y",)), "", Kind.FIELD).array
+    mask = read_layer(make("m.png", levels, format="uint8", names=("Y",)), "", Kind.FIELD, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(mask, levels / 255, atol=1e-7)
 
 
@@ -108,7 +111,9 @@ def test_a_mask_is_read_as_numbers(make: Make) -> None:
 )
 def test_wide_gamut_becomes_rec709(make: Make, rng: Random, attributes: dict[str, object]) -> None:
     colors = rng.random((8, 8, 3), np.float32)
-    array = read_layer(make("a.exr", colors, attributes=attributes), "", Kind.IMAGE).array[..., :3]
+    array = read_layer(make("a.exr", colors, attributes=attributes), "", Kind.IMAGE, sandbox=UNRESTRICTED).array[
+        ..., :3
+    ]
     # AP1 to Rec.709 with the Bradford adaptation of D60 to D65 (ACES, TB-2018-001)
     matrix = np.array(
         [
@@ -123,7 +128,7 @@ def test_wide_gamut_becomes_rec709(make: Make, rng: Random, attributes: dict[str
 def test_an_unknown_space_is_an_error(make: Make, rng: Random) -> None:
     path = make("a.exr", rng.random((4, 4, 3), np.float32), attributes={"colorInteropID": "my_own_space"})
     with pytest.raises(InputError, match=r"a\.exr: its color space 'my_own_space' is unknown"):
-        read_layer(path, "", Kind.IMAGE)
+        read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED)
 
 
 def shown_by_oiio(colors: np.ndarray, view: str) -> np.ndarray:

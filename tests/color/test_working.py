@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from halation import document
 from halation.color.encoding import Encoding
+from halation.color.management import get_color_manager
 from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_LUMINANCE, AP1_TO_REC709, studio, through
 
 
@@ -20,10 +22,14 @@ def shot(tmp_path_factory):
     folder = tmp_path_factory.mktemp("shot")
     random = np.random.default_rng(2)
     codes = random.random((48, 64, 3)).astype(np.float32)
-    write_picture(folder / "a.png", {"": codes}, kinds={"": Kind.IMAGE}, view="none", precision="float")
+    write_picture(
+        folder / "a.png", {"": codes}, kinds={"": Kind.IMAGE}, view="none", precision="float", sandbox=UNRESTRICTED
+    )
     wide = np.exp2(random.uniform(-8.0, 4.0, (48, 64, 3))).astype(np.float32)
-    encoding = Encoding(color=ColorSettings("", "ACEScg"))
-    write_picture(folder / "b.exr", {"": wide}, kinds={"": Kind.IMAGE}, precision="float", encoding=encoding)
+    encoding = Encoding(manager=get_color_manager(ColorSettings("", "ACEScg"), UNRESTRICTED))
+    write_picture(
+        folder / "b.exr", {"": wide}, kinds={"": Kind.IMAGE}, precision="float", encoding=encoding, sandbox=UNRESTRICTED
+    )
     return folder
 
 
@@ -36,7 +42,7 @@ def rendered(folder, working, nodes, links, file="a.png", **values):
         "nodes": nodes,
         "links": links,
     }
-    graph = document.loads(json.dumps(tree), folder=str(folder))
+    graph = document.loads(json.dumps(tree), folder=str(folder), sandbox=UNRESTRICTED)
     return hal.render(graph, precision="float", values=values)["o"][..., :3]
 
 
@@ -76,10 +82,16 @@ def test_a_picture_for_rec709_is_for_rec709(shot, operator):
 
 
 def test_luminance_is_that_of_the_primaries(shot):
-    wide = read_layer(shot / "b.exr", "", Kind.IMAGE, color=ColorSettings("", "ACEScg")).array[..., :3]
+    wide = read_layer(
+        shot / "b.exr",
+        "",
+        Kind.IMAGE,
+        manager=get_color_manager(ColorSettings("", "ACEScg"), UNRESTRICTED),
+        sandbox=UNRESTRICTED,
+    ).array[..., :3]
     gray = rendered(shot, "ACEScg", *one("saturation", saturation=0.0), file="b.exr")
     np.testing.assert_allclose(gray, (wide @ np.array(AP1_LUMINANCE))[..., None].repeat(3, 2), rtol=1e-5)
-    plain = read_layer(shot / "b.exr", "", Kind.IMAGE).array[..., :3]
+    plain = read_layer(shot / "b.exr", "", Kind.IMAGE, sandbox=UNRESTRICTED).array[..., :3]
     gray = rendered(shot, "", *one("saturation", saturation=0.0), file="b.exr")
     np.testing.assert_allclose(gray[..., 0], plain @ np.array((0.2126, 0.7152, 0.0722)), rtol=1e-4, atol=1e-5)
 
@@ -91,7 +103,8 @@ def test_the_house_names_its_own_spaces(tmp_path, house, reference):
         {"": random},
         kinds={"": Kind.IMAGE},
         precision="float",
-        encoding=Encoding(color=ColorSettings(str(house), "scene_linear")),
+        encoding=Encoding(manager=get_color_manager(ColorSettings(str(house), "scene_linear"), UNRESTRICTED)),
+        sandbox=UNRESTRICTED,
     )
     tree = {
         "halation": 1,
@@ -101,11 +114,13 @@ def test_the_house_names_its_own_spaces(tmp_path, house, reference):
         "nodes": {"n": {"type": "color_space", "values": {"target_name": "color_timing"}}},
         "links": {"n.image": "inputs.a", "outputs.o": "n.out"},
     }
-    made = hal.render(document.loads(json.dumps(tree), folder=str(tmp_path)), precision="float")["o"][..., :3]
+    made = hal.render(document.loads(json.dumps(tree), folder=str(tmp_path), sandbox=UNRESTRICTED), precision="float")[
+        "o"
+    ][..., :3]
     np.testing.assert_allclose(made, through(reference, random, "house linear", "house log"), atol=2e-5)
     tree["nodes"]["n"]["values"]["target_name"] = "color_timng"
     with pytest.raises(hal.HalationError, match="no color space is called 'color_timng': did you mean 'color_timing'"):
-        hal.render(document.loads(json.dumps(tree), folder=str(tmp_path)))
+        hal.render(document.loads(json.dumps(tree), folder=str(tmp_path), sandbox=UNRESTRICTED))
 
 
 def test_a_group_works_in_the_space_of_its_graph(shot, tmp_path):

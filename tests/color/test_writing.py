@@ -10,10 +10,12 @@ from device_textures import read_texture, upload_texture
 from halation.color.display import to_display
 from halation.color.encoding import Encoding
 from halation.color.gpu_programs import write_view_program
+from halation.color.management import get_color_manager
 from halation.errors import GraphError, UsageError
 from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
 from halation.renderer import Display, Look, open_device
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import AP1_TO_REC709, HOUSE, studio, through, write_house
 
 ACESCG = ColorSettings("", "ACEScg")
@@ -52,7 +54,7 @@ VIEWS = [
 @pytest.mark.parametrize(("view", "display", "look", "how"), VIEWS)
 def test_views_and_looks(color, reference, light, view, display, look, how):
     expected = seen(reference, light, *how)
-    shown = to_display(light, view, bits=32, display=display, look=look, color=color)
+    shown = to_display(light, view, bits=32, display=display, look=look, manager=get_color_manager(color, UNRESTRICTED))
     np.testing.assert_allclose(shown, expected, rtol=1e-4, atol=2e-5)
 
 
@@ -60,10 +62,10 @@ def test_a_look_is_what_its_numbers_say(color, light):
     """Slope 1.2, 1, 0.8 in ACEScg, then sRGB: closed form."""
     lit = np.maximum((light * (1.2, 1.0, 0.8)) @ AP1_TO_REC709.T, 0.0)
     expected = np.where(lit <= 0.0031308, 12.92 * lit, 1.055 * lit ** (1 / 2.4) - 0.055)
-    shown = to_display(light, "Warm", bits=32, color=color)
+    shown = to_display(light, "Warm", bits=32, manager=get_color_manager(color, UNRESTRICTED))
     inside = (lit > 0.0) & (lit < 4.0)
     np.testing.assert_allclose(shown[inside], expected[inside], atol=2e-4)
-    plain = to_display(light, "none", bits=32, look="warm", color=color)
+    plain = to_display(light, "none", bits=32, look="warm", manager=get_color_manager(color, UNRESTRICTED))
     np.testing.assert_allclose(plain[inside], expected[inside], atol=2e-4)
 
 
@@ -72,7 +74,7 @@ def test_plain_srgb_needs_nothing_of_a_config(color, light):
     expected = np.where(lit <= 0.0031308, 12.92 * lit, 1.055 * np.maximum(lit, 0.0) ** (1 / 2.4) - 0.055)
     inside = (lit > 0.0) & (lit < 4.0)
     for settings in (color, ACESCG):
-        shown = to_display(light, "none", bits=32, color=settings)
+        shown = to_display(light, "none", bits=32, manager=get_color_manager(settings, UNRESTRICTED))
         np.testing.assert_allclose(shown[inside], expected[inside], atol=1e-4)
 
 
@@ -80,7 +82,7 @@ def test_built_in_views_from_another_working_space(light):
     """The same light is the same picture."""
     rec709 = (light @ AP1_TO_REC709.T).astype(np.float32)
     for view, display in (("", ""), ("Un-tone-mapped", ""), ("", "Display P3 - Display")):
-        wide = to_display(light, view, bits=32, display=display, color=ACESCG)
+        wide = to_display(light, view, bits=32, display=display, manager=get_color_manager(ACESCG, UNRESTRICTED))
         np.testing.assert_allclose(wide, to_display(rec709, view, bits=32, display=display), atol=3e-3)
 
 
@@ -91,39 +93,71 @@ class Picture:
 
 
 def test_the_viewer_shows_the_same(color, light):
-    device = open_device()
+    device = open_device(sandbox=UNRESTRICTED)
     opaque = np.concatenate([light, np.ones_like(light[..., :1])], axis=2)
     texture = upload_texture(device, opaque)
     display = Display(device, "f4")
     for view, screen, look, _ in VIEWS:
         shown = display.draw(
-            "x", texture.size, Picture(texture), None, Look(view=view, display=screen, look=look, color=color)
+            "x",
+            texture.size,
+            Picture(texture),
+            None,
+            Look(view=view, display=screen, look=look, manager=get_color_manager(color, UNRESTRICTED)),
         )
         pixels = read_texture(device, shown)[..., :3]
-        expected = to_display(light, view, bits=32, display=screen, look=look, color=color)
+        expected = to_display(
+            light, view, bits=32, display=screen, look=look, manager=get_color_manager(color, UNRESTRICTED)
+        )
         np.testing.assert_allclose(pixels, expected, rtol=2e-3, atol=1e-3)
-    gray = display.draw("x", texture.size, Picture(texture), None, Look(channels="luminance", view="none", color=color))
+    gray = display.draw(
+        "x",
+        texture.size,
+        Picture(texture),
+        None,
+        Look(channels="luminance", view="none", manager=get_color_manager(color, UNRESTRICTED)),
+    )
     pixels = read_texture(device, gray)[..., 0]
     weighed = (light @ np.array((0.2722287, 0.6740818, 0.0536895)))[..., None].repeat(3, 2).astype(np.float32)
-    np.testing.assert_allclose(pixels, to_display(weighed, "none", bits=32, color=color)[..., 0], rtol=2e-3, atol=1e-3)
+    np.testing.assert_allclose(
+        pixels,
+        to_display(weighed, "none", bits=32, manager=get_color_manager(color, UNRESTRICTED))[..., 0],
+        rtol=2e-3,
+        atol=1e-3,
+    )
     display.close()
     device.close()
-    assert write_view_program("Warm", "Screen", "", color).function == "view_transform"
+    assert write_view_program("Warm", "Screen", "", get_color_manager(color, UNRESTRICTED)).function == "view_transform"
 
 
 def test_exr_says_what_it_is(tmp_path, light, color):
     plain, wide = tmp_path / "plain.exr", tmp_path / "wide.exr"
-    write_picture(plain, {"": light}, kinds=IMAGE, precision="float")
-    write_picture(wide, {"": light}, kinds=IMAGE, precision="float", encoding=Encoding(color=ACESCG))
+    write_picture(plain, {"": light}, kinds=IMAGE, precision="float", sandbox=UNRESTRICTED)
+    write_picture(
+        wide,
+        {"": light},
+        kinds=IMAGE,
+        precision="float",
+        encoding=Encoding(manager=get_color_manager(ACESCG, UNRESTRICTED)),
+        sandbox=UNRESTRICTED,
+    )
     assert header(plain).getattribute("chromaticities") is None
     assert header(plain).get_string_attribute("colorInteropID") == "lin_rec709_scene"
     assert header(wide).get_string_attribute("colorInteropID") == "lin_ap1_scene"
     assert header(wide).getattribute("chromaticities") == pytest.approx(AP1)
     np.testing.assert_array_equal(stored(wide), light)
     np.testing.assert_allclose(
-        read_layer(wide, "", Kind.IMAGE).array[..., :3], light @ AP1_TO_REC709.T, rtol=1e-4, atol=1e-4
+        read_layer(wide, "", Kind.IMAGE, sandbox=UNRESTRICTED).array[..., :3],
+        light @ AP1_TO_REC709.T,
+        rtol=1e-4,
+        atol=1e-4,
     )
-    np.testing.assert_array_equal(read_layer(wide, "", Kind.IMAGE, color=color).array[..., :3], light)
+    np.testing.assert_array_equal(
+        read_layer(wide, "", Kind.IMAGE, manager=get_color_manager(color, UNRESTRICTED), sandbox=UNRESTRICTED).array[
+            ..., :3
+        ],
+        light,
+    )
 
 
 @pytest.mark.parametrize("settings", [ColorSettings(), ACESCG], ids=["rec709", "acescg"])
@@ -146,14 +180,28 @@ def test_there_and_back(tmp_path, settings, name, space, depth, says):
     light = (ramp * np.array([[[1.0, 1.0, 1.0]], [[1.0, 0.8, 0.7]], [[0.7, 0.8, 1.0]]])).astype(np.float32)
     working = settings.working or "lin_rec709_scene"
     path = tmp_path / name
-    write_picture(path, {"": light}, kinds=IMAGE, precision=depth, encoding=Encoding(space=space, color=settings))
+    write_picture(
+        path,
+        {"": light},
+        kinds=IMAGE,
+        precision=depth,
+        encoding=Encoding(space=space, manager=get_color_manager(settings, UNRESTRICTED)),
+        sandbox=UNRESTRICTED,
+    )
     known = "arri_logc3_ei800" if space == "arri logc3" else space
     expected = through(studio(), light, working, known)
     bits = {"half": 10 if name == "a.dpx" else 0, "float": 0 if name == "a.exr" else 16}[depth]
     step = 1.01 / (2**bits - 1) / 2 if bits else 0.0
     kept = expected if name == "a.exr" else expected.clip(0.0, 1.0)
     np.testing.assert_allclose(stored(path)[..., :3], kept, rtol=6e-4 if depth == "half" else 1e-6, atol=step + 1e-6)
-    again = read_layer(path, "", Kind.IMAGE, color=settings, space="" if says else space).array[..., :3]
+    again = read_layer(
+        path,
+        "",
+        Kind.IMAGE,
+        manager=get_color_manager(settings, UNRESTRICTED),
+        space="" if says else space,
+        sandbox=UNRESTRICTED,
+    ).array[..., :3]
     codes = name == "a.dpx" and depth == "half"
     np.testing.assert_allclose(again, light, rtol=0.03 if depth == "half" else 2e-3, atol=1e-3 if codes else 1e-4)
     assert bool(header(path).get_string_attribute("colorInteropID")) == (name == "a.exr")
@@ -162,7 +210,9 @@ def test_there_and_back(tmp_path, settings, name, space, depth, says):
 def test_alpha_stays_and_color_is_premultiplied_after(tmp_path):
     color = np.array([[[0.5, 0.25, 0.125, 0.5], [0.3, 0.2, 0.1, 0.0], [1.0, 1.0, 1.0, 1.0]]], np.float32)
     path = tmp_path / "a.exr"
-    write_picture(path, {"": color}, kinds=IMAGE, precision="float", encoding=Encoding(space="ARRI LogC4"))
+    write_picture(
+        path, {"": color}, kinds=IMAGE, precision="float", encoding=Encoding(space="ARRI LogC4"), sandbox=UNRESTRICTED
+    )
     pixels = stored(path)
     np.testing.assert_array_equal(pixels[..., 3], color[..., 3])
     half = through(studio(), color[0, :1, :3] / 0.5, "lin_rec709_scene", "ARRI LogC4") * 0.5
@@ -172,27 +222,43 @@ def test_alpha_stays_and_color_is_premultiplied_after(tmp_path):
 def test_data_is_written_as_it_is(tmp_path, light):
     path = tmp_path / "a.exr"
     layers, kinds = {"rgba": light, "depth": light[..., :1]}, {"rgba": Kind.IMAGE, "depth": Kind.FIELD}
-    write_picture(path, layers, kinds=kinds, encoding=Encoding(space="ARRI LogC4", color=ACESCG))
-    np.testing.assert_array_equal(read_layer(path, "depth", Kind.FIELD).array, light[..., :1])
+    write_picture(
+        path,
+        layers,
+        kinds=kinds,
+        encoding=Encoding(space="ARRI LogC4", manager=get_color_manager(ACESCG, UNRESTRICTED)),
+        sandbox=UNRESTRICTED,
+    )
+    np.testing.assert_array_equal(read_layer(path, "depth", Kind.FIELD, sandbox=UNRESTRICTED).array, light[..., :1])
     buffer = oiio.ImageBuf(str(path), 1, 0)
     assert buffer.spec().get_string_attribute("colorInteropID") == "data"
 
 
 def test_radiance_files_hold_rec709(tmp_path, light):
     path = tmp_path / "a.hdr"
-    write_picture(path, {"": light}, kinds=IMAGE, encoding=Encoding(color=ACESCG))
+    write_picture(
+        path,
+        {"": light},
+        kinds=IMAGE,
+        encoding=Encoding(manager=get_color_manager(ACESCG, UNRESTRICTED)),
+        sandbox=UNRESTRICTED,
+    )
     expected = np.maximum(light @ AP1_TO_REC709.T, 0.0)
     brightest = expected.max(axis=2, keepdims=True)  # its three channels share an exponent
     assert (np.abs(stored(path) - expected) / brightest).max() < 0.01
-    back = read_layer(path, "", Kind.IMAGE, color=ACESCG).array[..., :3]
+    back = read_layer(
+        path, "", Kind.IMAGE, manager=get_color_manager(ACESCG, UNRESTRICTED), sandbox=UNRESTRICTED
+    ).array[..., :3]
     np.testing.assert_allclose(back @ AP1_TO_REC709.T, stored(path), rtol=1e-4, atol=1e-3)
 
 
 def test_a_screen_is_named_in_png(tmp_path, light):
     path = tmp_path / "a.png"
-    write_picture(path, {"": light}, kinds=IMAGE, encoding=Encoding(display="Display P3 - Display"))
+    write_picture(
+        path, {"": light}, kinds=IMAGE, encoding=Encoding(display="Display P3 - Display"), sandbox=UNRESTRICTED
+    )
     assert header(path).get_string_attribute("oiio:ColorSpace") == "srgb_p3d65_scene"
-    write_picture(path, {"": light}, kinds=IMAGE)
+    write_picture(path, {"": light}, kinds=IMAGE, sandbox=UNRESTRICTED)
     assert header(path).get_string_attribute("oiio:ColorSpace") == "srgb_rec709_scene"
 
 
@@ -207,7 +273,7 @@ def test_a_screen_is_named_in_png(tmp_path, light):
 )
 def test_what_there_is_not(tmp_path, light, encoding, said):
     with pytest.raises(UsageError, match=said):
-        write_picture(tmp_path / "a.exr", {"": light}, kinds=IMAGE, encoding=encoding)
+        write_picture(tmp_path / "a.exr", {"": light}, kinds=IMAGE, encoding=encoding, sandbox=UNRESTRICTED)
     assert not (tmp_path / "a.exr").exists()
 
 
@@ -215,4 +281,4 @@ def test_a_table_that_a_config_lacks(tmp_path, light):
     text = HOUSE.replace("!<ExponentTransform> {value: 2.6}", "!<FileTransform> {src: gone.cube}")
     lacks = ColorSettings(str(write_house(tmp_path, "lacks.ocio", text)), "scene_linear")
     with pytest.raises(GraphError, match=r"lacks\.ocio: .*gone\.cube"):
-        to_display(light, "Dim", display="Projector", color=lacks)
+        to_display(light, "Dim", display="Projector", manager=get_color_manager(lacks, UNRESTRICTED))

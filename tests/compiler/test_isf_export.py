@@ -14,6 +14,7 @@ from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.inputs.lazy_provider import LazyResourceProvider
 from halation.nodes import Kind, Node, catalogue
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as some
 from isf_files import Array, graph_of_node, opaque, shader
@@ -42,7 +43,7 @@ def chain(*nodes: Node, pictures: int = 1) -> Graph:
 
 
 def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> IsfExport:
-    found = export_isf(graph, TARGET, LazyResourceProvider(), size=size)
+    found = export_isf(graph, TARGET, LazyResourceProvider(sandbox=UNRESTRICTED), size=size)
     assert not found.reasons
     return found
 
@@ -133,7 +134,9 @@ def test_two_pictures(renderer: Renderer) -> None:
 
 def test_what_no_shader_can_do_is_listed_by_node() -> None:
     graph = chain(made("feedback"), made("exposure"))
-    assert export_isf(graph, TARGET, LazyResourceProvider()).reasons == (("n0", "makes every frame of the one before"),)
+    assert export_isf(graph, TARGET, LazyResourceProvider(sandbox=UNRESTRICTED)).reasons == (
+        ("n0", "makes every frame of the one before"),
+    )
 
 
 @given(some.integers(1, 64), some.integers(0, 63), some.lists(some.integers(64, 4000), min_size=4, max_size=4))

@@ -26,6 +26,7 @@ from halation.nodes.color.saturation import Saturation
 from halation.nodes.merge.mix_images import MixImages
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
+from halation.resources.sandbox import UNRESTRICTED
 from headers import Headers
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -224,7 +225,11 @@ def test_a_fault_is_said_and_forgotten():
 
 
 def test_pixels_are_not_held_on_to():
-    graph, planner, pictures = chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0)), Planner(), MediaProvider()
+    graph, planner, pictures = (
+        chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0)),
+        Planner(),
+        MediaProvider(sandbox=UNRESTRICTED),
+    )
     array = np.zeros((*SIZE, 4), np.float32)
     plan = planner.plan(graph, Request(bindings=pictures.bind(graph, {"image": array})), pictures)
     assert plan.uploads[0].picture.pixels is array

@@ -16,6 +16,7 @@ from halation.compiler import NULL, Plan, Request, Target, compile_graph
 from halation.inputs.provider import MediaProvider
 from halation.nodes import catalogue
 from halation.presets import paths
+from halation.resources.sandbox import UNRESTRICTED
 
 VALIDATOR = shutil.which("glslangValidator")
 TARGETS = {
@@ -31,9 +32,9 @@ def plans(target: Target) -> Iterator[Plan]:
     for node in catalogue().values():
         if drawable_outputs(node):
             yield plan_node(node, (1920, 1080), target)
-    pictures = MediaProvider()
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     for path in paths():
-        yield compile_graph(document.load(path), Request(), pictures, target=target)
+        yield compile_graph(document.load(path, sandbox=UNRESTRICTED), Request(), pictures, target=target)
 
 
 @pytest.mark.skipif(VALIDATOR is None, reason="glslangValidator is not installed")

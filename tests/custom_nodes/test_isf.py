@@ -14,6 +14,7 @@ from halation.errors import InputError, ShaderError
 from halation.graph import Output, Port
 from halation.nodes import Kind
 from halation.renderer import FrameRenderer, Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from isf_files import IMAGE, decode_srgb, encode_srgb, graph_of_node, isf, node, opaque, shader
 
 H, W = 13, 21
@@ -241,7 +242,7 @@ def test_pictures_of_its_folder(renderer: Renderer, tmp_path: Path) -> None:
         '{"type": "isf", "file": "art/own.fs", "values": {"light": "linear"}}}, "links": {"outputs.out": "a.out"}}'
     )
     (tmp_path / "graph.json").write_text(raw)
-    graph = document.load(tmp_path / "graph.json")
+    graph = document.load(tmp_path / "graph.json", sandbox=UNRESTRICTED)
     for wanted in (RenderRequest(), RenderRequest(size=(6, 4))):
         made = renderer.render(graph, wanted)["out"][-2:, :3]
         assert close(made[..., :3] * 255.0, stored, 0.05)
@@ -249,17 +250,17 @@ def test_pictures_of_its_folder(renderer: Renderer, tmp_path: Path) -> None:
     (tmp_path / "art" / "below" / "six.png").rename(outside)
     (tmp_path / "art" / "below" / "six.png").symlink_to(outside)
     with pytest.raises(InputError, match="may not leave"):
-        renderer.render(document.load(tmp_path / "graph.json"))
+        renderer.render(document.load(tmp_path / "graph.json", sandbox=UNRESTRICTED))
 
 
 def test_a_document_keeps_it(tmp_path: Path) -> None:
     (tmp_path / "a.fs").write_text(isf("gl_FragColor = vec4(k);", {"NAME": "k", "TYPE": "float", "DEFAULT": 0.5}))
     text = '{"halation": 1, "nodes": {"a": {"type": "isf", "file": "a.fs", "values": {"k": 0.75}}}}'
     (tmp_path / "graph.json").write_text(text)
-    graph = document.load(tmp_path / "graph.json")
+    graph = document.load(tmp_path / "graph.json", sandbox=UNRESTRICTED)
     saved = document.dumps(graph)
     assert '"file": "a.fs"' in saved and '"k": 0.75' in saved and "gl_FragColor" not in saved
-    assert getattr(document.loads(saved, folder=str(tmp_path)).nodes["a"], "k") == 0.75  # noqa: B009
+    assert getattr(document.loads(saved, folder=str(tmp_path), sandbox=UNRESTRICTED).nodes["a"], "k") == 0.75  # noqa: B009
 
 
 @pytest.mark.parametrize(

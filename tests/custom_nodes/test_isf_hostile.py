@@ -9,6 +9,7 @@ import pytest
 from halation import document
 from halation.custom_nodes import CodeFault
 from halation.graph import Unknown, problems
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as some
 from isf_files import isf, shader
@@ -91,7 +92,9 @@ def test_pictures_from_elsewhere_are_refused(path: str) -> None:
 
 
 def test_a_bad_file_is_a_problem_of_its_node() -> None:
-    graph = document.loads(json.dumps({"halation": 1, "nodes": {"a": {"type": "isf", "code": ["/*{", "]*/"]}}}))
+    graph = document.loads(
+        json.dumps({"halation": 1, "nodes": {"a": {"type": "isf", "code": ["/*{", "]*/"]}}}), sandbox=UNRESTRICTED
+    )
     assert isinstance(graph.nodes["a"], Unknown)
     assert any("its code, line 2: the head is no JSON" in one.sentence for one in problems(graph))
 

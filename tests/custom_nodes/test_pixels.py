@@ -15,6 +15,7 @@ from halation.custom_nodes import Code, node_type
 from halation.errors import GraphError, ShaderError
 from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.random.default_rng(5).random((13, 21, 4)).astype(np.float32)
 OTHER = np.random.default_rng(6).random((13, 21, 4)).astype(np.float32)
@@ -139,11 +140,11 @@ def test_code_with_a_fault_stands_in_the_graph_and_says_why(renderer: Renderer) 
       "nodes": {"x": {"type": "glsl", "code": ["vec4 f(vec4 image,", " vec4 image) {", "return image; }"],
                       "values": {"a": 1.0}}},
       "links": {"x.image": "inputs.image", "outputs.out": "x.out"}}"""
-    graph = document.loads(text)
+    graph = document.loads(text, sandbox=UNRESTRICTED)
     assert isinstance(graph.nodes["x"], Unknown)
     with pytest.raises(GraphError, match="node 'x': its code, line 2: the name 'image' is there twice"):
         renderer.render(graph, RenderRequest({"image": PICTURE}))
-    assert document.loads(document.dumps(graph)) == graph
+    assert document.loads(document.dumps(graph), sandbox=UNRESTRICTED) == graph
 
 
 def test_the_examples_of_the_manual(run: Run) -> None:

@@ -15,6 +15,7 @@ import pytest
 from halation.document import dumps, limits, load, loads, save
 from halation.errors import DocumentError, OutputError
 from halation.graph import Graph, Group
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, small
 
 
@@ -31,10 +32,10 @@ def group(path: str, **values: float) -> dict[str, Any]:
 class TestSave:
     def test_and_load(self, tmp_path: Path) -> None:
         path = tmp_path / "a b ü.json"
-        save(small(), path)
+        save(small(), path, sandbox=UNRESTRICTED)
         assert path.read_text("utf-8") == dumps(small())
-        assert load(path, TOYS) == small()
-        assert load(str(path), TOYS).folder == str(tmp_path)
+        assert load(path, TOYS, sandbox=UNRESTRICTED) == small()
+        assert load(str(path), TOYS, sandbox=UNRESTRICTED).folder == str(tmp_path)
         assert [*tmp_path.iterdir()] == [path]
 
     @pytest.mark.parametrize("step", ["fsync", "replace"])
@@ -51,7 +52,7 @@ class TestSave:
         monkeypatch.setattr(os, step, fail)
         wanted = OutputError if isinstance(error, OSError) else KeyboardInterrupt
         with pytest.raises(wanted) as caught:
-            save(small(), path)
+            save(small(), path, sandbox=UNRESTRICTED)
         if isinstance(error, OSError):
             assert str(caught.value) == (
                 f"{path}: cannot be written: the disk is full: make room or write elsewhere; the old file is unchanged"
@@ -64,37 +65,38 @@ class TestSave:
         path.write_text("old")
         code = (
             "import os, sys; from halation.document import save; from halation.graph import Graph\n"
-            "os.fsync = lambda handle: os._exit(9)\nsave(Graph(), sys.argv[1])"
+            "from halation.resources.sandbox import UNRESTRICTED\n"
+            "os.fsync = lambda handle: os._exit(9)\nsave(Graph(), sys.argv[1], sandbox=UNRESTRICTED)"
         )
         assert subprocess.run([sys.executable, "-c", code, str(path)]).returncode == 9
         assert path.read_text() == "old"
 
     def test_where_nothing_can_be_written(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(OutputError, match=r"x\.json: cannot be written: there is no such folder"):
-            save(small(), tmp_path / "no" / "x.json")
+            save(small(), tmp_path / "no" / "x.json", sandbox=UNRESTRICTED)
         with pytest.raises(OutputError, match=r"cannot be written: no file can have such a name"):
-            save(small(), tmp_path / "a\0b")
+            save(small(), tmp_path / "a\0b", sandbox=UNRESTRICTED)
 
         def read_only(*_: Any) -> None:
             raise PermissionError(errno.EACCES, "Permission denied")
 
         monkeypatch.setattr(Path, "open", read_only)
         with pytest.raises(OutputError, match=r"x\.json: cannot be written: the folder may not be written"):
-            save(small(), tmp_path / "x.json")
+            save(small(), tmp_path / "x.json", sandbox=UNRESTRICTED)
 
     def test_over_a_folder(self, tmp_path: Path) -> None:
         (tmp_path / "x.json").mkdir()
         with pytest.raises(OutputError, match="is a folder"):
-            save(small(), tmp_path / "x.json")
+            save(small(), tmp_path / "x.json", sandbox=UNRESTRICTED)
         assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
 
     def test_a_graph_that_cannot_be_written_touches_nothing(self, tmp_path: Path) -> None:
         path = tmp_path / "x.json"
         path.write_text("old")
         with pytest.raises(Exception, match="nan cannot be saved"):
-            save(Graph({"a": Gain(gain=float("nan"))}), path)
+            save(Graph({"a": Gain(gain=float("nan"))}), path, sandbox=UNRESTRICTED)
         with pytest.raises(OutputError, match="it could not be read again"):
-            save(Graph(ui={"x": "y" * limits.MAX_BYTES}), path)
+            save(Graph(ui={"x": "y" * limits.MAX_BYTES}), path, sandbox=UNRESTRICTED)
         assert path.read_text() == "old"
 
     def test_permissions_and_links_stay(self, tmp_path: Path) -> None:
@@ -102,11 +104,11 @@ class TestSave:
         path.write_text("old")
         path.chmod(0o640)
         link.symlink_to(path)
-        save(small(), link)
+        save(small(), link, sandbox=UNRESTRICTED)
         assert link.is_symlink()
-        assert load(path, TOYS) == small()
+        assert load(path, TOYS, sandbox=UNRESTRICTED) == small()
         assert stat.S_IMODE(path.stat().st_mode) == 0o640
-        save(small(), tmp_path / "new.json")
+        save(small(), tmp_path / "new.json", sandbox=UNRESTRICTED)
         mask = os.umask(0)
         os.umask(mask)
         assert stat.S_IMODE((tmp_path / "new.json").stat().st_mode) == 0o666 & ~mask
@@ -115,10 +117,10 @@ class TestSave:
 class TestGroupFiles:
     def test_paths_start_at_the_file_that_names_them(self, tmp_path: Path) -> None:
         (tmp_path / "lib" / "deep").mkdir(parents=True)
-        save(small(), tmp_path / "lib" / "deep" / "small.json")
+        save(small(), tmp_path / "lib" / "deep" / "small.json", sandbox=UNRESTRICTED)
         write(tmp_path / "lib" / "middle.json", nodes={"s": group("deep/small.json", glow=5.0)})
         top = write(tmp_path / "top.json", nodes={"m": group("lib/middle.json")})
-        graph = load(top, TOYS)
+        graph = load(top, TOYS, sandbox=UNRESTRICTED)
         middle = graph.nodes["m"]
         assert isinstance(middle, Group)
         inner = middle.graph.nodes["s"]
@@ -127,13 +129,13 @@ class TestGroupFiles:
         assert inner.body().nodes["gain"] == Gain(gain=5.0)
         assert Path(inner.graph.folder) == tmp_path / "lib" / "deep"
         assert json.loads(dumps(graph)) == {"halation": 1, "nodes": {"m": group("lib/middle.json")}}
-        assert loads(top.read_text(), "top.json", str(tmp_path), TOYS) == graph
+        assert loads(top.read_text(), "top.json", str(tmp_path), TOYS, sandbox=UNRESTRICTED) == graph
 
     def test_a_missing_file_names_both(self, tmp_path: Path) -> None:
         write(tmp_path / "glow.json")
         top = write(tmp_path / "top.json", nodes={"g": group("glwo.json")})
         with pytest.raises(DocumentError) as caught:
-            load(top, TOYS)
+            load(top, TOYS, sandbox=UNRESTRICTED)
         assert str(caught.value) == (
             f"{top}: nodes.g.path: the group file '{tmp_path / 'glwo.json'}' does not exist; did you mean 'glow.json'?"
         )
@@ -141,12 +143,12 @@ class TestGroupFiles:
     @pytest.mark.parametrize("path", [".", "a\0b", "x" * 5000])
     def test_a_path_that_is_no_file(self, tmp_path: Path, path: str) -> None:
         with pytest.raises(DocumentError, match=r"nodes\.g\.path: the group file .* does not exist"):
-            load(write(tmp_path / "top.json", nodes={"g": group(path)}), TOYS)
+            load(write(tmp_path / "top.json", nodes={"g": group(path)}), TOYS, sandbox=UNRESTRICTED)
 
     def test_a_fault_inside_names_the_inner_file(self, tmp_path: Path) -> None:
         write(tmp_path / "in.json", nodes={"a": {"type": "gain", "values": {"gain": "x"}}})
         with pytest.raises(DocumentError, match=r"in\.json: nodes\.a\.values\.gain: expected a number"):
-            load(write(tmp_path / "top.json", nodes={"g": group("in.json")}), TOYS)
+            load(write(tmp_path / "top.json", nodes={"g": group("in.json")}), TOYS, sandbox=UNRESTRICTED)
 
     @pytest.mark.parametrize("through", [["a"], ["a", "b"], ["a", "b", "c"]])
     def test_a_group_cannot_hold_itself(self, tmp_path: Path, through: list[str]) -> None:
@@ -155,10 +157,10 @@ class TestGroupFiles:
             write(tmp_path / f"{name}.json", nodes={"g": {"type": "group", "graph": inner}})
         where = r"nodes\.g\.graph\.nodes\.h\.path"
         with pytest.raises(DocumentError, match=rf"{where}: a group cannot hold itself: a\.json -> .*a\.json"):
-            load(tmp_path / "a.json", TOYS)
+            load(tmp_path / "a.json", TOYS, sandbox=UNRESTRICTED)
         top = write(tmp_path / "top.json", nodes={"g": group("a.json")})
         with pytest.raises(DocumentError, match=r"cannot hold itself: a.json -> .*a.json"):
-            load(top, TOYS)
+            load(top, TOYS, sandbox=UNRESTRICTED)
 
     def test_depth_is_limited(self, tmp_path: Path) -> None:
         def files(count: int) -> Path:
@@ -167,9 +169,9 @@ class TestGroupFiles:
                 write(tmp_path / f"{number}.json", nodes={"g": group(f"{number - 1}.json")})
             return tmp_path / f"{count}.json"
 
-        load(files(limits.MAX_GROUPS), TOYS)
+        load(files(limits.MAX_GROUPS), TOYS, sandbox=UNRESTRICTED)
         with pytest.raises(DocumentError, match="groups nest deeper than 32"):
-            load(files(limits.MAX_GROUPS + 1), TOYS)
+            load(files(limits.MAX_GROUPS + 1), TOYS, sandbox=UNRESTRICTED)
 
     def test_a_file_is_read_once_and_bombs_are_refused(self, tmp_path: Path) -> None:
         """Twenty files that each hold the one before twice stand for a million nodes."""
@@ -177,18 +179,24 @@ class TestGroupFiles:
         for number in range(1, 21):
             twice = {name: group(f"{number - 1}.json") for name in ("g", "h")}
             write(tmp_path / f"{number}.json", nodes=twice)
-        graph = load(tmp_path / "10.json", TOYS)
+        graph = load(tmp_path / "10.json", TOYS, sandbox=UNRESTRICTED)
         assert graph.nodes["g"].graph is graph.nodes["h"].graph
         with pytest.raises(DocumentError, match="more than 100000 nodes"):
-            load(tmp_path / "20.json", TOYS)
+            load(tmp_path / "20.json", TOYS, sandbox=UNRESTRICTED)
 
     def test_values_of_a_group_are_typed(self, tmp_path: Path) -> None:
-        save(small(), tmp_path / "small.json")
+        save(small(), tmp_path / "small.json", sandbox=UNRESTRICTED)
         with pytest.raises(DocumentError, match=r"nodes\.g\.values\.glow: expected a number, got the string"):
-            load(write(tmp_path / "x.json", nodes={"g": {**group("small.json"), "values": {"glow": "a lot"}}}), TOYS)
+            load(
+                write(tmp_path / "x.json", nodes={"g": {**group("small.json"), "values": {"glow": "a lot"}}}),
+                TOYS,
+                sandbox=UNRESTRICTED,
+            )
         top = write(tmp_path / "y.json", nodes={"g": group("small.json", glow=3, gone=1)})
-        assert load(top, TOYS).nodes["g"].values == {"glow": 3.0}
-        assert json.loads(dumps(load(top, TOYS)))["nodes"]["g"] == group("small.json", glow=3.0, gone=1)
+        assert load(top, TOYS, sandbox=UNRESTRICTED).nodes["g"].values == {"glow": 3.0}
+        assert json.loads(dumps(load(top, TOYS, sandbox=UNRESTRICTED)))["nodes"]["g"] == group(
+            "small.json", glow=3.0, gone=1
+        )
 
 
 def test_what_a_killed_process_left_goes_with_the_next_save_of_the_same_file(tmp_path: Path) -> None:
@@ -200,14 +208,14 @@ def test_what_a_killed_process_left_goes_with_the_next_save_of_the_same_file(tmp
         left.write_text("half")
     for left in (old, other):
         os.utime(left, (1.0, 1.0))
-    save(small(), path)
+    save(small(), path, sandbox=UNRESTRICTED)
     assert sorted(tmp_path.iterdir()) == sorted([path, fresh, other])
 
 
 def test_a_read_only_file_is_not_replaced(tmp_path: Path) -> None:
     path = tmp_path / "a.json"
-    save(small(), path)
+    save(small(), path, sandbox=UNRESTRICTED)
     path.chmod(0o444)
     with pytest.raises(OutputError, match="read-only"):
-        save(Graph(), path)
-    assert load(path, TOYS) == small()
+        save(Graph(), path, sandbox=UNRESTRICTED)
+    assert load(path, TOYS, sandbox=UNRESTRICTED) == small()

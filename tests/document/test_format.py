@@ -13,13 +13,14 @@ from halation.document.canonical import WIDTH, pretty
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown, problems
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from toy_nodes import TOYS, Gain, Soften, random_graph, small
 
 
 def read(text: str) -> Graph:
-    return loads(text, catalogue=TOYS)
+    return loads(text, catalogue=TOYS, sandbox=UNRESTRICTED)
 
 
 def test_the_text_of_a_graph() -> None:
@@ -119,7 +120,7 @@ def test_unknown_nodes_and_keys_are_kept_to_the_byte(seed: int) -> None:
     sprinkle(rng, raw)
     text = pretty(raw)
     assert dumps(read(text)) == text
-    assert dumps(loads(text, catalogue={})) == text, "without any node type at all"
+    assert dumps(loads(text, catalogue={}, sandbox=UNRESTRICTED)) == text, "without any node type at all"
 
 
 def test_where_unknown_keys_are_kept() -> None:

@@ -10,6 +10,7 @@ import msgspec
 from halation import document
 from halation.document import records
 from halation.graph import Settings, problems
+from halation.resources.sandbox import UNRESTRICTED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "format.md").read_text(encoding="utf-8")
 
@@ -17,7 +18,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "format.md").read_text(encoding="ut
 def test_the_example_is_a_graph_in_the_canonical_layout() -> None:
     found = re.search(r"```json\n(.*?)```", PAGE, re.DOTALL)
     assert found
-    graph = document.loads(found[1])
+    graph = document.loads(found[1], sandbox=UNRESTRICTED)
     assert document.dumps(graph) == found[1] and not problems(graph)
 
 

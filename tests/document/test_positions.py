@@ -9,6 +9,7 @@ from halation.document import loads
 from halation.document.positions import Positions
 from halation.document.syntax import member
 from halation.errors import DocumentError
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -97,5 +98,5 @@ def test_what_is_not_there_is_where_it_would_be() -> None:
 )
 def test_the_path_of_a_fault_leads_to_its_line(text, line) -> None:
     with pytest.raises(DocumentError) as caught:
-        loads(text)
+        loads(text, sandbox=UNRESTRICTED)
     assert Positions(text).line(caught.value.path, last=True) == line

@@ -13,6 +13,7 @@ from halation.document.schema import schema
 from halation.errors import DocumentError
 from halation.graph import Control, Expression, Graph, Group, Key, Keys, Port, problems
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
@@ -49,7 +50,7 @@ def changed(path: str, value: object) -> dict:
 
 def refused(tree: dict) -> bool:
     try:
-        document.loads(json.dumps(tree), catalogue=catalogue())
+        document.loads(json.dumps(tree), catalogue=catalogue(), sandbox=UNRESTRICTED)
     except DocumentError:
         return True
     return False
@@ -181,7 +182,9 @@ def test_both_take(path, value) -> None:
 @pytest.mark.parametrize(("name", "value"), [("intensity", -1e9), ("intensity", 1e9), ("no such quality", 0)])
 def test_limits_are_those_of_check(name, value) -> None:
     tree = changed(f"nodes/bloom/values/{name}", value)
-    errors = [one for one in problems(document.loads(json.dumps(tree))) if one.rule.name == "bad-value"]
+    errors = [
+        one for one in problems(document.loads(json.dumps(tree), sandbox=UNRESTRICTED)) if one.rule.name == "bad-value"
+    ]
     assert VALIDATOR.is_valid(tree) == (not errors)
 
 

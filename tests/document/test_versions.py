@@ -10,6 +10,7 @@ from halation.document import FORMAT, MIGRATIONS, dumps, loads
 from halation.errors import DocumentError
 from halation.graph import Group
 from halation.nodes import Image, Pointwise, Slider
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain
 
 
@@ -46,21 +47,21 @@ def glow(version: int | None, values: dict[str, Any]) -> str:
     ],
 )
 def test_nodes_step_up(version: int | None, values: dict[str, Any], radius: float) -> None:
-    graph = loads(glow(version, values), catalogue={"glow": Glow})
+    graph = loads(glow(version, values), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)
     assert graph.nodes["g"] == Glow(radius=radius)
     assert json.loads(dumps(graph))["nodes"]["g"]["version"] == 3
 
 
 def test_an_upgrade_keeps_unknown_values() -> None:
-    graph = loads(glow(1, {"size": 50.0, "other": 1}), catalogue={"glow": Glow})
+    graph = loads(glow(1, {"size": 50.0, "other": 1}), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)
     assert graph.extra["nodes.g.values"] == {"other": 1}
 
 
 def test_an_upgrade_that_fails_says_where() -> None:
     with pytest.raises(DocumentError, match=r"nodes\.g\.values: these are no values of version 2 of 'glow'"):
-        loads(glow(2, {"radius": "wide"}), catalogue={"glow": Glow})
+        loads(glow(2, {"radius": "wide"}), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)
     with pytest.raises(DocumentError, match=r"nodes\.g\.version: version 4 of 'glow' is newer than 3"):
-        loads(glow(4, {}), catalogue={"glow": Glow})
+        loads(glow(4, {}), catalogue={"glow": Glow}, sandbox=UNRESTRICTED)
 
 
 def links_were_lists(body: dict[str, Any]) -> dict[str, Any]:
@@ -85,7 +86,7 @@ OLD_BODY: dict[str, Any] = {
 
 def test_documents_step_up_inline_groups_included() -> None:
     old = {**OLD_BODY, "halation": 1, "nodes": {"a": {"type": "stops"}, "g": {"type": "group", "graph": OLD_BODY}}}
-    graph = loads(json.dumps(old), catalogue=TOYS, migrations=STEPS)
+    graph = loads(json.dumps(old), catalogue=TOYS, migrations=STEPS, sandbox=UNRESTRICTED)
     group = graph.nodes["g"]
     assert isinstance(group, Group)
     for body in (graph, group.graph):
@@ -95,18 +96,20 @@ def test_documents_step_up_inline_groups_included() -> None:
             "outputs.o": "a.out",
         }
     halfway = {**old, "halation": 2, "links": {"a.image": "inputs.i"}, "nodes": {"a": {"type": "stops"}}}
-    assert loads(json.dumps(halfway), catalogue=TOYS, migrations=STEPS).nodes["a"] == Gain()
+    assert loads(json.dumps(halfway), catalogue=TOYS, migrations=STEPS, sandbox=UNRESTRICTED).nodes["a"] == Gain()
 
 
 @pytest.mark.parametrize("damage", [{"links": [1]}, {"links": [["a"]]}, {"nodes": 5}, {"nodes": {"a": {}}}])
 def test_a_damaged_old_document(damage: dict[str, Any]) -> None:
     with pytest.raises(DocumentError, match=r"halation: the file is damaged: it says format 1.*format 3"):
-        loads(json.dumps({"halation": 1, "links": [], **damage}), catalogue=TOYS, migrations=STEPS)
+        loads(
+            json.dumps({"halation": 1, "links": [], **damage}), catalogue=TOYS, migrations=STEPS, sandbox=UNRESTRICTED
+        )
 
 
 def test_a_format_from_the_future() -> None:
     with pytest.raises(DocumentError, match=r"halation: format 4 is newer than 3, .*: update Halation"):
-        loads('{"halation": 4}', migrations=STEPS)
+        loads('{"halation": 4}', migrations=STEPS, sandbox=UNRESTRICTED)
 
 
 def test_the_table_has_no_gaps() -> None:

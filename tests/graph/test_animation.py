@@ -28,6 +28,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.grade import Grade
 from halation.nodes.distort.transform import Transform
+from halation.resources.sandbox import UNRESTRICTED
 
 STOPS, GAIN, MOVE = Port("light", "stops"), Port("grade", "gain"), Port("move", "position")
 RISING = Keys((Key(1, 0.0, "linear"), Key(11, 5.0)))
@@ -155,7 +156,7 @@ def test_the_document_keeps_it(graph):
     keys = Keys((bent, held, Key(8, 1.0, left=(-1.0, 0.0))), "loop")
     graph = graph.animate(STOPS, keys).animate(MOVE, Expression("[frame, 2]"))
     text = document.dumps(graph)
-    again = document.loads(text)
+    again = document.loads(text, sandbox=UNRESTRICTED)
     assert again.animation == graph.animation and again.settings == graph.settings and document.dumps(again) == text
     assert '{"frame": 1, "interpolation": "bezier", "right": [2.0, 0.5], "value": 0.0}' in text
     assert '"frames": [1, 24]' in text and '"rate": 12.0' in text
@@ -178,15 +179,22 @@ def test_the_document_keeps_it(graph):
 def test_documents_at_fault_are_named(entry, where):
     text = f'{{"halation": 1, "nodes": {{"light": {{"type": "exposure"}}}}, "animation": {{"light.stops": {entry}}}}}'
     with pytest.raises(DocumentError, match=where):
-        document.loads(text)
+        document.loads(text, sandbox=UNRESTRICTED)
 
 
 def test_animation_of_what_is_unknown_is_kept(graph):
     text = document.dumps(
         document.loads(
             '{"halation": 1, "nodes": {"odd": {"type": "from_the_future"}}, '
-            '"animation": {"odd.x": {"keys": [{"frame": 1, "value": 3}], "later": true}}}'
+            '"animation": {"odd.x": {"keys": [{"frame": 1, "value": 3}], "later": true}}}',
+            sandbox=UNRESTRICTED,
         )
     )
-    assert '"later": true' in text and '"value": 3' in text and document.loads(text).nodes["odd"] is not None
-    assert not [p for p in problems(document.loads(text)) if p.severity == "error" and p.socket == "x"]
+    assert (
+        '"later": true' in text
+        and '"value": 3' in text
+        and document.loads(text, sandbox=UNRESTRICTED).nodes["odd"] is not None
+    )
+    assert not [
+        p for p in problems(document.loads(text, sandbox=UNRESTRICTED)) if p.severity == "error" and p.socket == "x"
+    ]

@@ -9,6 +9,7 @@ import pytest
 from halation import document
 from halation.compiler.lowering.references import find_path_texts
 from halation.graph.paths import change_paths, inline_files, rebase_paths
+from halation.resources.sandbox import UNRESTRICTED
 
 INNER = {
     "halation": 1,
@@ -53,25 +54,25 @@ def files(graph) -> dict[str, str]:
 @pytest.mark.parametrize("name", ["whole", "turned"])
 def test_what_is_inside_leads_to_the_same_files(folder: Path, name: str) -> None:
     """Two files of groups in two folders, and a control that reaches through both."""
-    graph = document.load(folder / f"{name}.json")
+    graph = document.load(folder / f"{name}.json", sandbox=UNRESTRICTED)
     whole = inline_files(graph)
     assert files(whole) == files(graph) and len(files(graph)) == 2
     text = document.dumps(whole)
     assert "inner.json" not in text and "outer.json" not in text
     (folder / "library").rename(folder / "gone")
-    again = document.loads(text, folder=str(folder))
+    again = document.loads(text, folder=str(folder), sandbox=UNRESTRICTED)
     assert files(again) == files(whole)
 
 
 def test_a_graph_that_moves_takes_its_paths_along(folder: Path, tmp_path: Path) -> None:
-    graph = inline_files(document.load(folder / "whole.json"))
+    graph = inline_files(document.load(folder / "whole.json", sandbox=UNRESTRICTED))
     moved = rebase_paths(graph, str(tmp_path / "library" / "deep"))
     assert files(moved) == files(graph) and find_path_texts(moved)["inputs.plate"][0] == "../../plate.exr"
     assert rebase_paths(moved, str(folder)) == graph
 
 
 def test_every_path_can_be_another(folder: Path) -> None:
-    graph = inline_files(document.load(folder / "turned.json"))
+    graph = inline_files(document.load(folder / "turned.json", sandbox=UNRESTRICTED))
     changed = change_paths(graph, lambda path: f"x/{Path(path).name}")
     assert {text for text, _ in find_path_texts(changed).values()} == {"x/plate.exr", "x/rain.exr"}
 
@@ -86,6 +87,8 @@ def test_code_comes_inside(tmp_path: Path) -> None:
             }
         )
     )
-    whole = inline_files(document.load(tmp_path / "graph.json"))
+    whole = inline_files(document.load(tmp_path / "graph.json", sandbox=UNRESTRICTED))
     (tmp_path / "twice.glsl").unlink()
-    assert "image * 2.0" in document.dumps(whole) and document.loads(document.dumps(whole)) == whole
+    assert (
+        "image * 2.0" in document.dumps(whole) and document.loads(document.dumps(whole), sandbox=UNRESTRICTED) == whole
+    )

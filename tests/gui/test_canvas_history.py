@@ -8,6 +8,7 @@ from typing import Any
 from gui_canvas import chain, empty, row, show
 from halation.document import dumps, save
 from halation.graph import Port
+from halation.resources.sandbox import UNRESTRICTED
 
 
 @dataclass
@@ -157,7 +158,7 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
 
 def test_three_hundred_nodes_are_opened_selected_moved_deleted_and_brought_back(gui, tmp_path) -> None:
     path = tmp_path / "many.json"
-    save(row(300), path)
+    save(row(300), path, sandbox=UNRESTRICTED)
 
     def body(ui) -> None:
         session = ui.session

@@ -12,6 +12,7 @@ from halation.editor.problems.findings import list_problems
 from halation.editor.toolkit.keys import chord
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 SIZE = (1100, 760)
 GAIN = 'vec4 gain(\n    vec4 image,\n    float k  // = 2, 0..4, "How Much": times\n) {\n    return image * k;\n}\n'
@@ -22,7 +23,9 @@ def path(tmp_path: Path) -> Path:
     """A graph with a picture of 0.25, and a file of code beside it."""
     graph = Graph(settings=Settings((64, 36)), outputs={"image": Output(Kind.IMAGE)})
     graph = graph.add("fill", catalogue()["constant"](color=(0.25, 0.25, 0.25, 1.0)))
-    document.save(graph.connect(Port("fill", "out"), Port("outputs", "image")), tmp_path / "graph.json")
+    document.save(
+        graph.connect(Port("fill", "out"), Port("outputs", "image")), tmp_path / "graph.json", sandbox=UNRESTRICTED
+    )
     (tmp_path / "gain.glsl").write_text(GAIN)
     return tmp_path / "graph.json"
 

@@ -10,6 +10,7 @@ import pytest
 from halation.authoring.commands import SetColorSettings, SetInput
 from halation.media import read_layer
 from halation.nodes import ColorSettings, Kind
+from halation.resources.sandbox import UNRESTRICTED
 from house_config import HOUSE, write_house
 from OpenImageIO import ImageOutput, ImageSpec
 
@@ -54,7 +55,9 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         ui.session.apply(SetColorSettings(working="scene_linear"))
         ui.settled()
         color = ColorSettings(str(tmp_path / "house.ocio"), "scene_linear")
-        expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color).array[18, 32, :3]
+        expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color, sandbox=UNRESTRICTED).array[
+            18, 32, :3
+        ]
         assert np.allclose(middle(ui), expected, rtol=2e-3) and not np.allclose(before, expected, rtol=0.1)
         assert ui.editor.coloring.settings == color and not ui.editor.coloring.fault
         ui.editor.viewer.view, ui.editor.viewer.display = "Warm", "Screen"

@@ -14,6 +14,7 @@ import pytest
 from halation import document, presets
 from halation.authoring.commands import SetValue
 from halation.graph import Port
+from halation.resources.sandbox import UNRESTRICTED
 
 HERE = Path(__file__).parents[1]
 
@@ -27,7 +28,7 @@ def look(tmp_path: Path) -> Path:
 
 
 def test_what_is_saved_is_what_was_made(gui, look: Path) -> None:
-    before = document.load(look)
+    before = document.load(look, sandbox=UNRESTRICTED)
 
     def body(ui) -> None:
         ui.session.select(["tone"])
@@ -38,7 +39,7 @@ def test_what_is_saved_is_what_was_made(gui, look: Path) -> None:
         assert not ui.session.dirty
 
     gui(body, look)
-    after = document.load(look)
+    after = document.load(look, sandbox=UNRESTRICTED)
     assert after.value(Port("tone", "exposure")) == 1.5
     assert after.set(Port("tone", "exposure"), before.value(Port("tone", "exposure"))) == before
 
@@ -101,11 +102,15 @@ def test_a_graph_that_is_dropped_on_the_viewer_is_opened(gui, look: Path) -> Non
 
 def test_a_file_changed_by_another_program_is_loaded_again(gui, look: Path) -> None:
     def body(ui) -> None:
-        document.save(document.load(look).set(Port("tone", "exposure"), -2.0), look)
+        document.save(
+            document.load(look, sandbox=UNRESTRICTED).set(Port("tone", "exposure"), -2.0), look, sandbox=UNRESTRICTED
+        )
         ui.until(lambda: ui.session.graph.value(Port("tone", "exposure")) == -2.0)
         assert not ui.session.dirty
         ui.session.apply(SetValue(Port("tone", "exposure"), 3.0))
-        document.save(document.load(look).set(Port("tone", "exposure"), -1.0), look)
+        document.save(
+            document.load(look, sandbox=UNRESTRICTED).set(Port("tone", "exposure"), -1.0), look, sandbox=UNRESTRICTED
+        )
         ui.until(lambda: ui.editor.dialogs.question is not None)
         assert ui.session.graph.value(Port("tone", "exposure")) == 3.0
 
@@ -116,13 +121,13 @@ def test_saving_over_what_another_program_wrote_asks_first(gui, look: Path) -> N
     def body(ui) -> None:
         ui.session.apply(SetValue(Port("tone", "exposure"), 3.0))
         ui.wait()
-        theirs = document.load(look).set(Port("tone", "exposure"), -1.0)
+        theirs = document.load(look, sandbox=UNRESTRICTED).set(Port("tone", "exposure"), -1.0)
         ui.editor.watcher.close()  # it does not notice in time
-        document.save(theirs, look)
+        document.save(theirs, look, sandbox=UNRESTRICTED)
         ui.keys("Ctrl+S")
         assert "another program" in ui.editor.dialogs.question.sentence and ui.session.dirty
         ui.keys("Escape")
-        assert document.load(look) == theirs
+        assert document.load(look, sandbox=UNRESTRICTED) == theirs
         ui.keys("Ctrl+S")
         ui.editor.dialogs.question.answers[0][1]()
         ui.editor.dialogs.question = None
@@ -133,7 +138,7 @@ def test_saving_over_what_another_program_wrote_asks_first(gui, look: Path) -> N
         assert ui.editor.dialogs.question is None and not ui.session.dirty
 
     gui(body, look)
-    assert document.load(look).value(Port("tone", "exposure")) == 4.0
+    assert document.load(look, sandbox=UNRESTRICTED).value(Port("tone", "exposure")) == 4.0
 
 
 def test_a_read_only_file_is_opened_and_not_replaced(gui, look: Path) -> None:
@@ -168,7 +173,7 @@ def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp
     ) as process:
         assert process.stdout and any(line.strip().endswith("ready") for line in process.stdout)
         process.kill()
-    assert document.load(look).value(Port("tone", "exposure")) != 2.5
+    assert document.load(look, sandbox=UNRESTRICTED).value(Port("tone", "exposure")) != 2.5
     time.sleep(0.1)
 
     def body(ui) -> None:

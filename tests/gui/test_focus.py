@@ -10,6 +10,7 @@ from halation import document
 from halation.editor.viewer.ground import depth_at
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 WIDTH, HEIGHT = 192, 108
 POINT, DISTANCE = Port("lens", "focus_point"), Port("lens", "focus_distance")
@@ -27,7 +28,7 @@ def made(focus: str) -> Graph:
 
 @pytest.fixture
 def path(tmp_path: Path, request: pytest.FixtureRequest) -> Path:
-    document.save(made(request.param), tmp_path / "graph.json")
+    document.save(made(request.param), tmp_path / "graph.json", sandbox=UNRESTRICTED)
     return tmp_path / "graph.json"
 
 

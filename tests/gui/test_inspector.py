@@ -11,6 +11,7 @@ from halation.authoring.commands import AddComment, AddFrame, AddNode, ExposeVal
 from halation.graph import Graph, Group, Output, Port, Settings
 from halation.media import write_picture
 from halation.nodes import Kind, catalogue
+from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 from toy_nodes import Tint
 
@@ -35,7 +36,7 @@ def made() -> Graph:
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "graph.json"
-    document.save(made(), path)
+    document.save(made(), path, sandbox=UNRESTRICTED)
     return path
 
 
@@ -236,9 +237,10 @@ def test_files(gui, tmp_path: Path) -> None:
         picture,
         {"beauty": np.full((8, 16, 4), 0.5, np.float32), "depth": np.ones((8, 16, 1), np.float32)},
         kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD},
+        sandbox=UNRESTRICTED,
     )
     path = tmp_path / "graph.json"
-    document.save(Graph().add("read", catalogue()["read_image"]()), path)
+    document.save(Graph().add("read", catalogue()["read_image"]()), path, sandbox=UNRESTRICTED)
 
     def body(ui) -> None:
         select(ui, "read")

@@ -12,6 +12,7 @@ from halation.editor.viewer.ground import depth_at
 from halation.editor.viewer.perspective import project
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import CameraModel, Light, LightKind, catalogue, lights_of, numbers_of
+from halation.resources.sandbox import UNRESTRICTED
 
 LIGHTS = (
     Light(LightKind.POINT, (-1.0, -1.0, 1.6), color=(1.0, 0.6, 0.2), intensity=8.0, reach=2.5),
@@ -31,7 +32,9 @@ def path(tmp_path: Path) -> Path:
     graph = graph.add("scene", node["scene"]()).add("lit", node["deferred_lighting"](lights=numbers_of(LIGHTS)))
     for source, target in (("camera", "camera"), ("albedo", "albedo"), ("normal", "normal"), ("depth", "depth")):
         graph = graph.connect(Port("scene", source), Port("lit", target))
-    document.save(graph.connect(Port("lit", "out"), Port("outputs", "image")), tmp_path / "graph.json")
+    document.save(
+        graph.connect(Port("lit", "out"), Port("outputs", "image")), tmp_path / "graph.json", sandbox=UNRESTRICTED
+    )
     return tmp_path / "graph.json"
 
 

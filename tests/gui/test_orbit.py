@@ -13,6 +13,7 @@ from halation.editor.viewer.orbit import Orbit
 from halation.editor.viewer.perspective import project, unproject
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 WIDTH, HEIGHT = 192, 108
 ASPECT = WIDTH / HEIGHT
@@ -25,7 +26,9 @@ def path(tmp_path: Path) -> Path:
     graph = Graph(settings=Settings((WIDTH, HEIGHT))).add_output("image", Output())
     graph = graph.add("scene", node["scene"]()).add("light", node["exposure"]())
     graph = graph.connect(Port("scene", "color"), Port("light", "image"))
-    document.save(graph.connect(Port("light", "out"), Port("outputs", "image")), tmp_path / "graph.json")
+    document.save(
+        graph.connect(Port("light", "out"), Port("outputs", "image")), tmp_path / "graph.json", sandbox=UNRESTRICTED
+    )
     return tmp_path / "graph.json"
 
 

@@ -12,6 +12,7 @@ from halation.document import save
 from halation.editor.window.status import _figures
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 SIZE = (800, 500)
 STOPS = Port("light", "stops")
@@ -25,7 +26,7 @@ def made(folder: Path) -> Path:
         graph = graph.add(name, node[type]()).connect(last, Port(name, "image"))
         last = Port(name, "out")
     path = folder / "large.json"
-    save(graph.connect(last, Port("outputs", "image")), path)
+    save(graph.connect(last, Port("outputs", "image")), path, sandbox=UNRESTRICTED)
     return path
 
 

@@ -12,6 +12,7 @@ import shutil
 import pytest
 from halation import document, presets
 from halation.editor.toolkit.keys import chord
+from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import ImVec2
 
 SIZE = (1400, 900)
@@ -132,6 +133,6 @@ def test_nothing_that_is_done_at_random_fails(gui, tmp_path, monkeypatch, seed: 
             assert not ui.editor.faults, ui.editor.faults
         kept = tmp_path / "kept.json"
         ui.session.save_as(kept)
-        assert document.load(kept) == ui.session.root
+        assert document.load(kept, sandbox=UNRESTRICTED) == ui.session.root
 
     gui(body, path, size=SIZE)

@@ -24,6 +24,7 @@ from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, Node, catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 here = Path(sys.argv[1])
 nodes, shaders, path = here / "halation" / "nodes", here / "halation" / "shaders", here / "graph.json"
@@ -32,7 +33,7 @@ graph = Graph(settings=Settings((64, 36)), outputs={"image": Output(Kind.IMAGE)}
 graph = graph.add("fill", known["constant"]()).add("light", known["exposure"](stops=1.0))
 graph = graph.connect(Port("fill", "out"), Port("light", "image"))
 graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
-document.save(graph, path)
+document.save(graph, path, sandbox=UNRESTRICTED)
 
 def brightness(ui):
     return ui.ask(lambda: float(ui.editor.probe.pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))

@@ -15,6 +15,7 @@ from halation.graph import Port
 from halation.presets import paths, sample
 from halation.renderer import Renderer, RenderRequest
 from halation.renderer.jobs.job import OutputSettings, run_job
+from halation.resources.sandbox import UNRESTRICTED
 
 BLOOM = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -22,8 +23,8 @@ BLOOM = next(path for path in paths() if path.stem == "soft_bloom")
 def rendered(folder: Path) -> Path:
     """A picture of a preset with a value of its own, beside the plate that it was made of."""
     shutil.copy(str(sample()), folder / "plate.exr")
-    graph = document.load(BLOOM).set(Port("bloom", "intensity"), 0.625)
-    renderer = Renderer()
+    graph = document.load(BLOOM, sandbox=UNRESTRICTED).set(Port("bloom", "intensity"), 0.625)
+    renderer = Renderer(sandbox=UNRESTRICTED)
     inputs = {"beauty": f"{folder / 'plate.exr'}:Combined"}
     run_job(
         renderer,

@@ -14,6 +14,7 @@ from halation.document import load, save
 from halation.graph import OUTPUTS, Expression, Port, Settings
 from halation.media import read_layer
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
 
@@ -33,8 +34,8 @@ def long_shot(tmp_path: Path) -> Path:
 def made(tmp_path: Path, count: int) -> Path:
     """A document with so many frames."""
     shutil.copytree(PRESET.parent / "samples", tmp_path / "samples")
-    graph = load(PRESET).animate(Port("bloom", "intensity"), Expression("frame * 0.1"))
-    save(replace(graph, settings=Settings(frames=(1, count))), tmp_path / "comp.json")
+    graph = load(PRESET, sandbox=UNRESTRICTED).animate(Port("bloom", "intensity"), Expression("frame * 0.1"))
+    save(replace(graph, settings=Settings(frames=(1, count))), tmp_path / "comp.json", sandbox=UNRESTRICTED)
     return tmp_path / "comp.json"
 
 
@@ -250,7 +251,9 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
             book.session.seek(frame)
             ui.settled()
             seen = ui.ask(lambda: ui.editor.probe.small(ui.editor.preview.shown("A").texture, 480))
-            there = read_layer(str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4).array
+            there = read_layer(
+                str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED
+            ).array
             assert seen[..., :3].mean() == pytest.approx(there[..., :3].mean(), rel=0.01)
 
     gui(body, shot)

@@ -11,6 +11,7 @@ from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
 from halation.editor.shared.dialogs import Question
 from halation.graph import Port
+from halation.resources.sandbox import UNRESTRICTED
 from imgui_bundle import imgui
 
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")
@@ -84,7 +85,7 @@ def test_a_panel_may_fail_anywhere(gui, tmp_path: Path, place: str) -> None:
             assert not ui.editor.faults, name
             ui.session.apply(SetValue(STOPS, number / 8))
             ui.session.save_as(path)
-            assert document.load(path).value(STOPS) == number / 8
+            assert document.load(path, sandbox=UNRESTRICTED).value(STOPS) == number / 8
 
     gui(body, LOOK, faulty=True)
 

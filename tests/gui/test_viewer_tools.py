@@ -14,6 +14,7 @@ from halation.authoring.commands import AddInput, AddNode
 from halation.editor.viewer.geometry import Sight
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
+from halation.resources.sandbox import UNRESTRICTED
 
 
 def test_a_region_is_drawn_resized_and_cleared(gui) -> None:
@@ -55,7 +56,9 @@ def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
     graph = graph.add("lit", node["deferred_lighting"](lights=numbers_of((Light(LightKind.SUN), start))))
     graph = graph.add("camera", node["camera"](eye=(0.0, -5.0, 1.0), target=(0.0, 0.0, 1.0)))
     graph = graph.connect(Port("camera", "camera"), Port("lit", "camera"))
-    document.save(graph.connect(Port("lit", "out"), Port("outputs", "image")), tmp_path / "graph.json")
+    document.save(
+        graph.connect(Port("lit", "out"), Port("outputs", "image")), tmp_path / "graph.json", sandbox=UNRESTRICTED
+    )
 
     def body(ui) -> None:
         ui.session.select(["lit"])

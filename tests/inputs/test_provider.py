@@ -9,6 +9,7 @@ from halation.errors import InputError, UsageError
 from halation.graph import Graph, Input
 from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 GRAPH = Graph(
     inputs={
@@ -22,20 +23,20 @@ GRAPH = Graph(
 def written(folder, **layers):
     path = folder / "shot.exr"
     kinds = {name: Kind.IMAGE if array.ndim == 3 else Kind.FIELD for name, array in layers.items()}
-    media.write_picture(path, layers, kinds=kinds)
+    media.write_picture(path, layers, kinds=kinds, sandbox=UNRESTRICTED)
     return path
 
 
 def test_a_layer_follows_its_file(tmp_path):
     path = written(tmp_path, Combined=np.ones((4, 6, 4), np.float32), Depth=np.full((4, 6), 7.0, np.float32))
-    pictures = MediaProvider()
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     bound = pictures.bind(GRAPH, {"beauty": path})
     assert set(bound) == {"beauty", "depth"}
     np.testing.assert_array_equal(pictures.load_pixels(bound["depth"]), np.full((4, 6, 1), 7.0, np.float32))
 
 
 def test_a_missing_layer_is_an_error_instead_of_the_sample(tmp_path):
-    pictures = MediaProvider()
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     bound = pictures.bind(GRAPH, {"beauty": written(tmp_path, Combined=np.ones((4, 6, 4), np.float32))})
     with pytest.raises(InputError, match="Depth"):
         pictures.probe_picture(bound["depth"])
@@ -43,19 +44,19 @@ def test_a_missing_layer_is_an_error_instead_of_the_sample(tmp_path):
 
 def test_an_array_has_no_layers_to_follow():
     with pytest.raises(UsageError, match="bind 'depth' too"):
-        MediaProvider().bind(GRAPH, {"beauty": np.ones((4, 6, 4), np.float32)})
+        MediaProvider(sandbox=UNRESTRICTED).bind(GRAPH, {"beauty": np.ones((4, 6, 4), np.float32)})
 
 
 def test_what_is_bound_by_name_stays(tmp_path):
     path = written(tmp_path, Combined=np.ones((4, 6, 4), np.float32), Depth=np.full((4, 6), 7.0, np.float32))
-    bound = MediaProvider().bind(GRAPH, {"beauty": path, "depth": "other.exr:Z"})
+    bound = MediaProvider(sandbox=UNRESTRICTED).bind(GRAPH, {"beauty": path, "depth": "other.exr:Z"})
     assert (bound["depth"].path, bound["depth"].layer) == ("other.exr", "Z")
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_encoded_pixels_are_not_taken_for_light(dtype):
     with pytest.raises(UsageError, match=r"'dirt': uint\d+ pixels .* scene-linear floats"):
-        MediaProvider().bind(GRAPH, {"dirt": np.zeros((4, 6, 3), dtype)})
+        MediaProvider(sandbox=UNRESTRICTED).bind(GRAPH, {"dirt": np.zeros((4, 6, 3), dtype)})
 
 
 ROLES = Graph(
@@ -97,7 +98,7 @@ def render(folder, name, **layers):
 def test_layers_are_found_by_role(tmp_path):
     """Blender 4.5 has other names than 5.0; an input that only follows another one is found as well."""
     path = render(tmp_path, "a.exr", Combined=4, DiffCol=3, Emit=3, Depth=1, Normal=3)
-    pictures = MediaProvider()
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     bound = pictures.bind(ROLES, {"beauty": path})
     assert {name: picture.layer for name, picture in bound.items()} == {
         "beauty": "Combined", "albedo": "DiffCol", "emission": "Emit", "depth": "Depth", "normal": "Normal"
@@ -107,7 +108,7 @@ def test_layers_are_found_by_role(tmp_path):
 
 def test_an_absent_layer_is_refused_and_its_role_suggested(tmp_path):
     path = render(tmp_path, "a.exr", Combined=4, Emit=3, Position=3, Depth=1)
-    pictures = MediaProvider()
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     bound = pictures.bind(ROLES, {"albedo": path})
     with pytest.raises(InputError, match="has no layer 'Diffuse Color'"):
         pictures.probe_picture(bound["albedo"])
@@ -121,8 +122,8 @@ def test_an_absent_layer_is_refused_and_its_role_suggested(tmp_path):
 
 def test_a_plain_picture_is_what_the_user_binds_it_to(tmp_path):
     path = tmp_path / "plain.exr"
-    media.write_picture(path, {"": np.full((4, 6, 4), 0.5, np.float32)}, kinds={"": Kind.IMAGE})
-    pictures = MediaProvider()
+    media.write_picture(path, {"": np.full((4, 6, 4), 0.5, np.float32)}, kinds={"": Kind.IMAGE}, sandbox=UNRESTRICTED)
+    pictures = MediaProvider(sandbox=UNRESTRICTED)
     assert pictures.load_pixels(pictures.bind(ROLES, {"albedo": path})["albedo"])[0, 0, 0] == 0.5
     follower = pictures.bind(ROLES, {"beauty": path})["albedo"]
     with pytest.raises(InputError, match="has no layer 'Diffuse Color'"):

@@ -17,6 +17,7 @@ from halation.cli.outcome import EXIT_CODES
 from halation.graph import Interpolation, problems
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.nodes import Pointwise, Temporal, catalogue
+from halation.resources.sandbox import UNRESTRICTED
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -29,7 +30,7 @@ def block(language: str, start: str = "") -> str:
 
 
 def test_the_graph_loads_and_has_no_problems() -> None:
-    graph = document.loads(block("json"))
+    graph = document.loads(block("json"), sandbox=UNRESTRICTED)
     assert problems(graph) == ()
     assert set(json.loads(document.dumps(graph))) == set(json.loads(block("json")))
 
@@ -90,7 +91,7 @@ def test_its_python_names_exist() -> None:
 
 def test_the_page_on_time_knows_everything_there_is() -> None:
     page = (ROOT / "docs" / "time.md").read_text(encoding="utf-8")
-    graph = document.loads(next(re.finditer(r"```json\n(.*?)```", page, re.S))[1])
+    graph = document.loads(next(re.finditer(r"```json\n(.*?)```", page, re.S))[1], sandbox=UNRESTRICTED)
     assert problems(graph) == () and len(graph.animation) == 2
     assert re.findall(r"^\| `(.*?)` \| (.*) \|$", page.partition("## Expressions")[2].partition("\n## ")[0], re.M) == [
         (function.signature, function.doc) for function in FUNCTIONS.values()

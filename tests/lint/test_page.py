@@ -8,6 +8,7 @@ from pathlib import Path
 
 from halation import document
 from halation.lint.checking import RULES
+from halation.resources.sandbox import UNRESTRICTED
 
 PAGE = (Path(__file__).parents[2] / "docs" / "checking.md").read_text(encoding="utf-8")
 
@@ -15,7 +16,7 @@ PAGE = (Path(__file__).parents[2] / "docs" / "checking.md").read_text(encoding="
 def test_the_example_of_settings_is_read_and_names_rules() -> None:
     text = re.search(r"```json\n(\"settings\".*?)```", PAGE, re.S)
     assert text
-    allow = document.loads('{"halation": 1, ' + text[1] + "}").settings.allow
+    allow = document.loads('{"halation": 1, ' + text[1] + "}", sandbox=UNRESTRICTED).settings.allow
     assert {name.partition(":")[0] for name in allow} <= RULES.keys() and len(allow) == 2
     assert json.loads("{" + text[1] + "}")["settings"]["allow"] == dict(allow)
 

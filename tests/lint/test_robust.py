@@ -10,13 +10,14 @@ from halation.document import dumps
 from halation.lint.checking import RULES, GraphChecker
 from halation.lint.sarif import sarif
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lint_graphs import DIM, chain
 
 PRESETS = sorted((Path(__file__).parents[2] / "presets").glob("*.json"))
 TEXTS = [path.read_text("utf-8") for path in PRESETS]
-CHECKER = GraphChecker()
+CHECKER = GraphChecker(sandbox=UNRESTRICTED)
 ODD = [
     None,
     True,
@@ -88,7 +89,7 @@ def test_text_is_cut_or_spoiled(index, rng: Random) -> None:
 
 def test_nodes_of_older_versions_are_named() -> None:
     newer = type("Grade", (catalogue()["grade"],), {"version": 3, "__module__": catalogue()["grade"].__module__})
-    checker = GraphChecker(frozenset({"unbound-input"}))
+    checker = GraphChecker(UNRESTRICTED, frozenset({"unbound-input"}))
     checker.types = {**catalogue(), "grade": newer}
     text = dumps(chain(DIM, DIM)).replace('"version": 1', '"version": 2', 1)
     found = [

@@ -18,6 +18,7 @@ from halation.lint.sheet import GraphFacts
 from halation.nodes import Kind
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
+from halation.resources.sandbox import UNRESTRICTED
 from lint_graphs import BLOOM, DIM, DOUBLE, HALF, MOVE, NEAREST, NODES, SOFT, STILL, TONE, TURN, WRAPPED, chain
 
 ROOT = Path(__file__).parents[2]
@@ -206,7 +207,7 @@ def test_paths(path, rule) -> None:
 
 @pytest.mark.parametrize("path", PRESETS, ids=[path.stem for path in PRESETS])
 def test_presets_are_clean(path) -> None:
-    assert [one.problem.sentence for one in GraphChecker().check_file(path).findings] == []
+    assert [one.problem.sentence for one in GraphChecker(sandbox=UNRESTRICTED).check_file(path).findings] == []
 
 
 def test_every_rule_can_be_looked_up_and_says_what_to_do() -> None:
@@ -233,17 +234,19 @@ def test_every_fault_of_reading_has_a_rule() -> None:
 def test_checking_refuses_what_compiling_refuses(tmp_path) -> None:
     """A graph with errors only in the whole: the exit code is that of the compiler."""
     text = dumps(chain(*[("resize", {"scale": (64.0, 64.0)})] * 2))
-    made = loads(text)
+    made = loads(text, sandbox=UNRESTRICTED)
     bound = {"beauty": Picture("beauty", "", Kind.IMAGE, 4, in_memory=True)}
     with pytest.raises(HalationError) as caught:
         compile_graph(made, Request(bindings=bound), Nowhere())
-    report = GraphChecker(frozenset({"unbound-input", "filtering-twice"})).check_text(text, "big.json", str(tmp_path))
+    report = GraphChecker(UNRESTRICTED, frozenset({"unbound-input", "filtering-twice"})).check_text(
+        text, "big.json", str(tmp_path)
+    )
     assert [(one.problem.rule.name, one.code) for one in report.findings] == [("too-large", caught.value.exit_code)]
 
 
 def test_lines_of_a_preset_lead_to_the_node() -> None:
     path = ROOT / "presets" / "agx_look.json"
     text = path.read_text().replace('"type": "saturation"', '"type": "saturatoin"')
-    (one,) = GraphChecker().check_text(text, "a.json", str(path.parent)).findings
+    (one,) = GraphChecker(sandbox=UNRESTRICTED).check_text(text, "a.json", str(path.parent)).findings
     assert one.problem.rule.name == "unknown-type" and '"color": {' in text.splitlines()[one.line - 1]
-    assert load(path).nodes["color"].id == "saturation"
+    assert load(path, sandbox=UNRESTRICTED).nodes["color"].id == "saturation"

@@ -13,6 +13,8 @@ import sys
 import traceback
 from pathlib import Path
 
+from halation.resources.sandbox import UNRESTRICTED
+
 
 def damaged(whole: bytes, number: int) -> bytes:
     """A copy: cut, with bytes flipped, most of them near the beginning, or with a part repeated or zeroed."""
@@ -43,9 +45,14 @@ def main(count: int, sources: list[Path]) -> int:
         for number in range(count):
             print(source.name, number, flush=True)
             path.write_bytes(damaged(whole, number))
-            for act in (read_info, lambda one: read_layer(one, "", Kind.IMAGE), read_metadata, analyze_render):
+            for act in (
+                read_info,
+                lambda one, sandbox: read_layer(one, "", Kind.IMAGE, sandbox=sandbox),
+                read_metadata,
+                analyze_render,
+            ):
                 try:
-                    act(path)
+                    act(path, sandbox=UNRESTRICTED)
                 except InputError as fault:
                     refused += 1
                     if "\n" in str(fault) or str(path) not in str(fault):

@@ -11,6 +11,7 @@ from halation.media import LayerRequest, read_info, read_layer
 from halation.media.color_spaces import describe_color_spaces
 from halation.media.pictures.row_reader import read_rows
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 from oiio_pictures import write_with_attributes
 
 Array = np.ndarray
@@ -74,14 +75,18 @@ def test_unsigned(tmp_path, bits, channels, big):
     codes = ramp(bits, channels)
     path = write_tiff(tmp_path / "a.tif", codes, bits, channels, big=big)
     share = codes / ((1 << bits) - 1)
-    pixels = read_layer(path, "", Kind.IMAGE).array
+    pixels = read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     near = 1.0 / 255.0 if bits == 6 else 2e-5  # OpenImageIO has 6 bits in 8
     np.testing.assert_allclose(pixels[..., :channels], srgb(share), rtol=1e-4, atol=5.0 * near)
-    np.testing.assert_allclose(read_layer(path, "", Kind.FIELD).array[..., 0], share[..., 0], atol=near)
-    np.testing.assert_allclose(read_layer(path, "", Kind.VECTOR, channels).array, share, atol=near)
-    assert describe_color_spaces(path)[0][0] == "srgb_rec709_scene"
-    if read_info(path).by_rows:
-        rows = read_rows(str(path), LayerRequest("", Kind.IMAGE), 2, 5)
+    np.testing.assert_allclose(
+        read_layer(path, "", Kind.FIELD, sandbox=UNRESTRICTED).array[..., 0], share[..., 0], atol=near
+    )
+    np.testing.assert_allclose(
+        read_layer(path, "", Kind.VECTOR, channels, sandbox=UNRESTRICTED).array, share, atol=near
+    )
+    assert describe_color_spaces(path, sandbox=UNRESTRICTED)[0][0] == "srgb_rec709_scene"
+    if read_info(path, sandbox=UNRESTRICTED).by_rows:
+        rows = read_rows(str(path), LayerRequest("", Kind.IMAGE), 2, 5, sandbox=UNRESTRICTED)
         np.testing.assert_array_equal(rows.array, pixels[2:5])
 
 
@@ -92,8 +97,10 @@ def test_signed(tmp_path, bits, channels):
     codes[0, 0] = -(1 << (bits - 1)) + 1
     path = write_tiff(tmp_path / "a.tif", codes, bits, channels, signed=True)
     share = codes / ((1 << (bits - 1)) - 1)
-    np.testing.assert_allclose(read_layer(path, "", Kind.FIELD).array[..., 0], share[..., 0], atol=2e-5)
-    pixels = read_layer(path, "", Kind.IMAGE).array
+    np.testing.assert_allclose(
+        read_layer(path, "", Kind.FIELD, sandbox=UNRESTRICTED).array[..., 0], share[..., 0], atol=2e-5
+    )
+    pixels = read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     np.testing.assert_allclose(pixels[1:, :, :channels], srgb(share[1:]), rtol=1e-4, atol=2e-5)
     np.testing.assert_allclose(pixels[0, 0, 0], -1.0, atol=1e-4)
 
@@ -101,13 +108,19 @@ def test_signed(tmp_path, bits, channels):
 def test_colors_of_32_bits_in_exr_are_linear_and_ids_are_counts(tmp_path):
     codes = np.array([[0, 2**31, 2**32 - 1]], np.uint32)[..., None].repeat(3, axis=2)
     path = write_with_attributes(tmp_path / "a.exr", codes, format="uint")
-    np.testing.assert_allclose(read_layer(path, "", Kind.IMAGE).array[0, :, 0], [0.0, 0.5, 1.0], atol=1e-6)
-    np.testing.assert_array_equal(read_layer(path, "", Kind.FIELD).array[0, :, 0], codes[0, :, 0].astype(np.float32))
-    assert describe_color_spaces(path) == [("lin_rec709_scene", "the working space, for nothing says otherwise")]
+    np.testing.assert_allclose(
+        read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array[0, :, 0], [0.0, 0.5, 1.0], atol=1e-6
+    )
+    np.testing.assert_array_equal(
+        read_layer(path, "", Kind.FIELD, sandbox=UNRESTRICTED).array[0, :, 0], codes[0, :, 0].astype(np.float32)
+    )
+    assert describe_color_spaces(path, sandbox=UNRESTRICTED) == [
+        ("lin_rec709_scene", "the working space, for nothing says otherwise")
+    ]
 
 
 @pytest.mark.parametrize("number", [0, 9, -1, 2**31 - 1, "sideways"])
 def test_an_orientation_that_means_nothing_is_upright(tmp_path, number):
     path = write_with_attributes(tmp_path / "a.exr", np.ones((4, 6, 3), np.float32), Orientation=number)
-    assert read_info(path).size == (6, 4)
-    assert read_layer(path, "", Kind.IMAGE).array.shape == (4, 6, 4)
+    assert read_info(path, sandbox=UNRESTRICTED).size == (6, 4)
+    assert read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (4, 6, 4)

@@ -10,6 +10,7 @@ from halation.errors import InputError
 from halation.media import find_layer, read_info
 from halation.media.channels import ChannelPart, group_channels, is_depth
 from halation.media.layers import ImageInfo
+from halation.resources.sandbox import UNRESTRICTED
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"
@@ -25,7 +26,7 @@ def one(*channels: str, tag: str = "", name: str = "", index: int = 0) -> Channe
 
 
 def test_parts_of_blender_5() -> None:
-    found = read_info(NEON)
+    found = read_info(NEON, sandbox=UNRESTRICTED)
     assert found.size == (480, 270) and found.format == "openexr"
     assert {layer.name: (layer.part, layer.channels, layer.is_half, layer.is_data) for layer in found.layers} == {
         "Combined": (0, tuple("RGBA"), True, False),
@@ -44,7 +45,7 @@ def test_parts_of_blender_5() -> None:
 
 
 def test_one_part_of_blender_4() -> None:
-    found = read_info(SINGLE)
+    found = read_info(SINGLE, sandbox=UNRESTRICTED)
     layers = {layer.name: layer for layer in found.layers}
     assert [*layers] == [
         "Combined",
@@ -89,21 +90,21 @@ def test_one_part_of_blender_4() -> None:
     ],
 )
 def test_names_that_people_type(path: Path, name: str, layer: str) -> None:
-    found = find_layer(read_info(path), name)
+    found = find_layer(read_info(path, sandbox=UNRESTRICTED), name)
     assert found.name == layer
     assert len(found.channels) == (1 if layer[-2:] == ".Z" or layer == "Depth" else 3 + ("o" in found.channels or 1))
 
 
 def test_a_channel_is_a_layer_of_one() -> None:
-    found = find_layer(read_info(SINGLE), "Position.Y")
+    found = find_layer(read_info(SINGLE, sandbox=UNRESTRICTED), "Position.Y")
     assert (found.channels, found.indices, found.is_data) == (("Y",), (32,), True)
 
 
 def test_a_missing_layer_is_named_with_the_nearest() -> None:
     with pytest.raises(InputError, match=r"neon\.exr: has no layer 'Dpth': did you mean 'Depth'\? It holds Combined, "):
-        find_layer(read_info(NEON), "Dpth")
+        find_layer(read_info(NEON, sandbox=UNRESTRICTED), "Dpth")
     with pytest.raises(InputError, match=r"has no layer 'qqq': it holds Combined, Depth"):
-        find_layer(read_info(NEON), "qqq")
+        find_layer(read_info(NEON, sandbox=UNRESTRICTED), "qqq")
 
 
 def test_two_view_layers_are_told_apart() -> None:

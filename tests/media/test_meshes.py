@@ -7,6 +7,7 @@ import pytest
 import trimesh
 from halation.media.meshes.load import load_mesh
 from halation.nodes import SceneFile
+from halation.resources.sandbox import UNRESTRICTED
 
 SHAPES = {
     "ball": trimesh.creation.icosphere(3),
@@ -26,7 +27,7 @@ def test_normals_are_those_of_trimesh(tmp_path, name, ending):
     for file, content in (exported if isinstance(exported, dict) else {path.name: exported}).items():
         target = path if file.endswith(ending) else tmp_path / file
         target.write_bytes(content if isinstance(content, bytes) else content.encode())
-    mesh = load_mesh(SceneFile(str(path), "z"))
+    mesh = load_mesh(SceneFile(str(path), "z"), sandbox=UNRESTRICTED)
     (geometry,) = trimesh.load_scene(path).geometry.values()
     geometry = geometry.copy()
     geometry.apply_transform(np.eye(4))

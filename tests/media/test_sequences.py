@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from halation.errors import InputError
 from halation.media import find_frame_file, find_sequence, sequences, suggest_pattern
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -44,21 +45,21 @@ def test_the_frames_of_a_pattern(fill):
     folder = fill(*SHOT, "shot.0030.exr.tmp", "shot.13.exr", "other.0013.exr", "shot.0013.png")
     (folder / "shot.0013.exr").mkdir()
     for text in ("shot.####.exr", "shot.%04d.exr", "shot.$F4.exr"):
-        found = find_sequence(f"{folder}/{text}")
+        found = find_sequence(f"{folder}/{text}", sandbox=UNRESTRICTED)
         assert found is not None and found.frames == (*range(1, 13), *range(14, 25))
         assert (found.gaps, found.missing, found.frames_text, found.gaps_text) == (((13, 13),), 1, "1-12,14-24", "13")
         assert found.path(7) == f"{folder}/shot.0007.exr"
 
 
 def test_an_empty_sequence_and_a_gap_without_end(fill):
-    found = find_sequence(f"{fill('x.exr')}/shot.#.exr")
+    found = find_sequence(f"{fill('x.exr')}/shot.#.exr", sandbox=UNRESTRICTED)
     assert found is not None and (found.frames, found.gaps, found.missing, found.frames_text) == ((), (), 0, "")
-    found = find_sequence(f"{fill('shot.1.exr', 'shot.999999999.exr')}/shot.#.exr")
+    found = find_sequence(f"{fill('shot.1.exr', 'shot.999999999.exr')}/shot.#.exr", sandbox=UNRESTRICTED)
     assert found is not None and found.gaps == ((2, 999999998),) and found.gaps_text == "2-999999998"
 
 
 def test_long_lists_are_cut(fill):
-    found = find_sequence(f"{fill(*(f'x.{frame * frame}.exr' for frame in range(40)))}/x.#.exr")
+    found = find_sequence(f"{fill(*(f'x.{frame * frame}.exr' for frame in range(40)))}/x.#.exr", sandbox=UNRESTRICTED)
     assert found is not None
     assert found.frames_text.endswith(",...") and found.gaps_text.endswith(",...") and len(found.frames_text) < 70
 
@@ -66,21 +67,21 @@ def test_long_lists_are_cut(fill):
 def test_one_picture_is_no_sequence(fill):
     folder = fill("shot.exr", "take #1.exr", "shot.%04d.exr", "shot.0001.exr")
     for name in ("shot.exr", "take #1.exr", "shot.%04d.exr", "shot.0001.exr", "gone.exr"):
-        assert find_sequence(f"{folder}/{name}") is None
-        frame = find_frame_file(f"{folder}/{name}", 5)
+        assert find_sequence(f"{folder}/{name}", sandbox=UNRESTRICTED) is None
+        frame = find_frame_file(f"{folder}/{name}", 5, sandbox=UNRESTRICTED)
         assert (frame.path, frame.black) == (f"{folder}/{name}", False)
 
 
 def test_negative_frames_by_printf_and_by_blender(fill):
     folder = fill("a.-005.exr", "a.-0004.exr", "a.-0003.exr", "a.-003.exr", "a.0000.exr", "a.-000.exr")
-    found = find_sequence(f"{folder}/a.####.exr")
+    found = find_sequence(f"{folder}/a.####.exr", sandbox=UNRESTRICTED)
     assert found is not None and list(found.names.items()) == [
         (-5, "a.-005.exr"),
         (-4, "a.-0004.exr"),
         (-3, "a.-003.exr"),
         (0, "a.0000.exr"),
     ]
-    assert find_frame_file(f"{folder}/a.####.exr", -4).path == f"{folder}/a.-0004.exr"
+    assert find_frame_file(f"{folder}/a.####.exr", -4, sandbox=UNRESTRICTED).path == f"{folder}/a.-0004.exr"
 
 
 @pytest.mark.parametrize(
@@ -107,16 +108,16 @@ def test_negative_frames_by_printf_and_by_blender(fill):
 )
 def test_a_folder_is_the_sequence_with_the_most_frames(fill, names, pattern):
     folder = fill(*names)
-    found = find_sequence(str(folder))
+    found = find_sequence(str(folder), sandbox=UNRESTRICTED)
     assert found is not None and found.pattern.text == f"{folder}/{pattern}" and found.frames
-    assert find_frame_file(str(folder), found.frames[-1]).path == found.path(found.frames[-1])
+    assert find_frame_file(str(folder), found.frames[-1], sandbox=UNRESTRICTED).path == found.path(found.frames[-1])
 
 
 @pytest.mark.parametrize("names", [(), ("a.exr", "notes.01.txt", "b"), ("a.exr",)])
 def test_a_folder_without_numbers(fill, names):
     folder = fill(*names)
     with pytest.raises(InputError, match="is a folder without numbered pictures: name a picture inside it"):
-        find_sequence(str(folder))
+        find_sequence(str(folder), sandbox=UNRESTRICTED)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +141,7 @@ def test_a_folder_without_numbers(fill, names):
 def test_what_stands_for_a_missing_frame(fill, missing, frame, there, black):
     folder = fill(*SHOT)
     for path in (f"{folder}/shot.####.exr", str(folder)):
-        found = find_frame_file(path, frame, missing)
+        found = find_frame_file(path, frame, missing, sandbox=UNRESTRICTED)
         assert (found.path, found.black) == (f"{folder}/shot.{there:04d}.exr", black)
 
 
@@ -153,14 +154,19 @@ def test_hold_and_nearest_by_their_definitions(tmp_path_factory, frames, frame):
     before = [there for there in frames if there <= frame]
     hold = max(before) if before else min(frames)
     near = min(sorted(frames), key=lambda there: abs(there - frame))
-    assert find_frame_file(f"{folder}/a.###.exr", frame, "hold").path == f"{folder}/a.{hold:03d}.exr"
-    assert find_frame_file(f"{folder}/a.###.exr", frame, "nearest").path == f"{folder}/a.{near:03d}.exr"
+    assert (
+        find_frame_file(f"{folder}/a.###.exr", frame, "hold", sandbox=UNRESTRICTED).path == f"{folder}/a.{hold:03d}.exr"
+    )
+    assert (
+        find_frame_file(f"{folder}/a.###.exr", frame, "nearest", sandbox=UNRESTRICTED).path
+        == f"{folder}/a.{near:03d}.exr"
+    )
 
 
 def test_a_missing_frame_is_told_in_a_sentence(fill):
     folder = fill(*SHOT)
     with pytest.raises(InputError) as caught:
-        find_frame_file(f"{folder}/shot.####.exr", 13)
+        find_frame_file(f"{folder}/shot.####.exr", 13, sandbox=UNRESTRICTED)
     assert str(caught.value) == (
         f"{folder}/shot.0013.exr: there is no such file, only frames 1-12,14-24: render it, or choose hold, nearest or "
         "black for missing frames"
@@ -181,50 +187,52 @@ def test_a_missing_frame_is_told_in_a_sentence(fill):
 def test_no_frame_at_all_is_an_error_whatever_stands_for_missing_ones(fill, text, said, missing):
     folder = fill(*SHOT)
     with pytest.raises(InputError) as caught:
-        find_frame_file(f"{folder}/{text}", 3, missing)
+        find_frame_file(f"{folder}/{text}", 3, missing, sandbox=UNRESTRICTED)
     assert str(caught.value) == f"{folder}/{text}: {said}"
 
 
 def test_relative_names(fill, monkeypatch):
     monkeypatch.chdir(fill(*SHOT))
-    assert find_frame_file("shot.####.exr", 13, "hold").path == "shot.0012.exr"
-    assert find_frame_file("./shot.####.exr", 13, "hold").path == "./shot.0012.exr"
-    assert suggest_pattern("shot.0001.exr") == "shot.####.exr"
-    assert suggest_pattern("./shot.0001.exr") == "./shot.####.exr"
-    assert find_sequence(".").frames_text == "1-12,14-24"
+    assert find_frame_file("shot.####.exr", 13, "hold", sandbox=UNRESTRICTED).path == "shot.0012.exr"
+    assert find_frame_file("./shot.####.exr", 13, "hold", sandbox=UNRESTRICTED).path == "./shot.0012.exr"
+    assert suggest_pattern("shot.0001.exr", sandbox=UNRESTRICTED) == "shot.####.exr"
+    assert suggest_pattern("./shot.0001.exr", sandbox=UNRESTRICTED) == "./shot.####.exr"
+    assert find_sequence(".", sandbox=UNRESTRICTED).frames_text == "1-12,14-24"
 
 
 def test_a_render_lists_its_folder_once(fill, listings):
     folder = fill(*SHOT)
     for path in (f"{folder}/shot.####.exr", str(folder)):
         for frame in range(1, 1001):
-            find_frame_file(path, frame, "hold")
+            find_frame_file(path, frame, "hold", sandbox=UNRESTRICTED)
     assert listings == [str(folder)]
 
 
 def test_frames_that_are_there_need_no_list(fill, listings):
     folder = fill(*SHOT)
-    assert [find_frame_file(f"{folder}/shot.####.exr", frame).path for frame in range(1, 13)] and not listings
+    assert [
+        find_frame_file(f"{folder}/shot.####.exr", frame, sandbox=UNRESTRICTED).path for frame in range(1, 13)
+    ] and not listings
 
 
 @pytest.mark.parametrize("age", [0, 100])
 def test_new_and_removed_files_are_noticed(fill, age):
     folder = fill(*SHOT, age=age)
     path = f"{folder}/shot.####.exr"
-    assert find_frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
+    assert find_frame_file(path, 30, "hold", sandbox=UNRESTRICTED).path.endswith("shot.0024.exr")
     (folder / "shot.0028.exr").touch()
-    assert find_frame_file(path, 30, "hold").path.endswith("shot.0028.exr")
+    assert find_frame_file(path, 30, "hold", sandbox=UNRESTRICTED).path.endswith("shot.0028.exr")
     (folder / "shot.0028.exr").unlink()
-    assert find_frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
+    assert find_frame_file(path, 30, "hold", sandbox=UNRESTRICTED).path.endswith("shot.0024.exr")
 
 
 def test_only_the_one_folder_is_listed(fill, listings, tmp_path):
     (tmp_path / "shots").mkdir()
     folder = fill("a.1.exr", "shots/b.1.exr", "shots/b.2.exr")
-    find_sequence(f"{folder}/a.#.exr")
-    find_sequence(str(folder))
+    find_sequence(f"{folder}/a.#.exr", sandbox=UNRESTRICTED)
+    find_sequence(str(folder), sandbox=UNRESTRICTED)
     with pytest.raises(InputError):
-        find_frame_file(f"{folder}/*/b.#.exr", 1)
+        find_frame_file(f"{folder}/*/b.#.exr", 1, sandbox=UNRESTRICTED)
     assert listings == [str(folder)]
 
 
@@ -266,7 +274,7 @@ def test_the_pattern_of_one_picture(fill, tmp_path, name, pattern):
         "#1.0001.exr",
         "#1.0002.exr",
     )
-    assert suggest_pattern(f"{folder}/{name}") == (pattern and f"{folder}/{pattern}")
+    assert suggest_pattern(f"{folder}/{name}", sandbox=UNRESTRICTED) == (pattern and f"{folder}/{pattern}")
 
 
 def test_a_folder_that_may_not_be_read(fill, monkeypatch):
@@ -276,11 +284,11 @@ def test_a_folder_that_may_not_be_read(fill, monkeypatch):
     folder = fill(*SHOT)
     monkeypatch.setattr(sequences.os, "scandir", refused)
     with pytest.raises(InputError, match=f"^{folder}/: the folder cannot be read: Permission denied$"):
-        find_frame_file(f"{folder}/shot.####.exr", 13, "hold")
-    assert suggest_pattern(f"{folder}/shot.0001.exr") is None
-    assert find_frame_file(f"{folder}/shot.####.exr", 12).path == f"{folder}/shot.0012.exr"
+        find_frame_file(f"{folder}/shot.####.exr", 13, "hold", sandbox=UNRESTRICTED)
+    assert suggest_pattern(f"{folder}/shot.0001.exr", sandbox=UNRESTRICTED) is None
+    assert find_frame_file(f"{folder}/shot.####.exr", 12, sandbox=UNRESTRICTED).path == f"{folder}/shot.0012.exr"
 
 
 def test_names_that_no_system_knows():
     for path in ("a" * 5000, "a\0b.exr", "\0/x.#.exr"):
-        assert find_sequence(path) is None or not find_sequence(path).frames
+        assert find_sequence(path, sandbox=UNRESTRICTED) is None or not find_sequence(path, sandbox=UNRESTRICTED).frames

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.ndimage import map_coordinates
@@ -71,7 +72,7 @@ def test_planes_become_rgb_by_the_matrix_of_the_tags(
     frame, planes = random_frame(pixels, bits, matrix)
     color = {"colorspace": matrix, "color_range": 1 if limited else 2}
     path = write_frames(tmp_path / "a.mkv", [frame], "ffv1", color=color)
-    found = media.read_layer(path, "", Kind.VECTOR, 3).array
+    found = media.read_layer(path, "", Kind.VECTOR, 3, sandbox=UNRESTRICTED).array
     assert np.abs(found - by_the_standard(planes, matrix, limited, bits, form)).max() < 4e-6
 
 
@@ -82,7 +83,7 @@ def test_without_tags_small_pictures_are_bt601_and_large_ones_bt709(tmp_path: Pa
         rows = np.full((height, frame.planes[2].line_size), 200, np.uint8)
         frame.planes[2].update(rows)
         path = write_frames(tmp_path / f"{height}.mkv", [frame], "ffv1", color={"colorspace": 2, "color_range": 1})
-        found = media.read_layer(path, "", Kind.VECTOR, 3).array[height // 2, width // 2]
+        found = media.read_layer(path, "", Kind.VECTOR, 3, sandbox=UNRESTRICTED).array[height // 2, width // 2]
         luma = np.frombuffer(frame.planes[0], np.uint8)[0]
         expected = (luma - 16.0) / 219.0 + 2.0 * (1.0 - WEIGHTS[matrix][0]) * (200 - 128) / 224.0
         assert found[0] == pytest.approx(expected, abs=1e-5)
@@ -115,7 +116,7 @@ def test_wide_primaries_become_those_of_the_working_space(tmp_path: Path) -> Non
     frame = av.VideoFrame.from_ndarray(np.array([[[255, 255, 255], [0, 255, 0]]] * 2, np.uint8).repeat(16, 1), "rgb24")
     color = {"colorspace": 0, "color_range": 2, "color_primaries": 9, "color_trc": 8}
     path = write_frames(tmp_path / "a.mkv", [frame.reformat(format="bgr0")], "ffv1", color=color)
-    found = media.read_layer(path, "", Kind.IMAGE).array
+    found = media.read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array
     assert found[0, 2, :3] == pytest.approx([1.0, 1.0, 1.0], abs=1e-3)
     assert found[0, -2, :3] == pytest.approx([-0.5876, 1.1329, -0.1006], abs=2e-3)
 
@@ -124,16 +125,18 @@ def test_wide_primaries_become_those_of_the_working_space(tmp_path: Path) -> Non
 def test_a_lossless_video_is_the_same_as_png_files_to_the_bit(tmp_path: Path, precision: Any) -> None:
     random = np.random.default_rng(3)
     pictures = [random.random((31, 45, 4)).astype(np.float32) for _ in range(3)]
-    video = media.VideoWriter(tmp_path / "a.mkv", (45, 31), 24.0, deep=precision == "float")
+    video = media.VideoWriter(tmp_path / "a.mkv", (45, 31), 24.0, deep=precision == "float", sandbox=UNRESTRICTED)
     for number, picture in enumerate(pictures, 1):
         picture[..., :3] *= picture[..., 3:]
         layers, kinds = {"image": picture}, {"image": Kind.IMAGE}
         video.add(layers, kinds)
-        media.write_picture(tmp_path / f"{number}.png", layers, kinds=kinds, precision=precision)
+        media.write_picture(tmp_path / f"{number}.png", layers, kinds=kinds, precision=precision, sandbox=UNRESTRICTED)
     video.close()
     for number in (3, 1, 2):
-        still = media.read_layer(tmp_path / f"{number}.png", "", Kind.IMAGE).array
-        assert np.array_equal(media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=number).array, still)
+        still = media.read_layer(tmp_path / f"{number}.png", "", Kind.IMAGE, sandbox=UNRESTRICTED).array
+        assert np.array_equal(
+            media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=number, sandbox=UNRESTRICTED).array, still
+        )
 
 
 @pytest.mark.parametrize(
@@ -152,11 +155,13 @@ def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, toler
     """Flat fields of color, so that nothing but matrix, range and curve is left to go wrong."""
     colors = np.array([[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9], [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], [0, 0, 0]])
     light = colors.repeat(16, 0)[None].repeat(32, 0).astype(np.float32)
-    video = media.VideoWriter(tmp_path / name, (96, 32), 24.0, codec=codec, encoding=Encoding("none"))
+    video = media.VideoWriter(
+        tmp_path / name, (96, 32), 24.0, codec=codec, encoding=Encoding("none"), sandbox=UNRESTRICTED
+    )
     for _ in range(3):
         video.add({"image": light}, {"image": Kind.IMAGE})
     video.close()
-    found = media.read_layer(tmp_path / name, "", Kind.IMAGE, frame=2).array[16, 8::16, :3]
+    found = media.read_layer(tmp_path / name, "", Kind.IMAGE, frame=2, sandbox=UNRESTRICTED).array[16, 8::16, :3]
     assert np.abs(np.asarray(found) - colors).max() < tolerance
     other = [frame.to_ndarray(format="rgb24") for frame in av.open(str(tmp_path / name)).decode(video=0)]  # swscale's
     encoded = np.where(colors <= 0.0031308, 12.92 * colors, 1.055 * colors ** (1 / 2.4) - 0.055)
@@ -165,7 +170,7 @@ def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, toler
 
 @pytest.mark.parametrize("name", ["a.mp4", "a.mov", "a.mkv", "a.webm"])
 def test_tags_say_what_is_in_the_file(tmp_path: Path, name: str) -> None:
-    video = media.VideoWriter(tmp_path / name, (64, 32), 30000 / 1001)
+    video = media.VideoWriter(tmp_path / name, (64, 32), 30000 / 1001, sandbox=UNRESTRICTED)
     video.add({"image": np.zeros((32, 64, 4), np.float32)}, {"image": Kind.IMAGE})
     video.close()
     with av.open(str(tmp_path / name)) as file:

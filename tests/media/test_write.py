@@ -13,6 +13,7 @@ from halation.color.display import to_display
 from halation.errors import UsageError
 from halation.media import TypedAttribute, read_info, read_layer, read_metadata, write_picture
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 Make = Callable[..., Path]
 Random = np.random.Generator
@@ -42,18 +43,23 @@ def hdr(rng: Random, channels: int = 4, size: tuple[int, int] = (9, 13)) -> np.n
 @pytest.mark.parametrize(("precision", "dtype"), [("half", np.float16), ("float", np.float32)])
 def test_exr_of_one_picture(tmp_path: Path, rng: Random, precision: Any, dtype: type) -> None:
     colors = hdr(rng)
-    write_picture(tmp_path / "a.exr", {"image": colors}, kinds=IMAGE, precision=precision)
+    write_picture(tmp_path / "a.exr", {"image": colors}, kinds=IMAGE, precision=precision, sandbox=UNRESTRICTED)
     [(spec, pixels)] = parts(tmp_path / "a.exr")
     assert spec.channelnames == ("R", "G", "B", "A") and str(spec.format) == precision
     assert spec.get_string_attribute("compression") == "zip"
     assert spec.get_string_attribute("colorInteropID") == "lin_rec709_scene"
     np.testing.assert_array_equal(pixels, colors.astype(dtype).astype(np.float32))
-    again = read_layer(tmp_path / "a.exr", "", Kind.IMAGE)
+    again = read_layer(tmp_path / "a.exr", "", Kind.IMAGE, sandbox=UNRESTRICTED)
     np.testing.assert_array_equal(again.array, colors.astype(dtype))
 
 
 def test_halves_end_at_their_largest_number(tmp_path: Path) -> None:
-    write_picture(tmp_path / "a.exr", {"image": np.array([[[1e6, -1e6, np.inf, 1]]], np.float32)}, kinds=IMAGE)
+    write_picture(
+        tmp_path / "a.exr",
+        {"image": np.array([[[1e6, -1e6, np.inf, 1]]], np.float32)},
+        kinds=IMAGE,
+        sandbox=UNRESTRICTED,
+    )
     np.testing.assert_array_equal(parts(tmp_path / "a.exr")[0][1], [[[65504, -65504, 65504, 1]]])
 
 
@@ -65,6 +71,7 @@ def test_exr_compression(tmp_path: Path, rng: Random, compression: str) -> None:
         {"": colors, "depth": depth},
         kinds={"": Kind.IMAGE, "depth": Kind.FIELD},
         compression=compression,
+        sandbox=UNRESTRICTED,
     )
     (color, _), (data, stored) = parts(tmp_path / "a.exr")
     assert color.get_string_attribute("compression").partition(":")[0] == compression
@@ -87,7 +94,7 @@ def test_exr_of_many_layers(tmp_path: Path, rng: Random) -> None:
         "normal": Kind.VECTOR,
         "motion": Kind.VECTOR,
     }
-    write_picture(tmp_path / "a.exr", layers, kinds=kinds, metadata={"only": "once"})
+    write_picture(tmp_path / "a.exr", layers, kinds=kinds, metadata={"only": "once"}, sandbox=UNRESTRICTED)
     found = parts(tmp_path / "a.exr")
     assert [spec.channelnames for spec, _ in found] == [
         ("image.R", "image.G", "image.B", "image.A"),
@@ -103,8 +110,10 @@ def test_exr_of_many_layers(tmp_path: Path, rng: Random) -> None:
         exact = layers[name].astype(np.float16) if name == "image" else layers[name]
         np.testing.assert_array_equal(pixels, exact.astype(np.float32))
         width = layers[name].shape[2]
-        np.testing.assert_array_equal(read_layer(tmp_path / "a.exr", name, kinds[name], width).array, exact)
-    assert [(layer.name, layer.is_data) for layer in read_info(tmp_path / "a.exr").layers] == [
+        np.testing.assert_array_equal(
+            read_layer(tmp_path / "a.exr", name, kinds[name], width, sandbox=UNRESTRICTED).array, exact
+        )
+    assert [(layer.name, layer.is_data) for layer in read_info(tmp_path / "a.exr", sandbox=UNRESTRICTED).layers] == [
         ("image", False),
         ("zDepth", True),
         ("mask", True),
@@ -125,31 +134,35 @@ def test_exr_of_many_layers(tmp_path: Path, rng: Random) -> None:
 def test_a_layer_alone_has_plain_channels(
     tmp_path: Path, rng: Random, name: str, kind: Kind, width: int, expected: str
 ) -> None:
-    write_picture(tmp_path / "a.exr", {name: rng.random((4, 4, width), np.float32)}, kinds={name: kind})
+    write_picture(
+        tmp_path / "a.exr", {name: rng.random((4, 4, width), np.float32)}, kinds={name: kind}, sandbox=UNRESTRICTED
+    )
     assert parts(tmp_path / "a.exr")[0][0].channelnames == tuple(expected)
 
 
 def test_a_flat_array_is_a_field(tmp_path: Path, rng: Random) -> None:
     mask = rng.random((4, 6), np.float32)
-    write_picture(tmp_path / "a.exr", {"mask": mask}, kinds={"mask": Kind.FIELD})
-    np.testing.assert_array_equal(read_layer(tmp_path / "a.exr", "", Kind.FIELD).array[..., 0], mask)
+    write_picture(tmp_path / "a.exr", {"mask": mask}, kinds={"mask": Kind.FIELD}, sandbox=UNRESTRICTED)
+    np.testing.assert_array_equal(
+        read_layer(tmp_path / "a.exr", "", Kind.FIELD, sandbox=UNRESTRICTED).array[..., 0], mask
+    )
 
 
 def test_views(tmp_path: Path, rng: Random) -> None:
     colors = hdr(rng)
     for view in ("", "none", "Raw"):
-        write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE, view=view)
+        write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE, view=view, sandbox=UNRESTRICTED)
         [(spec, pixels)] = parts(tmp_path / "a.png")
         assert str(spec.format) == "uint8" and spec.channelnames == ("R", "G", "B", "A")
         np.testing.assert_array_equal(np.rint(pixels * 255), to_display(colors, view))
-    write_picture(tmp_path / "b.png", {"image": colors}, kinds=IMAGE)
+    write_picture(tmp_path / "b.png", {"image": colors}, kinds=IMAGE, sandbox=UNRESTRICTED)
     assert (tmp_path / "b.png").read_bytes() != (tmp_path / "a.png").read_bytes()
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.tiff"])
 def test_16_bits(tmp_path: Path, rng: Random, name: str) -> None:
     colors = hdr(rng)
-    write_picture(tmp_path / name, {"image": colors}, kinds=IMAGE, precision="float")
+    write_picture(tmp_path / name, {"image": colors}, kinds=IMAGE, precision="float", sandbox=UNRESTRICTED)
     [(spec, pixels)] = parts(tmp_path / name)
     assert str(spec.format) == "uint16"
     np.testing.assert_array_equal(np.rint(pixels * 65535), to_display(colors, bits=16))
@@ -159,14 +172,18 @@ def test_written_and_read_again(tmp_path: Path, rng: Random) -> None:
     colors = rng.uniform(0, 1, (16, 16, 4)).astype(np.float32)
     colors[..., :3] *= colors[..., 3:]
     for name in ("a.png", "a.tif"):
-        write_picture(tmp_path / name, {"image": colors}, kinds=IMAGE, view="none", precision="float")
-        np.testing.assert_allclose(read_layer(tmp_path / name, "", Kind.IMAGE).array, colors, atol=1e-4)
+        write_picture(
+            tmp_path / name, {"image": colors}, kinds=IMAGE, view="none", precision="float", sandbox=UNRESTRICTED
+        )
+        np.testing.assert_allclose(
+            read_layer(tmp_path / name, "", Kind.IMAGE, sandbox=UNRESTRICTED).array, colors, atol=1e-4
+        )
 
 
 def test_opaque_pictures_have_no_alpha(tmp_path: Path, rng: Random) -> None:
     colors = hdr(rng)
     colors[..., 3] = 1.0
-    write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE)
+    write_picture(tmp_path / "a.png", {"image": colors}, kinds=IMAGE, sandbox=UNRESTRICTED)
     assert parts(tmp_path / "a.png")[0][0].nchannels == 3
 
 
@@ -174,7 +191,7 @@ def test_opaque_pictures_have_no_alpha(tmp_path: Path, rng: Random) -> None:
 def test_lossy_pictures_are_close(tmp_path: Path, name: str) -> None:
     ramp = np.ones((64, 64, 4), np.float32)
     ramp[..., :3] = np.linspace(0, 1, 64)[:, None, None]
-    write_picture(tmp_path / name, {"image": ramp}, kinds=IMAGE)
+    write_picture(tmp_path / name, {"image": ramp}, kinds=IMAGE, sandbox=UNRESTRICTED)
     [(spec, pixels)] = parts(tmp_path / name)
     assert spec.nchannels == 3
     assert np.abs(pixels * 255 - to_display(ramp[..., :3])).max() <= 4
@@ -182,14 +199,14 @@ def test_lossy_pictures_are_close(tmp_path: Path, name: str) -> None:
 
 def test_jpeg_is_over_black(tmp_path: Path) -> None:
     glass = np.full((16, 16, 4), 0.25, np.float32)
-    write_picture(tmp_path / "a.jpg", {"image": glass}, kinds=IMAGE, view="none")
+    write_picture(tmp_path / "a.jpg", {"image": glass}, kinds=IMAGE, view="none", sandbox=UNRESTRICTED)
     expected = (1.055 * 0.25 ** (1 / 2.4) - 0.055) * 255
     assert np.abs(parts(tmp_path / "a.jpg")[0][1] * 255 - expected).max() <= 1
 
 
 def test_radiance(tmp_path: Path, rng: Random) -> None:
     colors = hdr(rng, 3)
-    write_picture(tmp_path / "a.hdr", {"image": colors}, kinds=IMAGE)
+    write_picture(tmp_path / "a.hdr", {"image": colors}, kinds=IMAGE, sandbox=UNRESTRICTED)
     pixels = parts(tmp_path / "a.hdr")[0][1]
     assert (np.abs(pixels - colors) <= colors.max(axis=2, keepdims=True) / 128).all()  # 8 bits and a common exponent
 
@@ -197,9 +214,9 @@ def test_radiance(tmp_path: Path, rng: Random) -> None:
 def test_the_first_picture_is_shown(tmp_path: Path, rng: Random) -> None:
     colors, mask = hdr(rng), rng.random((9, 13, 1), np.float32)
     both: Mapping[str, np.ndarray] = {"mask": mask, "image": colors}
-    write_picture(tmp_path / "a.png", both, kinds={"mask": Kind.FIELD, **IMAGE})
+    write_picture(tmp_path / "a.png", both, kinds={"mask": Kind.FIELD, **IMAGE}, sandbox=UNRESTRICTED)
     np.testing.assert_array_equal(np.rint(parts(tmp_path / "a.png")[0][1] * 255), to_display(colors))
-    write_picture(tmp_path / "m.png", {"mask": mask}, kinds={"mask": Kind.FIELD}, view="none")
+    write_picture(tmp_path / "m.png", {"mask": mask}, kinds={"mask": Kind.FIELD}, view="none", sandbox=UNRESTRICTED)
     np.testing.assert_array_equal(np.rint(parts(tmp_path / "m.png")[0][1] * 255), to_display(mask.repeat(3, 2), "none"))
 
 
@@ -221,7 +238,7 @@ def test_metadata_passes_through(tmp_path: Path, make: Make, rng: Random) -> Non
             "Orientation": 1,
         },
     )
-    kept = read_metadata(source)
+    kept = read_metadata(source, sandbox=UNRESTRICTED)
     assert kept == {
         "Scene": "Straße 9",
         "shutter": 0.5,
@@ -230,8 +247,8 @@ def test_metadata_passes_through(tmp_path: Path, make: Make, rng: Random) -> Non
         "smpte:TimeCode": TypedAttribute("timecode", timecode),
         "PixelAspectRatio": 2.0,
     }
-    write_picture(tmp_path / "b.exr", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept)
-    assert read_metadata(tmp_path / "b.exr") == kept
+    write_picture(tmp_path / "b.exr", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept, sandbox=UNRESTRICTED)
+    assert read_metadata(tmp_path / "b.exr", sandbox=UNRESTRICTED) == kept
     [(spec, _)] = parts(tmp_path / "b.exr")
     assert spec.get_string_attribute("compression") == "zip"
     names = [item.name for item in spec.extra_attribs]
@@ -239,11 +256,11 @@ def test_metadata_passes_through(tmp_path: Path, make: Make, rng: Random) -> Non
 
 
 def test_metadata_of_a_render(tmp_path: Path, rng: Random) -> None:
-    kept = read_metadata(NEON)
+    kept = read_metadata(NEON, sandbox=UNRESTRICTED)
     assert kept["Software"] == "Blender 5.0.1" and kept["cryptomatte/542cafa/hash"] == "MurmurHash3_32"
     assert not {"compression", "name", "colorInteropID", "screenWindowWidth", "openexr:chunkCount"} & {*kept}
-    write_picture(tmp_path / "b.exr", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept)
-    assert read_metadata(tmp_path / "b.exr") == kept
+    write_picture(tmp_path / "b.exr", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept, sandbox=UNRESTRICTED)
+    assert read_metadata(tmp_path / "b.exr", sandbox=UNRESTRICTED) == kept
 
 
 GRAPH = '{"ä": 1, "nodes": ["' + "x" * 100_000 + '"]}'
@@ -252,8 +269,8 @@ GRAPH = '{"ä": 1, "nodes": ["' + "x" * 100_000 + '"]}'
 @pytest.mark.parametrize("name", ["a.exr", "a.png"])
 def test_a_graph_fits_into_the_header(tmp_path: Path, rng: Random, name: str) -> None:
     metadata = {"halation:graph": GRAPH, "halation:version": "0.1.0"}
-    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=metadata)
-    assert {key: read_metadata(tmp_path / name)[key] for key in metadata} == metadata
+    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=metadata, sandbox=UNRESTRICTED)
+    assert {key: read_metadata(tmp_path / name, sandbox=UNRESTRICTED)[key] for key in metadata} == metadata
 
 
 @pytest.mark.parametrize("name", ["a.jpg", "a.tif"])
@@ -261,11 +278,11 @@ def test_one_place_holds_all_that_is_ours(tmp_path: Path, rng: Random, name: str
     """Formats without names of our own: what is not ours stays beside it, and nothing is invented."""
     ours = {"halation:graph": GRAPH[:40_000] + '"]}', "halation:input:inputs.beauty": "ä b.exr:Z sha256:0"}
     ours["Artist"] = "me"
-    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=ours)
-    kept = read_metadata(tmp_path / name)
+    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=ours, sandbox=UNRESTRICTED)
+    kept = read_metadata(tmp_path / name, sandbox=UNRESTRICTED)
     assert {key: kept[key] for key in ours} == ours
-    write_picture(tmp_path / f"b{name}", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept)
-    assert read_metadata(tmp_path / f"b{name}") == kept
+    write_picture(tmp_path / f"b{name}", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept, sandbox=UNRESTRICTED)
+    assert read_metadata(tmp_path / f"b{name}", sandbox=UNRESTRICTED) == kept
 
 
 @pytest.mark.parametrize("name", ["a.jpg", "a.tif", "a.webp", "a.hdr"])
@@ -279,19 +296,19 @@ def test_a_graph_does_no_harm_elsewhere(tmp_path: Path, rng: Random, name: str) 
         "take": 3,
         "gain": 0.5,
     }
-    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=metadata)
+    write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=metadata, sandbox=UNRESTRICTED)
     assert parts(tmp_path / name)[0][1].shape[:2] == (9, 13)
 
 
 def test_any_alphabet(tmp_path: Path, rng: Random) -> None:
     for name in ("ä 画像 👁.exr", "ä 画像 👁.png"):
-        write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE)
-        assert read_info(tmp_path / name).size == (13, 9)
+        write_picture(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, sandbox=UNRESTRICTED)
+        assert read_info(tmp_path / name, sandbox=UNRESTRICTED).size == (13, 9)
 
 
 def refused(path: Path, layers: Mapping[str, np.ndarray], kinds: Mapping[str, Kind], **options: Any) -> str:
     with pytest.raises(UsageError) as caught:
-        write_picture(path, layers, kinds=kinds, **options)
+        write_picture(path, layers, kinds=kinds, **options, sandbox=UNRESTRICTED)
     assert not path.exists() and not [*path.parent.iterdir()]
     return str(caught.value)
 

@@ -15,6 +15,7 @@ from halation.errors import GraphError
 from halation.nodes import Kind, float_bits, murmur3
 from halation.nodes.geometry.cryptomatte import Cryptomatte
 from halation.presets import sample
+from halation.resources.sandbox import UNRESTRICTED
 
 SAMPLE = str(sample())
 
@@ -177,7 +178,9 @@ def test_the_colors_are_as_opaque_as_what_is_covered(run):
 
 def test_a_file_without_mattes_says_so(run, tmp_path):
     path = tmp_path / "plain.exr"
-    media.write_picture(path, {"image": np.ones((4, 4, 4), np.float32)}, kinds={"image": Kind.IMAGE})
+    media.write_picture(
+        path, {"image": np.ones((4, 4, 4), np.float32)}, kinds={"image": Kind.IMAGE}, sandbox=UNRESTRICTED
+    )
     with pytest.raises(GraphError, match="holds nothing for its output"):
         run(Cryptomatte(path=str(path)), output="matte")
     with pytest.raises(GraphError, match="holds nothing for its output"):

@@ -10,6 +10,7 @@ from halation.document import dumps, loads
 from halation.graph import Graph, Port
 from halation.graph.values import coerce, value_fault
 from halation.nodes import Curve, Filter, Image, Points, Stops, curve_at, ramp_at
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import PchipInterpolator
@@ -63,7 +64,7 @@ def test_the_hard_range_of_a_curve_is_that_of_its_heights():
 def test_they_are_saved_and_read():
     graph = Graph({"tint": Tint()})
     graph = graph.set(Port("tint", "curve"), [0, 0.5, 0.25, -1, 1, 2]).set(Port("tint", "ramp"), RAMP + RAMP[5:])
-    found = loads(dumps(graph), catalogue=TOYS)
+    found = loads(dumps(graph), catalogue=TOYS, sandbox=UNRESTRICTED)
     assert found == graph
     assert found.value(Port("tint", "curve")) == (0.0, 0.5, 0.25, -1.0, 1.0, 2.0)
     assert coerce(Tint.values["ramp"], [0, 0, 0, 0, "1"]) is None

@@ -7,6 +7,7 @@ from halation.document import dumps, loads
 from halation.graph import Graph
 from halation.graph.values import coerce, value_fault
 from halation.nodes import Filter, Image, Light, LightKind, LightList, lights_of, numbers_of
+from halation.resources.sandbox import UNRESTRICTED
 
 TWO = (
     Light(),
@@ -49,4 +50,4 @@ def test_any_number_of_lights_will_do():
 def test_they_are_saved_with_the_graph():
     types = {"lamps": Lamps}
     graph = Graph().add("lamps", Lamps(lights=numbers_of(TWO[1:])))
-    assert loads(dumps(graph), catalogue=types).nodes["lamps"] == graph.nodes["lamps"]
+    assert loads(dumps(graph), catalogue=types, sandbox=UNRESTRICTED).nodes["lamps"] == graph.nodes["lamps"]

@@ -19,6 +19,7 @@ from halation.media.comparison.data_range import find_data_range
 from halation.nodes import Kind, Node, Pointwise, built_in_nodes
 from halation.presets import sample
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 
 Array = np.ndarray
 
@@ -52,7 +53,7 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample without its brightest light, as sharp as half as many pixels can be: a proxy loses nothing."""
 
     def layer(name: str, kind: Kind, width: int, size: tuple[int, int]) -> Array:
-        pixels = media.read_layer(sample(), name, kind, width).array.astype(np.float32)
+        pixels = media.read_layer(sample(), name, kind, width, sandbox=UNRESTRICTED).array.astype(np.float32)
         pixels = np.minimum(pixels, BRIGHTEST) if kind is Kind.IMAGE else pixels
         return cv2.resize(pixels, size, interpolation=cv2.INTER_AREA if kind is Kind.IMAGE else cv2.INTER_NEAREST)
 
@@ -80,7 +81,7 @@ def another() -> Iterator[Renderer]:
 
 def rendered(engine: Renderer, node: type[Node], picture: Path, scale: float) -> dict[str, Array]:
     """All outputs of a node at its defaults, by way of a file."""
-    graph = document.loads(document.dumps(show_on_sample(node, picture)))
+    graph = document.loads(document.dumps(show_on_sample(node, picture)), sandbox=UNRESTRICTED)
     found = engine.render(graph, RenderRequest(scale=scale, frame=7))
     return {name: array.astype(np.float32) for name, array in found.items()}
 

@@ -11,6 +11,7 @@ from halation.media.meshes.load import load_mesh
 from halation.nodes import BuiltInScene, Kind
 from halation.nodes.input.scene import Scene
 from halation.renderer import RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from scipy.stats import qmc
 
 SIZE = (96, 54)
@@ -70,7 +71,7 @@ def cast(mesh, camera, pixels, size=SIZE):
 def test_it_is_the_ray_cast_of_its_triangles(renderer, scene):
     node = Scene(scene=scene)
     found = rendered(renderer, node)
-    mesh = load_mesh(BuiltInScene(scene))
+    mesh = load_mesh(BuiltInScene(scene), sandbox=UNRESTRICTED)
     rng = np.random.default_rng(2)
     pixels = np.column_stack([rng.integers(0, SIZE[0], 150), rng.integers(0, SIZE[1], 150)])
     hits = cast(mesh, camera_of(node), pixels)

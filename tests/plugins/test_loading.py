@@ -14,6 +14,7 @@ from halation.compiler import installed_library
 from halation.errors import ShaderError
 from halation.graph import Graph, Port, Unknown, problems
 from halation.nodes import catalogue, plugins
+from halation.resources.sandbox import UNRESTRICTED
 
 NODE = '''
 from halation.nodes import Image, Pointwise, Slider
@@ -149,7 +150,7 @@ def test_a_missing_plugin_is_a_placeholder_that_saves_unchanged(site: Site) -> N
     text = document.dumps(graph_with_dim())
     (site.folder / "acme_tone-2.1.dist-info" / "entry_points.txt").unlink()
     forget()
-    graph = document.loads(text)
+    graph = document.loads(text, sandbox=UNRESTRICTED)
     assert isinstance(graph.nodes["dim"], Unknown) and "dim" in graph.muted
     assert graph.links[Port("blur", "image")] == Port("dim", "out")
     assert document.dumps(graph) == text
@@ -166,14 +167,18 @@ def test_a_plugin_with_a_fault_is_named_at_its_nodes(site: Site) -> None:
     text = document.dumps(graph_with_dim())
     (code / "nodes" / "tone" / "fade.py").write_text("1 / 0\n")
     forget()
-    sentence = next(item.sentence for item in problems(document.loads(text)) if item.node == "dim")
+    sentence = next(
+        item.sentence for item in problems(document.loads(text, sandbox=UNRESTRICTED)) if item.node == "dim"
+    )
     assert "plug-in acme-tone 2.1, which cannot be loaded" in sentence and "division by zero" in sentence
 
 
 def test_a_plugin_that_is_too_old_says_so(site: Site) -> None:
     site.install("acme-tone", "2.1")
     text = document.dumps(graph_with_dim()).replace("acme_tone.dim", "acme_tone.fade")
-    sentence = next(item.sentence for item in problems(document.loads(text)) if item.node == "dim")
+    sentence = next(
+        item.sentence for item in problems(document.loads(text, sandbox=UNRESTRICTED)) if item.node == "dim"
+    )
     assert "the installed acme-tone 2.1 does not have it: pip install acme-tone==2.1" in sentence
 
 
@@ -181,7 +186,9 @@ def test_nothing_but_a_package_is_repeated_as_a_command(site: Site) -> None:
     site.install("acme-tone", "2.1")
     text = document.dumps(graph_with_dim())
     for name in ("--index-url=http://example.org evil==1", "evil; rm -rf ~", "evil==1 && true", "git+https://x/y"):
-        graph = document.loads(text.replace("acme_tone.dim", "gone.dim").replace("acme-tone==2.1", name))
+        graph = document.loads(
+            text.replace("acme_tone.dim", "gone.dim").replace("acme-tone==2.1", name), sandbox=UNRESTRICTED
+        )
         sentence = next(item.sentence for item in problems(graph) if item.node == "dim")
         assert "pip" not in sentence and "unknown type" in sentence
 
@@ -193,7 +200,7 @@ def test_another_version_of_a_plugin_changes_no_file(site: Site) -> None:
         "Metadata-Version: 2.1\nName: acme-tone\nVersion: 2.2\n"
     )
     forget()
-    graph = document.loads(text)
+    graph = document.loads(text, sandbox=UNRESTRICTED)
     assert catalogue()["acme_tone.dim"].required_package == "acme-tone==2.2"
     assert document.dumps(graph) == text
     assert not [item for item in problems(graph) if item.rule.name == "unknown-key"]

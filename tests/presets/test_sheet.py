@@ -18,6 +18,7 @@ from halation.media.comparison.contact_sheet import (
     show_over_checker,
     write_sheet,
 )
+from halation.resources.sandbox import UNRESTRICTED
 
 COLORS = {"red": (0.8, 0.0, 0.0), "green_blue": (0.0, 0.7, 0.6), "white": (1.0, 1.0, 1.0)}
 PICTURES = {name: np.full((40, 80, 3), color, np.float32) for name, color in COLORS.items()}
@@ -147,12 +148,12 @@ def test_numbers_are_written_over_the_picture() -> None:
 
 def test_a_written_sheet_says_what_it_shows(tmp_path: Path) -> None:
     made, file = make_sheet(PICTURES), tmp_path / "sheet.jpg"
-    write_sheet(file, made, "red, green")
+    write_sheet(file, made, "red, green", sandbox=UNRESTRICTED)
     there = cv2.imread(str(file))[..., ::-1]
     assert there.shape == made.shape and np.abs(there[MARGIN + 20, MARGIN + 40] - (231, 0, 0)).max() < 8
     assert b"red, green" in file.read_bytes()
     with pytest.raises(OutputError, match="no such folder"):
-        write_sheet(tmp_path / "nowhere" / "sheet.jpg", made)
+        write_sheet(tmp_path / "nowhere" / "sheet.jpg", made, sandbox=UNRESTRICTED)
 
 
 def test_unknown_view() -> None:

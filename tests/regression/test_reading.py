@@ -9,6 +9,7 @@ import pytest
 from halation.errors import DocumentError, HalationError, UsageError
 from halation.regression.selection import parse_expression
 from halation.regression.suites import find_suites, load_suite
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -52,7 +53,7 @@ def test_a_fault_names_file_and_key(tmp_path: Path, text: str, path: str, said: 
     file = tmp_path / "a.suite.toml"
     file.write_text(text)
     with pytest.raises(DocumentError) as found:
-        load_suite(file)
+        load_suite(file, sandbox=UNRESTRICTED)
     assert found.value.file == str(file) and found.value.path == path and said in found.value.fault
 
 
@@ -75,7 +76,7 @@ frames = [3, 1, 3]
 golden = ""
 inputs = {beauty = "x.exr:Depth", amount = 2, tint = [1, 0.5, 0]}
 """)
-    one, two, three = load_suite(file)
+    one, two, three = load_suite(file, sandbox=UNRESTRICTED)
     assert one.graph == tmp_path / "sub/g.json" and one.goldens[0].path == tmp_path / "goldens/one-g.exr"
     assert (one.metric, one.tolerance, one.size, one.values) == ("psnr", 30.0, (64, 32), {"a.x": 1, "a.y": 3})
     assert (two.metric, two.tolerance, two.frames) == ("ssim", 0.99, (3, 1))
@@ -163,4 +164,4 @@ def test_any_text_is_read_or_refused(tmp_path_factory: pytest.TempPathFactory, t
     path = tmp_path_factory.getbasetemp() / "any.suite.toml"
     path.write_bytes(text.encode("utf-8", "surrogatepass"))
     with pytest.raises(HalationError):
-        load_suite(path)
+        load_suite(path, sandbox=UNRESTRICTED)

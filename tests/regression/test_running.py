@@ -19,6 +19,7 @@ from halation.regression.cases import Case
 from halation.regression.comparison import find_unusable
 from halation.renderer import Renderer
 from halation.renderer.pinned_device import pin_driver
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec import structs
 
 ALL = """
@@ -312,9 +313,9 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
 
 def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
     """Where no software rasterizer is, the tests go on with what there is."""
-    real = crew._open_renderer(True).device
+    real = crew._open_renderer(True, UNRESTRICTED).device
     device = real.with_target(structs.replace(real.target, renderer="GPU 9000", software=False))
-    monkeypatch.setattr(crew, "_open_renderer", lambda _: Renderer(device, budget=0))
+    monkeypatch.setattr(crew, "_open_renderer", lambda *_: Renderer(device, budget=0, sandbox=UNRESTRICTED))
     suite(ALL)
     cli("--update")
     result = cli("--report", "report.html", "--json")

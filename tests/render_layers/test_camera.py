@@ -13,6 +13,7 @@ from halation.media import LayerRequest, read_layers
 from halation.nodes import CameraModel, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import measure_camera, read_header_camera, solve_camera
+from halation.resources.sandbox import UNRESTRICTED
 from raycast import cast_rays
 
 ROOT = Path(__file__).parents[2]
@@ -42,7 +43,7 @@ def rolled(camera: CameraModel) -> CameraModel:
 
 def layers(path: Path) -> list[np.ndarray]:
     wants = [LayerRequest("Position", Kind.VECTOR, 3), LayerRequest("Depth", Kind.FIELD)]
-    return [pixels.array for pixels in read_layers(path, wants)]
+    return [pixels.array for pixels in read_layers(path, wants, sandbox=UNRESTRICTED)]
 
 
 @pytest.mark.parametrize("camera", [CAMERA, off_center(CAMERA), rolled(CAMERA)], ids=["plain", "crop", "rolled"])

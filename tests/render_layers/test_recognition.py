@@ -13,6 +13,7 @@ import pytest
 from halation.render_layers.analysis import RenderAnalysis, analyze_render
 from halation.render_layers.naming import SCHEMES, RenderProgram, Role
 from halation.render_layers.recognition import RoleGrounds
+from halation.resources.sandbox import UNRESTRICTED
 
 ROOT = Path(__file__).parents[2]
 LETTERS = {"rgb": "RGB", "rgba": "RGBA", "xyz": "XYZ", "z": "Z", "x": "X", "uv": "UV", "xyzw": "XYZW", "y": "Y"}
@@ -43,7 +44,7 @@ def written(
         assert index == 0 or file.open(str(path), spec, "AppendSubimage")
         assert file.write_image(np.zeros((3, 4, spec.nchannels), np.float32))
     assert file.close()
-    return analyze_render(path)
+    return analyze_render(path, sandbox=UNRESTRICTED)
 
 
 def single(path: Path, layers: str, attributes: Mapping[str, Any] | None = None, type: str = "float") -> RenderAnalysis:
@@ -175,7 +176,7 @@ def test_parts_that_name_bare_channels(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["presets/samples/neon.exr", "tests/data/blender45_multilayer.exr"])
 def test_real_renders(name: str) -> None:
-    found = analyze_render(ROOT / name)
+    found = analyze_render(ROOT / name, sandbox=UNRESTRICTED)
     assert found.maker.renderer is RenderProgram.BLENDER
     assert {role.value for role in found.roles} == {
         "beauty",

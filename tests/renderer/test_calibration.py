@@ -10,7 +10,7 @@ from halation.errors import ShaderError
 from halation.renderer import calibration, open_device
 from halation.renderer.calibration import load_or_measure, measure_forms
 from halation.renderer.execution.runner import Runner
-from halation.resources.sandbox import fenced
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 
 SMALL = (64, 48)
@@ -18,7 +18,7 @@ SMALL = (64, 48)
 
 @pytest.fixture(scope="module")
 def device():
-    made = open_device()
+    made = open_device(sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -55,10 +55,10 @@ def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
 
 
 def test_a_device_is_measured_once(device, counted, tmp_path):
-    first = load_or_measure(device, tmp_path / "new")
-    assert first == FormTimings(1.0, 0.25) == load_or_measure(device, tmp_path / "new")
+    first = load_or_measure(device, tmp_path / "new", sandbox=UNRESTRICTED)
+    assert first == FormTimings(1.0, 0.25) == load_or_measure(device, tmp_path / "new", sandbox=UNRESTRICTED)
     other = device.with_target(replace(device.target, renderer="another card"))
-    assert load_or_measure(other, tmp_path / "new") == FormTimings(0.5, 0.25)
+    assert load_or_measure(other, tmp_path / "new", sandbox=UNRESTRICTED) == FormTimings(0.5, 0.25)
     assert counted == [device.target.renderer, "another card"]
     files = list((tmp_path / "new").iterdir())
     assert {json.loads(file.read_text())["renderer"] for file in files} == set(counted)
@@ -66,22 +66,26 @@ def test_a_device_is_measured_once(device, counted, tmp_path):
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"compute": 1}', '{"compute": "x", "fragment": 1}'])
 def test_a_file_that_makes_no_sense_is_measured_again(device, counted, tmp_path, text):
-    load_or_measure(device, tmp_path)
+    load_or_measure(device, tmp_path, sandbox=UNRESTRICTED)
     file = next(tmp_path.iterdir())
     file.write_text(text)
-    assert load_or_measure(device, tmp_path) == FormTimings(0.5, 0.25) == load_or_measure(device, tmp_path)
+    assert (
+        load_or_measure(device, tmp_path, sandbox=UNRESTRICTED)
+        == FormTimings(0.5, 0.25)
+        == load_or_measure(device, tmp_path, sandbox=UNRESTRICTED)
+    )
 
 
 def test_what_cannot_be_kept_is_not_measured(device, counted, tmp_path):
     (tmp_path / "file").write_text("")
     (tmp_path / "inside").mkdir()
-    assert load_or_measure(device, tmp_path / "file" / "below") is None
-    with fenced(tmp_path / "inside"):
-        assert load_or_measure(device, tmp_path / "outside") is None
+    assert load_or_measure(device, tmp_path / "file" / "below", sandbox=UNRESTRICTED) is None
+    inside = UNRESTRICTED.narrow(tmp_path / "inside")
+    assert load_or_measure(device, tmp_path / "outside", sandbox=inside) is None
     assert not counted
 
 
 def test_the_software_rasterizer_is_never_measured(counted):
-    made = open_device()
+    made = open_device(sandbox=UNRESTRICTED)
     made.close()
     assert made.target.software and made.target.why.startswith("by the table") and not counted

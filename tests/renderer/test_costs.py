@@ -11,6 +11,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest
 from halation.renderer.execution.costs import Costs
+from halation.resources.sandbox import UNRESTRICTED
 
 
 def planned(renderer: Renderer, node, side: int = 32):
@@ -39,7 +40,7 @@ def test_before_that_it_is_estimated_by_what_is_read(renderer):
 
 
 def test_a_file_costs_what_it_took_to_decode(renderer):
-    engine = Renderer(renderer.device)
+    engine = Renderer(renderer.device, sandbox=UNRESTRICTED)
     load = engine.runner._load
 
     def slow(picture):

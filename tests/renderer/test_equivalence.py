@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from halation.compiler import Form
 from halation.renderer import Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
 from random_graphs import pictures, random_graph
 
 SEEDS = range(150)
@@ -17,7 +18,9 @@ def engines():
     made: dict[tuple[Form, bool], Renderer] = {}
     for form in ("compute", "fragment"):
         for fusion in (True, False):
-            made[form, fusion] = Renderer(open_device(form), budget=0, fusion=fusion)
+            made[form, fusion] = Renderer(
+                open_device(form, sandbox=UNRESTRICTED), budget=0, fusion=fusion, sandbox=UNRESTRICTED
+            )
     yield made
     for engine in made.values():
         engine.close()
@@ -54,7 +57,7 @@ def test_cached_equals_uncached(engines, renderer, seed):
 
 @pytest.mark.parametrize("seed", list(SEEDS)[:24])
 def test_measured_peak_is_the_planned_one(seed):
-    engine = Renderer(open_device(), budget=0)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     wanted = RenderRequest(pictures(seed), precision="float")
     plan = engine.compile(random_graph(seed), wanted)
     engine.runner.run(plan)
@@ -74,6 +77,6 @@ def test_bands_equal_one_dispatch(renderer, monkeypatch, seed, pixels):
     graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     whole = renderer.render(graph, wanted)
     monkeypatch.setattr(executor, "BAND_PIXELS", pixels)
-    engine = Renderer(open_device("compute"), budget=0)
+    engine = Renderer(open_device("compute", sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     same_bits(engine.render(graph, wanted), whole)
     engine.close()

@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.renderer import Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
 
 @pytest.fixture(scope="module", params=["compute", "fragment"])
 def engine(request):
-    device = open_device(request.param)
+    device = open_device(request.param, sandbox=UNRESTRICTED)
     target = replace(device.target, software=False, precision="half")
-    made = Renderer(device.with_target(target), budget=0)
+    made = Renderer(device.with_target(target), budget=0, sandbox=UNRESTRICTED)
     yield made
     made.close()
 

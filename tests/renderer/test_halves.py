@@ -12,6 +12,7 @@ from halation.media.pictures.finite import to_half
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.destinations import OutputSettings, plan_destinations, select_half_outputs
 from halation.renderer.jobs.job import run_job
+from halation.resources.sandbox import UNRESTRICTED
 
 ONLY = frozenset({"image"})
 
@@ -19,7 +20,7 @@ ONLY = frozenset({"image"})
 def graph_with(nodes: str, links: str, outputs: str = '"image": {"type": "Image"}', more: str = "") -> Graph:
     inputs = '"image": {"type": "Image"}, "depth": {"type": "Field"}'
     text = f'"inputs": {{{inputs}}}, "outputs": {{{outputs}}}, "nodes": {{{nodes}}}, "links": {{{links}}}{more}'
-    return document.loads(f'{{"halation": 1, {text}}}')
+    return document.loads(f'{{"halation": 1, {text}}}', sandbox=UNRESTRICTED)
 
 
 def through(code: str = "image") -> Graph:
@@ -30,7 +31,7 @@ def through(code: str = "image") -> Graph:
 
 @pytest.fixture(scope="module", params=["compute", "fragment"])
 def engine(request):
-    made = Renderer(open_device(request.param))
+    made = Renderer(open_device(request.param, sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     if not made.device.target.rounds_halves:
         pytest.skip("this driver rounds for itself")
     yield made
@@ -160,7 +161,7 @@ def test_results_of_both_kinds_are_not_mixed_up(engine):
 def test_only_what_no_file_wants_more_of(tmp_path, names, more, expected):
     graph, wanted = through(), RenderRequest()
     writing = OutputSettings([("image", tmp_path / name) for name in names], **more)
-    files = plan_destinations(graph, wanted, writing, (1,))[1]
+    files = plan_destinations(graph, wanted, writing, (1,), sandbox=UNRESTRICTED)[1]
     assert select_half_outputs(files, writing) == (ONLY if expected else frozenset())
 
 
@@ -171,5 +172,8 @@ def test_data_is_never_rounded(tmp_path):
         '"depth": {"type": "Field"}, "image": {"type": "Image"}',
     )
     writing = OutputSettings((("", tmp_path / "o.exr"),))
-    assert select_half_outputs(plan_destinations(graph, RenderRequest(), writing, (1,))[1], writing) == ONLY
+    assert (
+        select_half_outputs(plan_destinations(graph, RenderRequest(), writing, (1,), sandbox=UNRESTRICTED)[1], writing)
+        == ONLY
+    )
     assert not list(tmp_path.iterdir())

@@ -16,6 +16,7 @@ from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.time_offset import TimeOffset
 from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
 
 
 class Trail(Temporal):
@@ -36,7 +37,7 @@ def engine():
     source = "vec4 trail(vec4 image, vec4 before, float keep) { return mix(image, before, keep); }\n"
     shader = f"{Trail.category}/{Trail.id}"
     library = Library({**installed_library().texts, shader: parse(shader, source)})
-    made = Renderer(open_device(), budget=0, library=library)
+    made = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, library=library, sandbox=UNRESTRICTED)
     yield made
     made.close()
 

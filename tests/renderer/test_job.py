@@ -20,6 +20,7 @@ from halation.renderer.execution.array_pool import ArrayPool
 from halation.renderer.execution.decoding import LOOKAHEAD, LOOKAHEAD_BYTES, limit_lookahead
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.renderer.jobs.write_queue import MAX_WAITING, MAX_WAITING_BYTES, WriteQueue
+from halation.resources.sandbox import UNRESTRICTED
 
 FRAMES = range(1, 13)
 PATIENCE = 20.0
@@ -42,7 +43,7 @@ def graph(shot: Path) -> Graph:
 
 @pytest.fixture
 def engine():
-    made = Renderer(open_device())
+    made = Renderer(open_device(sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -163,7 +164,7 @@ class Watcher:
 
 def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
     """Without any budget: the still is read and blurred once, and no frame leaves anything behind."""
-    engine = Renderer(open_device(), budget=0)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     whole, passes = over_a_still(graph, shot), engine.runner.counters
     run_job(engine, whole, RenderRequest(), writing(shot), (1,))
     alone, single = passes.passes, engine.runner.textures.peak
@@ -174,7 +175,7 @@ def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
     assert max(seen.results) <= 2 and engine.runner.textures.peak <= single + 2 * 8 * 8 * 16
     assert not engine.runner.textures._leases and not engine.runner.textures._results and not engine.runner._begun
     engine.close()
-    fresh = Renderer(open_device(), budget=0)
+    fresh = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     for frame in (1, 7, 12):
         found = fresh.render(whole, RenderRequest(frame=frame))["image"]
         np.testing.assert_array_equal(read(shot / f"out.{frame:02d}.exr"), found)
@@ -183,7 +184,7 @@ def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
 
 def test_memory_does_not_grow_with_the_frames(graph, shot):
     """What is on the device after the fourth frame is there after the last."""
-    engine = Renderer(open_device(), budget=0)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     seen = Watcher(engine)
     run_job(engine, over_a_still(graph, shot), RenderRequest(), writing(shot), tuple(FRAMES) * 4, progress=seen)
     assert len(seen.bytes) == 4 * len(FRAMES)
@@ -192,7 +193,7 @@ def test_memory_does_not_grow_with_the_frames(graph, shot):
 
 
 def test_a_still_sequence_is_computed_once(graph, shot):
-    engine = Renderer(open_device(), budget=0)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     run_job(engine, graph, RenderRequest({"image": shot / "in.03.exr"}), writing(shot), tuple(FRAMES))
     assert engine.runner.counters.passes == 1 and values(shot) == [6.0] * len(FRAMES)
     engine.close()

@@ -17,6 +17,7 @@ from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.decoding import LOOKAHEAD
+from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
 
@@ -49,14 +50,14 @@ def wanted(picture=PICTURE, **rest) -> RenderRequest:
 
 @pytest.fixture
 def engine():
-    made = Renderer()
+    made = Renderer(sandbox=UNRESTRICTED)
     yield made
     made.close()
 
 
 @pytest.fixture
 def forgetful():
-    made = Renderer(budget=0)
+    made = Renderer(budget=0, sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -69,7 +70,7 @@ def held(engine: Renderer) -> int:
 
 
 def test_pictures_of_ever_other_sizes_do_not_pile_up():
-    engine = Renderer(budget=2**20)
+    engine = Renderer(budget=2**20, sandbox=UNRESTRICTED)
     for width in range(64, 160):
         engine.render(chain(), wanted(np.zeros((width // 2, width, 4), np.float32)))
     textures, largest = engine.runner.textures, 80 * 160 * 16
@@ -163,7 +164,10 @@ def test_a_run_says_whether_it_would_wait_for_a_file(forgetful):
 
 
 def test_two_devices_may_take_turns(renderer):
-    engines = [Renderer(open_device(form), budget=0) for form in ("compute", "fragment")]
+    engines = [
+        Renderer(open_device(form, sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
+        for form in ("compute", "fragment")
+    ]
     plans = [engine.compile(chain(sigma=9.0), wanted()) for engine in engines]
     pairs = list(zip(engines, plans, strict=True))
     for _ in zip_longest(*(engine.runner.steps(plan, engine.runner.lease()) for engine, plan in pairs)):
@@ -185,7 +189,7 @@ def test_every_thread_needs_a_device_of_its_own(renderer, engine):
             found.append(fault)
 
     def own() -> None:
-        mine = Renderer()
+        mine = Renderer(sandbox=UNRESTRICTED)
         found.append(mine.render(chain(1.3), wanted())["image"])
         mine.close()
 
@@ -336,7 +340,7 @@ def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
 def test_closing_gives_everything_back():
     threads = threading.active_count()
     for _ in range(4):
-        engine = Renderer()
+        engine = Renderer(sandbox=UNRESTRICTED)
         engine.render(chain(sigma=9.0), wanted())
         engine.close()
         assert (engine.runner.textures.allocated, engine.runner._executor._weights._resources) == (0, {})
@@ -344,7 +348,7 @@ def test_closing_gives_everything_back():
 
 
 def test_a_closed_renderer_says_so():
-    engine = Renderer()
+    engine = Renderer(sandbox=UNRESTRICTED)
     kept = engine.runner.lease()
     steps = engine.runner.steps(engine.compile(chain(), wanted()), kept)
     next(steps)
@@ -358,7 +362,7 @@ def test_a_closed_renderer_says_so():
 
 @pytest.mark.parametrize("budget", [0, PICTURE.nbytes])
 def test_a_tiny_budget_changes_no_pixel(renderer, budget):
-    engine = Renderer(budget=budget)
+    engine = Renderer(budget=budget, sandbox=UNRESTRICTED)
     for stops, sigma in ((1.0, 2.0), (2.0, 9.0), (1.0, 2.0), (1.0, 9.0), (2.0, 9.0)):
         found = engine.render(chain(stops, sigma), wanted())["image"]
         np.testing.assert_array_equal(found, renderer.render(chain(stops, sigma), wanted())["image"])

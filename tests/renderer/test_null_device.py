@@ -10,6 +10,7 @@ from halation.compiler import NULL, Plan
 from halation.graph import Graph
 from halation.presets import paths
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 from null_device import NullDevice
 
@@ -29,7 +30,7 @@ def device(request: pytest.FixtureRequest) -> NullDevice:
 def renderer(device: NullDevice) -> Iterator[Renderer]:
     """Keeps no result that nobody leases."""
     protocol: Device = device
-    engine = Renderer(protocol, budget=0)
+    engine = Renderer(protocol, budget=0, sandbox=UNRESTRICTED)
     yield engine
     engine.close()
     assert not device.live, "not everything was released"
@@ -48,7 +49,7 @@ def needed_later(plan: Plan, done: int) -> set[str]:
 
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_runs_as_it_was_planned(renderer: Renderer, device: NullDevice, name: str):
-    graph = document.load(PRESETS[name])
+    graph = document.load(PRESETS[name], sandbox=UNRESTRICTED)
     plan = renderer.compile(graph, replace(SMALL, frame=renderer.frames(graph)[0]))
     lease = renderer.runner.lease()
     with renderer.runner.steps(plan, lease) as run:
@@ -70,7 +71,7 @@ def test_every_preset_runs_as_it_was_planned(renderer: Renderer, device: NullDev
 
 @pytest.mark.parametrize("name", LARGE)
 def test_results_that_stay_are_not_made_again(device: NullDevice, name: str):
-    graph, engine = document.load(PRESETS[name]), Renderer(device)
+    graph, engine = document.load(PRESETS[name], sandbox=UNRESTRICTED), Renderer(device, sandbox=UNRESTRICTED)
     for _ in range(2):
         engine.render(graph, SMALL)
     plan = engine.compile(graph, SMALL)
@@ -82,7 +83,7 @@ def test_results_that_stay_are_not_made_again(device: NullDevice, name: str):
 
 @pytest.mark.parametrize("name", MOVING)
 def test_frames_in_order_run_each_plan_once(renderer: Renderer, device: NullDevice, name: str):
-    graph = document.load(PRESETS[name])
+    graph = document.load(PRESETS[name], sandbox=UNRESTRICTED)
     frames = FrameRenderer(renderer, graph, SMALL)
     first = frames.frames[0]
     for frame in range(first, first + 3):
@@ -95,7 +96,7 @@ def test_frames_in_order_run_each_plan_once(renderer: Renderer, device: NullDevi
 
 
 def test_a_frame_alone_is_led_up_to(renderer: Renderer, device: NullDevice):
-    graph = document.load(PRESETS["light_painting"])
+    graph = document.load(PRESETS["light_painting"], sandbox=UNRESTRICTED)
     frames = FrameRenderer(renderer, graph, SMALL)
     first = frames.frames[0]
     assert list(frames.lead_frames(first + 3)) == [first, first + 1, first + 2]
@@ -107,11 +108,11 @@ def test_a_frame_alone_is_led_up_to(renderer: Renderer, device: NullDevice):
 
 def tiled(graph: Graph, device: NullDevice) -> Plan:
     """A plan for less memory than it needs; the device is told."""
-    engine = Renderer(device, budget=0)
+    engine = Renderer(device, budget=0, sandbox=UNRESTRICTED)
     needed = engine.compile(graph, SMALL).held_bytes
     engine.close()
     device.with_target(replace(device.target, memory=needed * 2 // 3))
-    engine = Renderer(device, budget=0)
+    engine = Renderer(device, budget=0, sandbox=UNRESTRICTED)
     plan = engine.compile(graph, SMALL)
     engine.close()
     return plan
@@ -119,10 +120,10 @@ def tiled(graph: Graph, device: NullDevice) -> Plan:
 
 @pytest.mark.parametrize("name", TILED)
 def test_tiles_stay_within_their_memory(device: NullDevice, name: str):
-    graph = document.load(PRESETS[name])
+    graph = document.load(PRESETS[name], sandbox=UNRESTRICTED)
     plan = tiled(graph, device)
     assert plan.tiling is not None
-    engine = Renderer(device, budget=0)
+    engine = Renderer(device, budget=0, sandbox=UNRESTRICTED)
     lease = engine.runner.lease()
     with engine.runner.steps(plan, lease) as run:
         passes = sum(1 for _ in run)

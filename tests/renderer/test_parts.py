@@ -13,13 +13,14 @@ from halation.compiler import Region
 from halation.graph import Graph, Port, signature
 from halation.presets import paths
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from random_graphs import pictures, random_graph, random_node
 
 
 @pytest.fixture
 def warm(renderer: Renderer) -> Iterator[Renderer]:
     """A renderer that remembers."""
-    made = Renderer(renderer.device)
+    made = Renderer(renderer.device, sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -49,7 +50,7 @@ def test_random_graphs(warm, renderer, seed):
 
 @pytest.mark.parametrize("name", ["post_stack", "auto_exposed", "neon_edges", "lens_character"])
 def test_presets(warm, renderer, name):
-    graph = next(document.load(path) for path in paths() if path.stem == name)
+    graph = next(document.load(path, sandbox=UNRESTRICTED) for path in paths() if path.stem == name)
     wanted, region = {"scale": 0.1}, Region(20, 10, 16, 16)
     warm.render(graph, RenderRequest(**wanted))
     for id in list(graph.nodes)[-3:]:

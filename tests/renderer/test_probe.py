@@ -13,6 +13,7 @@ from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Nonfinite, Probe, Renderer, RenderRequest, find_first_nonfinite, open_device
+from halation.resources.sandbox import UNRESTRICTED
 
 NODES = catalogue()
 IMAGE = Port("outputs", "image")
@@ -110,7 +111,7 @@ def test_the_node_that_breaks_it_is_found_inside_a_group():
     large = np.full((9, 12, 4), 1e38, np.float32)
     careless = "vec4 exposure(vec4 image, float stops) { return vec4(image.rgb * exp2(stops), image.a); }"
     library = Library({**installed_library().texts, "color/exposure": parse("color/exposure", careless)})
-    engine = Renderer(open_device(), library=library)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), library=library, sandbox=UNRESTRICTED)
     _, found = search(engine, divided().override("group.light.stops", 9.0), pictures(a=large))
     engine.close()
     assert found is not None and found.path == "group/light" and found.port == Port("group/light", "out")

@@ -21,6 +21,7 @@ from halation.compiler.tiling.regions import find_regions
 from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from random_graphs import random_node
 
 Array = np.ndarray
@@ -83,7 +84,7 @@ def prove(renderer: Renderer, node: Node, some: bool, regions: tuple[Region, ...
     """How many regions leave something out, all of which stay as they are."""
     given = inputs_of(node, some)
     arrays = {name: item for name, item in given.items() if isinstance(item, np.ndarray)}
-    graph, outside = graph_of(node, given), MediaProvider()
+    graph, outside = graph_of(node, given), MediaProvider(sandbox=UNRESTRICTED)
     request = Request(bindings=outside.bind(graph, arrays))
     library, target = graph_library(graph, outside), renderer.device.target
     program = lower(graph, request, library, outside).program

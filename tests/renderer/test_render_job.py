@@ -8,12 +8,14 @@ from typing import Any, get_type_hints
 import pytest
 from halation.errors import UsageError
 from halation.renderer.jobs.render_job import RenderJob
+from halation.resources.sandbox import UNRESTRICTED, Sandbox
 from hypothesis import given
 from hypothesis import strategies as st
 from msgspec.structs import fields
 
 TEXT = st.text(max_size=12)
 VALUES: dict[str, st.SearchStrategy[Any]] = {
+    "sandbox": st.builds(Sandbox, TEXT),
     "inputs": st.dictionaries(TEXT, TEXT, max_size=3),
     "sets": st.dictionaries(TEXT, TEXT, max_size=3),
     "size": st.none() | st.tuples(st.integers(1, 9999), st.integers(1, 9999)),
@@ -44,11 +46,11 @@ def test_a_job_comes_back_as_it_was_sent(job: RenderJob) -> None:
 
 def test_names_of_files_in_any_encoding_are_sent() -> None:
     name = os.fsdecode(b"sh\xf6t.exr")
-    job = RenderJob(graph=name, destinations=(("", name),))
+    job = RenderJob(graph=name, destinations=(("", name),), sandbox=UNRESTRICTED)
     assert RenderJob.from_json(job.to_json()) == job and job.to_json().isascii()
 
 
-@pytest.mark.parametrize("text", ["", "[1]", '{"graf": "a"}', '{"form": "tesselated"}', '{"size": [1]}'])
+@pytest.mark.parametrize("text", ["", "[1]", "{}", '{"graf": "a"}', '{"form": "tesselated"}', '{"size": [1]}'])
 def test_what_is_no_job_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="standard input is not a render job"):
         RenderJob.from_json(text)

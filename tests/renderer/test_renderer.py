@@ -18,6 +18,7 @@ from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.texture_pool import TexturePool
 from halation.renderer.opengl import program
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 
 PICTURE = np.random.default_rng(1).random((23, 37, 4), np.float32)
@@ -39,7 +40,7 @@ def chain(stops: float, sigma: float, saturation: float) -> Graph:
 
 @pytest.fixture
 def engine():
-    made = Renderer(open_device())
+    made = Renderer(open_device(sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -89,7 +90,7 @@ def test_a_changed_array_is_not_taken_for_the_old_one(engine):
 
 
 def test_results_stay_within_the_budget():
-    engine = Renderer(open_device(), budget=2 * PICTURE.nbytes)
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), budget=2 * PICTURE.nbytes, sandbox=UNRESTRICTED)
     for stops in range(1, 12):
         engine.render(chain(float(stops), 2.0, 0.5), RenderRequest({"image": PICTURE}))
     assert engine.runner.textures.allocated <= 2 * PICTURE.nbytes + 4 * PICTURE.nbytes
@@ -114,7 +115,7 @@ def test_a_broken_shader_names_node_file_and_line():
     texts = dict(installed_library().texts)
     broken = "vec4 exposure(vec4 image, float stops) {\n    float unused = 1.0;\n    return image * stosp;\n}\n"
     texts["color/exposure"] = parse("color/exposure", broken)
-    engine = Renderer(open_device(), library=Library(texts))
+    engine = Renderer(open_device(sandbox=UNRESTRICTED), library=Library(texts), sandbox=UNRESTRICTED)
     with pytest.raises(ShaderError) as caught:
         engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), RenderRequest({"image": PICTURE}))
     fault = caught.value
@@ -153,7 +154,7 @@ def test_stopping_between_passes_leaves_nothing_behind(engine):
     next(steps)
     steps.close()
     result = engine.render(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))["image"]
-    fresh = Renderer(open_device())
+    fresh = Renderer(open_device(sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     np.testing.assert_array_equal(
         result, fresh.render(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))["image"]
     )

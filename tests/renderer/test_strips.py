@@ -12,6 +12,7 @@ from halation.media.pictures import row_writer
 from halation.nodes import Kind, catalogue
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import OutputSettings, run_job
+from halation.resources.sandbox import UNRESTRICTED
 from oiio_pictures import write_with_attributes
 
 NODES = catalogue()
@@ -37,7 +38,10 @@ def picture(tmp_path) -> str:
 
 def written(folder: Path, picture: str, memory: int, **how) -> Path:
     """The file that a job makes of it, with so much memory."""
-    renderer, file = Renderer(open_device("compute", memory), budget=0), folder / "out.exr"
+    renderer, file = (
+        Renderer(open_device("compute", memory, sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED),
+        folder / "out.exr",
+    )
     try:
         run_job(renderer, blurred(), RenderRequest({"image": picture}), OutputSettings([("image", file)], **how))
     finally:

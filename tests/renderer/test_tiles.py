@@ -19,6 +19,7 @@ from halation.inputs.provider import MediaProvider
 from halation.nodes import CameraModel, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
 from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
+from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
@@ -27,8 +28,8 @@ NODES = catalogue()
 
 def limited(side: int = 16384, memory: int = 0) -> Renderer:
     """A renderer on a device that holds no more."""
-    device = open_device(form_to_test(), memory)
-    return Renderer(device.with_target(replace(device.target, max_size=side)), budget=0)
+    device = open_device(form_to_test(), memory, sandbox=UNRESTRICTED)
+    return Renderer(device.with_target(replace(device.target, max_size=side)), budget=0, sandbox=UNRESTRICTED)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +83,7 @@ def test_random_graphs_have_the_same_bits(fitting, in_pieces, seed):
 
 @pytest.mark.parametrize("name", ["auto_exposed", "city_lights", "comic_ink", "lens_character", "neon_edges"])
 def test_presets_have_the_same_bits(fitting, in_pieces, name):
-    graph = next(document.load(path) for path in paths() if path.stem == name)
+    graph = next(document.load(path, sandbox=UNRESTRICTED) for path in paths() if path.stem == name)
     plan = fitting.compile(graph, RenderRequest(scale=0.04))
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
@@ -160,7 +161,7 @@ def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name)
 
 @pytest.mark.parametrize("name", FAR_LOOKING)
 def test_what_looks_far_goes_beyond_the_device(name):
-    node, outside = FAR_LOOKING[name], MediaProvider()
+    node, outside = FAR_LOOKING[name], MediaProvider(sandbox=UNRESTRICTED)
     given = {
         socket: np.ones((32, 32, item.channels), np.float32)
         for socket, item in type(node).inputs.items()
@@ -172,7 +173,7 @@ def test_what_looks_far_goes_beyond_the_device(name):
 
 def refused(node) -> str:
     """Why a node cannot be made of larger pictures than a device holds; "" if it can."""
-    outside, sockets = MediaProvider(), type(node).inputs
+    outside, sockets = MediaProvider(sandbox=UNRESTRICTED), type(node).inputs
     given = {
         name: np.ones((32, 32, item.channels), np.float32)
         for name, item in sockets.items()

@@ -9,6 +9,7 @@ from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 
 RNG = np.random.default_rng(11)
 PICTURE = RNG.random((20, 30, 4), np.float32)
@@ -121,7 +122,7 @@ def test_half_intermediates_stay_within_half_rounding(renderer):
         last = Port(f"n{number}", "out")
     graph = graph.connect(last, Port("outputs", "image"))
     exact = PICTURE[..., :3].astype(np.float64) * 2.0**2.0
-    unfused = Renderer(open_device(), budget=0, fusion=False)
+    unfused = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, fusion=False, sandbox=UNRESTRICTED)
     for engine, roundings in ((renderer, 1), (unfused, 4)):
         result = engine.render(graph, RenderRequest({"image": PICTURE}, precision="half"))["image"][..., :3]
         assert np.abs(result / exact - 1.0).max() <= roundings * 2.0**-11 * 1.001

@@ -16,6 +16,7 @@ from halation.errors import OutputError
 from halation.media import read_layer, write_picture
 from halation.nodes import Kind
 from halation.resources.atomic_write import write_atomically
+from halation.resources.sandbox import UNRESTRICTED
 
 NAMES = ["a.exr", "a.png", "a.jpg", "a.webp", "a.tif", "a.hdr"]
 PICTURE = {"image": np.random.default_rng(3).random((40, 50, 4), np.float32)}
@@ -26,7 +27,7 @@ def failed(path: Path) -> str:
     """The sentence of a write that fails, after which nothing else has changed."""
     before = {item.name: item.read_bytes() for item in path.parent.iterdir()} if path.parent.is_dir() else {}
     with pytest.raises(OutputError) as caught:
-        write_picture(path, PICTURE, kinds=KINDS)
+        write_picture(path, PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
     if path.parent.is_dir():
         assert {item.name: item.read_bytes() for item in path.parent.iterdir()} == before
     assert str(path) in str(caught.value) and "\n" not in str(caught.value)
@@ -58,7 +59,7 @@ def test_a_device_without_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
     monkeypatch.setattr(Path, "open", bent)
     (tmp_path / name).write_bytes(b"old")
     with pytest.raises(OutputError, match="the disk is full"):
-        write_picture(tmp_path / name, PICTURE, kinds=KINDS)
+        write_picture(tmp_path / name, PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
     monkeypatch.undo()
     assert [item.name for item in tmp_path.iterdir()] == [name] and (tmp_path / name).read_bytes() == b"old"
 
@@ -66,8 +67,8 @@ def test_a_device_without_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
 @pytest.mark.parametrize("name", NAMES)
 def test_systems_without_memory_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     monkeypatch.delattr(os, "memfd_create", raising=False)
-    write_picture(tmp_path / name, PICTURE, kinds=KINDS)
-    assert read_layer(tmp_path / name, "", Kind.IMAGE).array.shape == (40, 50, 4)
+    write_picture(tmp_path / name, PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
+    assert read_layer(tmp_path / name, "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (40, 50, 4)
     assert [item.name for item in tmp_path.iterdir()] == [name]
     usage = namedtuple("usage", "total used free")
     monkeypatch.setattr(shutil, "disk_usage", lambda _: usage(10**9, 10**9, 1000))
@@ -82,20 +83,20 @@ def test_an_encoder_that_gives_up(tmp_path: Path) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        write_atomically(tmp_path / "a.exr", encode, 100)
+        write_atomically(tmp_path / "a.exr", encode, 100, sandbox=UNRESTRICTED)
     assert [(item.name, item.read_bytes()) for item in tmp_path.iterdir()] == [("a.exr", b"old")]
 
 
 def test_an_encoder_that_writes_nothing(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="the disk is full"):
-        write_atomically(tmp_path / "a.exr", lambda file: None, 100)
+        write_atomically(tmp_path / "a.exr", lambda file: None, 100, sandbox=UNRESTRICTED)
     assert not [*tmp_path.iterdir()]
 
 
 def test_what_an_encoder_refuses(tmp_path: Path) -> None:
     wide = {"image": np.zeros((1, 20000, 3), np.float32)}
     with pytest.raises(OutputError, match=r"a\.webp: cannot be written: "):
-        write_picture(tmp_path / "a.webp", wide, kinds=KINDS)
+        write_picture(tmp_path / "a.webp", wide, kinds=KINDS, sandbox=UNRESTRICTED)
     assert not [*tmp_path.iterdir()]
 
 
@@ -108,7 +109,7 @@ def test_a_file_in_the_way(tmp_path: Path) -> None:
     assert "part of the path is a file" in failed(tmp_path / "file/a.exr")
     (tmp_path / "folder.exr").mkdir()
     with pytest.raises(OutputError, match="is a folder"):
-        write_picture(tmp_path / "folder.exr", PICTURE, kinds=KINDS)
+        write_picture(tmp_path / "folder.exr", PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="the super-user may write anywhere")
@@ -127,7 +128,7 @@ def test_a_folder_that_refuses(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, 
 
     monkeypatch.setattr(Path, "open", refuse)
     with pytest.raises(OutputError, match=sentence):
-        write_picture(tmp_path / "a.exr", PICTURE, kinds=KINDS)
+        write_picture(tmp_path / "a.exr", PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
     monkeypatch.undo()
     assert not [*tmp_path.iterdir()]
 
@@ -137,13 +138,13 @@ def test_a_link_keeps_pointing(tmp_path: Path) -> None:
     (tmp_path / "shelf").mkdir()
     (tmp_path / "shelf/a.exr").write_bytes(b"old")
     (tmp_path / "a.exr").symlink_to(tmp_path / "shelf/a.exr")
-    write_picture(tmp_path / "a.exr", PICTURE, kinds=KINDS)
+    write_picture(tmp_path / "a.exr", PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
     assert (tmp_path / "a.exr").is_symlink()
-    assert read_layer(tmp_path / "shelf/a.exr", "", Kind.IMAGE).array.shape == (40, 50, 4)
+    assert read_layer(tmp_path / "shelf/a.exr", "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (40, 50, 4)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="rights are not modes there")
 def test_rights_are_those_of_any_new_file(tmp_path: Path) -> None:
     (tmp_path / "other").touch()
-    write_picture(tmp_path / "a.png", PICTURE, kinds=KINDS)
+    write_picture(tmp_path / "a.png", PICTURE, kinds=KINDS, sandbox=UNRESTRICTED)
     assert (tmp_path / "a.png").stat().st_mode == (tmp_path / "other").stat().st_mode

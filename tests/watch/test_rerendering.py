@@ -14,6 +14,7 @@ from halation.compiler import installed_library
 from halation.errors import GraphError, RenderError
 from halation.graph import Graph, Input
 from halation.renderer.jobs.job import JobReport
+from halation.resources.sandbox import UNRESTRICTED
 from halation.watch import rerendering
 from halation.watch.rerendering import ContinuousRenderer
 
@@ -38,7 +39,7 @@ def turning(folder: Path) -> Iterator:
     made: list[ContinuousRenderer] = []
 
     def turns(load=lambda: Graph(), render=lambda graph, progress: DONE):
-        made.append(ContinuousRenderer(folder / "graph.json", lambda graph: {}, load, render))
+        made.append(ContinuousRenderer(folder / "graph.json", lambda graph: {}, load, render, sandbox=UNRESTRICTED))
         return iter(made[-1])
 
     yield turns

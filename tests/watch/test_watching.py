@@ -11,6 +11,7 @@ import pytest
 from halation import document
 from halation.graph import Graph, Group, Input, Port
 from halation.nodes import catalogue
+from halation.resources.sandbox import UNRESTRICTED
 from halation.watch import watching
 from halation.watch.watching import FileChange, FileWatcher, find_pictures
 
@@ -54,12 +55,12 @@ def quiet(watcher, path):
 @pytest.fixture
 def path(tmp_path):
     made = tmp_path / "graph.json"
-    document.save(Graph(), made)
+    document.save(Graph(), made, sandbox=UNRESTRICTED)
     return made
 
 
 def save(path, count):
-    document.save(Graph(ui={"count": count}), path)
+    document.save(Graph(ui={"count": count}), path, sandbox=UNRESTRICTED)
 
 
 def test_replacing_writing_removing_and_making_again(watcher, path):

@@ -14,6 +14,7 @@ from ...render_layers.naming import Role
 from ...render_layers.overview import RenderOverview, summarize_render
 from ...render_layers.render import read_render
 from ...resources.input_files import fingerprint
+from ...resources.sandbox import Sandbox
 from ...watch.sequence_files import representative_file
 from ...watch.versions import FileVersions
 from .cache import BackgroundCache
@@ -53,16 +54,18 @@ class OverviewPending(InputError):
 class RenderOverviews:
     """What renders hold: never waits for a file."""
 
-    def __init__(self) -> None:
+    def __init__(self, sandbox: Sandbox) -> None:
+        self._sandbox, self._versions = sandbox, FileVersions(sandbox)
         self._overviews: BackgroundCache[_Key, tuple[RenderOverview | str, Render | str]] = BackgroundCache(
-            "renders", _read_overview, _KEPT
+            "renders", self._read_overview, _KEPT
         )
-        self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache("mattes", _ids, _KEPT_IDS, 1)
-        self._versions = FileVersions()
+        self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache(
+            "mattes", self._read_ids, _KEPT_IDS, 1
+        )
 
     def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> RenderOverview | str | None:
         """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
-        path = representative_file(path)
+        path = representative_file(path, sandbox=self._sandbox)
         version, fault = self._versions.of(path)
         if fault:
             return fault
@@ -71,7 +74,7 @@ class RenderOverviews:
 
     def describe_render(self, path: str, named: ChosenLayers) -> Render:
         """The same for the compiler. Raises Pending, and InputError for a file that cannot be read."""
-        key = _key(path, fingerprint(path), named)
+        key = _key(path, fingerprint(path, sandbox=self._sandbox), named)
         entry = self._overviews.get(key)
         if entry is None:
             raise OverviewPending(path, lambda: self._overviews.get(key) is not None)
@@ -81,7 +84,7 @@ class RenderOverviews:
 
     def ids(self, path: Path, matte: Matte) -> IdMap | str | None:
         """What is where in the picture, a sentence if nobody knows, None while it is being read."""
-        path = representative_file(path)
+        path = representative_file(path, sandbox=self._sandbox)
         version, fault = self._versions.of(path)
         return fault or self._ids.get((str(path), version, matte.layers[0]))
 
@@ -95,29 +98,31 @@ class RenderOverviews:
         self._overviews.close()
         self._ids.close()
 
+    # --- in threads ------------------------------------------------------------------------------------------------
+
+    def _read_overview(self, key: _Key) -> tuple[RenderOverview | str, Render | str]:
+        path, _, named = key
+        try:
+            contents = summarize_render(
+                path, ROLES, {Role(role): layer for role, layer in named}, sandbox=self._sandbox
+            )
+        except HalationError as fault:
+            return str(fault), str(fault)
+        except Exception as fault:
+            message = f"{path}: cannot be looked at ({fault})"
+            return message, message
+        try:
+            return contents, read_render(path, dict(named), sandbox=self._sandbox)
+        except HalationError as fault:
+            return contents, str(fault)
+
+    def _read_ids(self, key: tuple[str, str, str]) -> IdMap | str:
+        path, _, layer = key
+        try:
+            return read_id_map(path, layer, sandbox=self._sandbox)
+        except HalationError as fault:
+            return str(fault)
+
 
 def _key(path: str, version: str, named: ChosenLayers) -> _Key:
     return path, version, tuple(sorted((role, layer) for role, layer in named.items() if layer))
-
-
-def _read_overview(key: _Key) -> tuple[RenderOverview | str, Render | str]:
-    path, _, named = key
-    try:
-        contents = summarize_render(path, ROLES, {Role(role): layer for role, layer in named})
-    except HalationError as fault:
-        return str(fault), str(fault)
-    except Exception as fault:
-        message = f"{path}: cannot be looked at ({fault})"
-        return message, message
-    try:
-        return contents, read_render(path, dict(named))
-    except HalationError as fault:
-        return contents, str(fault)
-
-
-def _ids(key: tuple[str, str, str]) -> IdMap | str:
-    path, _, layer = key
-    try:
-        return read_id_map(path, layer)
-    except HalationError as fault:
-        return str(fault)

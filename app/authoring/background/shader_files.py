@@ -11,6 +11,7 @@ from ...custom_nodes import CodeFault
 from ...custom_nodes.isf.header import read_header
 from ...document.disk import read_text
 from ...errors import DocumentError
+from ...resources.sandbox import UNRESTRICTED
 from .cache import BackgroundCache
 
 CUSTOMARY = ("/Library/Graphics/ISF", "~/Library/Graphics/ISF", "/ProgramData/ISF")
@@ -66,7 +67,7 @@ def _scan_folders(key: _Key) -> tuple[ShaderFile, ...]:
     for folder, _ in key:
         for path in _files(Path(folder)):
             try:
-                head = read_header(read_text(path))
+                head = read_header(read_text(path, sandbox=UNRESTRICTED))
             except (DocumentError, CodeFault):
                 continue
             inside = path.parent.name if path.parent != Path(folder) else Path(folder).name

@@ -68,7 +68,7 @@ class AddCodeFile(EditCommand[str]):
     output: bool = True
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        item = coding.make_file_node(document.relative(self.path), document.root.folder)
+        item = coding.make_file_node(document.relative(self.path), document.root.folder, sandbox=document.sandbox)
         return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
 
 
@@ -190,7 +190,7 @@ def load_group(document: OpenDocument, path: str | Path) -> Group:
     Presets become part of the document, without their sample pictures: the document must not depend on where Halation
     is installed.
     """
-    body = load(path, document.types)
+    body = load(path, document.types, sandbox=document.sandbox)
     own_path = document.path.resolve() if document.path else None
     if own_path in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
         raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
@@ -204,7 +204,9 @@ def _make_file_item(document: OpenDocument, path: str | Path) -> Item:
     if suffix == ".json":
         return load_group(document, path)
     if suffix in coding.ENDINGS:
-        return coding.make_file_node(document.relative(path), document.root.folder)
-    reads_render = "read_render" in document.types and is_render(representative_file(Path(path)))
+        return coding.make_file_node(document.relative(path), document.root.folder, sandbox=document.sandbox)
+    reads_render = "read_render" in document.types and is_render(
+        representative_file(Path(path), sandbox=document.sandbox), sandbox=document.sandbox
+    )
     node = make_node(document, "read_render" if reads_render else "read_image")
     return node.with_values(path=document.relative(path))

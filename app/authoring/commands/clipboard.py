@@ -33,7 +33,7 @@ class PasteText(EditCommand[tuple[str, ...]]):
     keep_links: bool = False
 
     def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
-        part = clipboard.read_part(self.text, document.root.folder, document.types)
+        part = clipboard.read_part(self.text, document.root.folder, document.types, sandbox=document.sandbox)
         graph, keys = clipboard.paste_part(document.graph, part, document.positions, self.at, self.keep_links)
         return Edited(f"Paste {naming.describe_elements(keys)}", keys, graph, keys)
 

@@ -29,7 +29,7 @@ class SetCode(EditCommand[None]):
         before = document.history.snapshot_before(self.merge)
         root = document.root if before is None or before.place != document.place else before.root
         graph = folding.body_at(root, document.place)
-        code = coding.read_node_code(graph.nodes.get(self.id), graph.folder)
+        code = coding.read_node_code(graph.nodes.get(self.id), graph.folder, sandbox=document.sandbox)
         if code is None:
             raise GraphError(f"node '{self.id}' is not made of code")
         label = f"Edit code of {self.id}"
@@ -38,7 +38,9 @@ class SetCode(EditCommand[None]):
             return Edited(label, None, edited, merge=self.merge)
         document.check_editable()
         file = paths.resolve_path(code.file, graph.folder)
-        return Edited(label, None, root=coding.set_file_code(root, file, self.text), merge=self.merge)
+        return Edited(
+            label, None, root=coding.set_file_code(root, file, self.text, sandbox=document.sandbox), merge=self.merge
+        )
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from ...document import dumps, loads
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
+from ...resources.sandbox import Sandbox
 from . import timing
 from .elements import Place, element_of, end_port, entry, list_elements, with_entries, with_places
 from .layout import positions, shift_off
@@ -57,7 +58,7 @@ def copy_elements(graph: Graph, chosen: Collection[str]) -> str:
     return dumps(replace(copied_graph, extra={**copied_graph.extra, "": {_FROM: folder}}))
 
 
-def read_part(text: str, folder: str, types: Types) -> Graph:
+def read_part(text: str, folder: str, types: Types, sandbox: Sandbox) -> Graph:
     """The graph in a text, with paths that start in `folder`. Raises GraphError for a text without any."""
     if not text.lstrip().startswith("{"):
         raise GraphError("there are no nodes to paste: copy some first")
@@ -65,7 +66,9 @@ def read_part(text: str, folder: str, types: Types) -> Graph:
         stated_folder = json.loads(text).get(_FROM)
     except (ValueError, RecursionError):
         stated_folder = None
-    graph = loads(text, "clipboard", stated_folder if isinstance(stated_folder, str) else folder, types)
+    graph = loads(
+        text, "clipboard", stated_folder if isinstance(stated_folder, str) else folder, types, sandbox=sandbox
+    )
     return rebase_paths(replace(graph, extra={path: kept for path, kept in graph.extra.items() if path}), folder)
 
 

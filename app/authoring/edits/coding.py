@@ -11,9 +11,10 @@ from halation.nodes import Node, Plain
 from msgspec import structs
 
 from ...custom_nodes import Code, CodeFault, CustomNode, Language, node_type
-from ...document.code import describe_code, read_code
+from ...document.code import describe_code, read_code_file
 from ...graph import Graph, Group, Item, Unknown
 from ...graph.values import coerce, value_fault
+from ...resources.sandbox import Sandbox
 from ...watch.code_files import code_file, code_items
 
 CODE = "glsl"
@@ -54,7 +55,7 @@ def with_code_type(types: Mapping[str, type[Node]]) -> Mapping[str, type[Node]]:
     return {**types, CODE: type(make_starter_node())}
 
 
-def read_node_code(item: Item | None, folder: str) -> Code | None:
+def read_node_code(item: Item | None, folder: str, sandbox: Sandbox) -> Code | None:
     """The code of a node, even of one whose code says no node; None for all other nodes."""
     if isinstance(item, CustomNode):
         return item.code
@@ -65,7 +66,7 @@ def read_node_code(item: Item | None, folder: str) -> Code | None:
         return structs.replace(item.code, file=file or "")
     if isinstance(file, str):
         try:
-            return read_code(language, None, file, folder)
+            return read_code_file(language, file, folder, sandbox=sandbox)
         except CodeFault:
             return Code(language, "", file)
     return Code(language, "\n".join(map(str, lines or ())))
@@ -80,11 +81,11 @@ def make_code_node(code: Code, values: Mapping[str, Any] | None = None) -> Item:
     return kind(**_keep_valid_values(kind, values or {}))
 
 
-def make_file_node(file: str, folder: str) -> Item:
+def make_file_node(file: str, folder: str, sandbox: Sandbox) -> Item:
     """A node whose code is in a file."""
     language = ENDINGS[Path(file).suffix.lower()]
     try:
-        return make_code_node(read_code(language, None, file, folder))
+        return make_code_node(read_code_file(language, file, folder, sandbox=sandbox))
     except CodeFault as fault:
         return _make_broken(Code(language, "", file), fault, {})
 
@@ -100,12 +101,11 @@ def file_texts(graph: Graph) -> dict[Path, str]:
     for body, item in code_items(graph, borrowed=False):
         file = code_file(item, body.folder)
         if file is not None and (isinstance(item, CustomNode | BrokenCodeNode)):
-            code = read_node_code(item, body.folder)
-            text_by_file[file] = code.text if code else ""
+            text_by_file[file] = item.code.text if item.code else ""
     return text_by_file
 
 
-def set_file_code(graph: Graph, file: Path, text: str) -> Graph:
+def set_file_code(graph: Graph, file: Path, text: str, sandbox: Sandbox) -> Graph:
     """The graph with another text in a file of code; the very same one if no node has its code in it."""
     return _map_code_nodes(
         graph,
@@ -114,17 +114,18 @@ def set_file_code(graph: Graph, file: Path, text: str) -> Graph:
             if code_file(item, body.folder) == file and code.text != text
             else body
         ),
+        sandbox=sandbox,
     )
 
 
-def reread_file_code(graph: Graph, file: Path) -> Graph:
+def reread_file_code(graph: Graph, file: Path, sandbox: Sandbox) -> Graph:
     """The graph with the code of a file as it is on the disk now; the very same one if nothing differs."""
 
     def change(body: Graph, id: str, item: Item, code: Code) -> Graph:
         if file not in (path := code_file(item, body.folder), path and path.with_suffix(".vs")):
             return body
         try:
-            disk_code = read_code(code.language, None, code.file, body.folder)
+            disk_code = read_code_file(code.language, code.file, body.folder, sandbox=sandbox)
         except CodeFault as fault:
             return _replace_node(body, id, _make_broken(code, fault, _changed_values(item)))
         return (
@@ -133,31 +134,38 @@ def reread_file_code(graph: Graph, file: Path) -> Graph:
             else set_code(body, id, disk_code)
         )
 
-    return _map_code_nodes(graph, change, borrowed=True)
+    return _map_code_nodes(graph, change, borrowed=True, sandbox=sandbox)
 
 
-def embed_drafts(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
+def embed_drafts(graph: Graph, drafts: Mapping[Path, str], sandbox: Sandbox) -> Graph:
     """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
     return _map_code_nodes(
         graph,
         lambda body, id, item, code: (
             set_code(body, id, structs.replace(code, file="")) if code_file(item, body.folder) in drafts else body
         ),
+        sandbox=sandbox,
     )
 
 
 # --- inside ----------------------------------------------------------------------------------------------------------
 
 
-def _map_code_nodes(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False) -> Graph:
+def _map_code_nodes(
+    graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False, *, sandbox: Sandbox
+) -> Graph:
     """The graph with nodes of code changed, those of groups included; if `borrowed`, of groups from files too."""
     after = graph
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
-            inner = _map_code_nodes(item.graph, change, borrowed) if borrowed or not item.path else item.graph
+            inner = (
+                _map_code_nodes(item.graph, change, borrowed, sandbox=sandbox)
+                if borrowed or not item.path
+                else item.graph
+            )
             if inner is not item.graph:
                 after = replace(after, nodes={**after.nodes, id: replace(item, graph=inner)})
-        elif code := read_node_code(item, graph.folder):
+        elif code := read_node_code(item, graph.folder, sandbox=sandbox):
             after = change(after, id, item, code)
     return after
 

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 from halation.nodes import ColorSettings
 
-from ...color.management import BUILT_IN, get_color_manager, mark_color_settings
+from ...color.management import BUILT_IN, ColorManager, get_color_manager
 from ...errors import HalationError
+from ...resources.sandbox import Sandbox
 
 _BUILT_IN = ColorSettings(BUILT_IN)
 
@@ -16,20 +17,20 @@ _BUILT_IN = ColorSettings(BUILT_IN)
 class ColorFallback:
     """The last answer: a config that cannot be read is not tried again before it changes."""
 
-    asked: tuple[ColorSettings, str] | None = None
-    settings: ColorSettings = _BUILT_IN
+    sandbox: Sandbox
+    asked: ColorManager | None = None
+    manager: ColorManager | None = None
     fault: str = ""
     """Why the built-in config stands in."""
 
-    def resolve(self, color: ColorSettings) -> ColorSettings:
-        """These settings, or those that stand in for them."""
-        key = color, mark_color_settings(color)
-        if key != self.asked:
-            self.asked, self.settings, self.fault = key, color, ""
-            manager = get_color_manager(color)
+    def resolve(self, color: ColorSettings) -> ColorManager:
+        """How colors are managed by these settings, or by those that stand in for them."""
+        manager = get_color_manager(color, self.sandbox)
+        if self.manager is None or manager is not self.asked:
+            self.asked, self.manager, self.fault = manager, manager, ""
             try:
                 if not manager.is_plain:
                     _ = manager.config, manager.working
             except HalationError as fault:
-                self.settings, self.fault = _BUILT_IN, str(fault)
-        return self.settings
+                self.manager, self.fault = get_color_manager(_BUILT_IN, self.sandbox), str(fault)
+        return self.manager

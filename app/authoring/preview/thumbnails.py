@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from halation.nodes import ColorSettings, Kind
 
-from ...color.management import DEFAULT_COLOR
+from ...color.management import get_default_color_manager
 from ...compiler import Plan, scale_size
 from ...media.comparison.data_range import are_normals, balance_range, find_data_range
 from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
@@ -70,7 +70,7 @@ class Thumbnails:
         self._probe = Probe(renderer.device)
         self._thumbnails: dict[str, _Thumbnail] = {}
         self._waiting: dict[str, ThumbnailSource] = {}
-        self._coloring, self._color = ColorFallback(), DEFAULT_COLOR
+        self._coloring, self._manager = ColorFallback(renderer.sandbox), get_default_color_manager()
         self.paths: frozenset[str] = frozenset()
         """Who has a picture; the same object until that changes."""
 
@@ -79,9 +79,9 @@ class Thumbnails:
         """True while there are some to be drawn."""
         return bool(self._waiting)
 
-    def offer(self, subjects: Mapping[str, ThumbnailSource], color: ColorSettings = DEFAULT_COLOR) -> None:
+    def offer(self, subjects: Mapping[str, ThumbnailSource], color: ColorSettings | None = None) -> None:
         """These results are there now, by path; their colors are managed that way."""
-        self._color = self._coloring.resolve(color)
+        self._manager = self._coloring.resolve(color or ColorSettings())
         for path, subject in subjects.items():
             thumbnail = self._thumbnails.get(path)
             self._waiting.pop(path, None)
@@ -126,7 +126,7 @@ class Thumbnails:
 
     def _look(self, subject: ThumbnailSource, texture: DeviceTexture, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
-            return Look(zoom=zoom, view="none", color=self._color)
+            return Look(zoom=zoom, view="none", manager=self._manager)
         pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
         if are_normals(pixels):
             return Look(zoom=zoom, meaning="normal")

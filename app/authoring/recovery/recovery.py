@@ -23,6 +23,7 @@ from ...document.disk import read_text
 from ...errors import DocumentError, HalationError, OutputError
 from ...graph import Graph
 from ...resources.atomic_write import find_temporary_files, write_text_atomically
+from ...resources.sandbox import UNRESTRICTED, Sandbox
 from .file_locks import is_held, lock
 
 FIRST = 1.0
@@ -65,11 +66,11 @@ class RecoveredWork:
         """What to call it."""
         return self.path.name if self.path else "Untitled"
 
-    def load(self) -> Graph:
+    def load(self, sandbox: Sandbox) -> Graph:
         """The graph, finding its pictures where the original did. Raises DocumentError."""
         if self.fault:
             raise DocumentError("", "", self.fault)
-        return document.loads(self.text, f"recovered {self.title}", self.folder)
+        return document.loads(self.text, f"recovered {self.title}", self.folder, sandbox=sandbox)
 
     def discard(self) -> None:
         """Remove it for good. Raises OutputError."""
@@ -125,9 +126,9 @@ class RecoveryFile:
                 abandoned.append(one)
         return tuple(sorted(abandoned, key=lambda one: one.time, reverse=True))
 
-    def adopt(self, recovered: RecoveredWork) -> Graph:
+    def adopt(self, recovered: RecoveredWork, sandbox: Sandbox) -> Graph:
         """Its graph; its file goes once ours holds the work, or nothing is dirty any more. Raises DocumentError."""
-        graph = recovered.load()
+        graph = recovered.load(sandbox)
         with self._change:
             self._adopted.append(recovered)
         return graph
@@ -183,7 +184,7 @@ class RecoveryFile:
             if noted is None:
                 _remove(self._file)
             else:
-                write_text_atomically(self._file, _text(*noted))
+                write_text_atomically(self._file, _text(*noted), sandbox=UNRESTRICTED)
             for one in adopted:
                 one.discard()
         except HalationError as fault:
@@ -215,7 +216,7 @@ def _plain(path: Path) -> str:
 def _read(file: Path) -> RecoveredWork:
     """What a recovery file holds; a broken one has a `fault`."""
     try:
-        record = msgspec.json.decode(read_text(file), type=_Record)
+        record = msgspec.json.decode(read_text(file, sandbox=UNRESTRICTED), type=_Record)
     except (DocumentError, msgspec.MsgspecError, UnicodeDecodeError) as fault:
         return RecoveredWork(file, fault=f"{file}: this recovered work cannot be read ({fault})")
     path = Path(record.path) if record.path else None
@@ -229,7 +230,7 @@ def _is_saved(one: RecoveredWork) -> bool:
     if one.path is None or one.fault:
         return False
     try:
-        return read_text(one.path).strip() == one.text.strip()
+        return read_text(one.path, sandbox=UNRESTRICTED).strip() == one.text.strip()
     except DocumentError:
         return False
 

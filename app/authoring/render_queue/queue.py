@@ -13,18 +13,17 @@ from ... import document
 from ...errors import UsageError
 from ...graph import Graph
 from ...renderer.jobs.render_job import RenderJob
+from ...resources.sandbox import Sandbox
 from .queued_render import QueuedJob, QueuedRender, RenderState
 
 __all__ = ["QueuedRender", "RenderJob", "RenderQueue", "RenderState"]
 
 
-_DEFAULT = RenderJob()
-
-
 class RenderQueue:
     """The exports of one editor: so many run `at_once`, the others wait in their order."""
 
-    def __init__(self, at_once: int = 1) -> None:
+    def __init__(self, sandbox: Sandbox, at_once: int = 1) -> None:
+        self._sandbox = sandbox
         self.all: tuple[QueuedRender, ...] = ()
         self.at_once = at_once
         self._lock = RLock()
@@ -50,7 +49,7 @@ class RenderQueue:
         graph: Graph,
         destinations: Sequence[tuple[str, Path]],
         bindings: Mapping[str, object] | None = None,
-        options: RenderJob = _DEFAULT,
+        options: RenderJob | None = None,
     ) -> QueuedRender:
         """Render the graph as it is now, saved or not, to pairs of an output's name and a file; "" is all outputs.
 
@@ -65,7 +64,7 @@ class RenderQueue:
                 raise UsageError(f"input '{name}' is filled from memory, which an export cannot see: save it to a file")
             inputs[name] = os.path.abspath(item)  # noqa: PTH100 - a layer may follow the path
         order = replace(
-            options,
+            options or RenderJob(sandbox=self._sandbox),
             graph="-",
             document=document.dumps(graph),
             inputs=inputs,

@@ -19,6 +19,7 @@ from ...graph import INPUTS, Graph, Output, Port
 from ...graph.keys import round_keys
 from ...renderer.provenance.file_finder import load_graph_of_picture
 from ...resources.atomic_write import write_text_atomically
+from ...resources.sandbox import Sandbox
 from ..commands.coding import LinkCodeFile
 from ..commands.command import EditCommand, Edited
 from ..commands.grouping import LinkGroup
@@ -43,11 +44,11 @@ class Session(OpenDocument):
     Whatever makes no sense raises HalationError with one sentence and changes nothing.
     """
 
-    def __init__(self, types: Mapping[str, type[Node]] | None = None) -> None:
-        super().__init__(types)
+    def __init__(self, types: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> None:
+        super().__init__(types, sandbox=self.sandbox)
         self.revision = 0
         """Greater after every change of the document, the selection or the view."""
-        self.code_files = CodeFiles()
+        self.code_files = CodeFiles(sandbox=self.sandbox)
         self.new()
 
     # --- changes of the document -------------------------------------------------------------------------------------
@@ -169,27 +170,27 @@ class Session(OpenDocument):
 
     def open(self, path: str | Path) -> None:
         """Open a graph file. Raises DocumentError; then everything is as before."""
-        root = load(path, self.types)
+        root = load(path, self.types, sandbox=self.sandbox)
         self._restart(root, Path(path), root)
 
     def open_copy(self, path: str | Path) -> None:
         """Open a graph file as a new document, as presets are: saving asks for a name. Raises DocumentError."""
-        root = load(path, self.types)
+        root = load(path, self.types, sandbox=self.sandbox)
         self._restart(root, None, root)
 
     def open_made(self, path: str | Path) -> None:
         """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
-        root = load_graph_of_picture(Path(path), self.types)
+        root = load_graph_of_picture(Path(path), self.types, sandbox=self.sandbox)
         self._restart(root, None, root)
         self._title = Path(path).stem
 
     def open_text(self, text: str) -> None:
         """Open the text of a graph file as a document without a file."""
-        self._restart(loads(text, "text", catalogue=self.types), None, None)
+        self._restart(loads(text, "text", catalogue=self.types, sandbox=self.sandbox), None, None)
 
     def restore(self, recovered: RecoveredWork) -> None:
         """Open work that was recovered; it has the file that it was to be saved as, but is not saved."""
-        self._restart(recovered.load(), recovered.path, None)
+        self._restart(recovered.load(self.sandbox), recovered.path, None)
 
     def save(self) -> None:
         """Save to the file that was opened. Raises UsageError if there is none."""
@@ -204,7 +205,7 @@ class Session(OpenDocument):
         self.seal()
         folder = str(target.parent)
         root = paths.rebase_paths(self.root, folder)
-        save(root, target)
+        save(root, target, sandbox=self.sandbox)
         if root is not self.root:
             self.migrate(lambda graph: paths.rebase_paths(graph, folder))
         self.path, self._saved = target, self.root
@@ -224,7 +225,7 @@ class Session(OpenDocument):
 
         def read_body(path: Path) -> Graph:
             if path not in bodies:
-                bodies[path] = load(path, self.types)
+                bodies[path] = load(path, self.types, sandbox=self.sandbox)
             return bodies[path]
 
         self.migrate(lambda graph: folding.reread_groups(graph, read_body))
@@ -236,7 +237,7 @@ class Session(OpenDocument):
         paths.check_target(body, target)
         if self.path and self.path.resolve() == target.resolve():
             raise UsageError(f"{target}: this is the file of the document itself: choose another name")
-        save(body, target)
+        save(body, target, sandbox=self.sandbox)
         if link:
             self.apply(LinkGroup(id, target, body))
 
@@ -272,7 +273,9 @@ class Session(OpenDocument):
         drafts = self.drafts
         if not drafts:
             return self.root
-        return self._memo.get("recoverable", (self.root, drafts), lambda: coding.embed_drafts(self.root, drafts))
+        return self._memo.get(
+            "recoverable", (self.root, drafts), lambda: coding.embed_drafts(self.root, drafts, sandbox=self.sandbox)
+        )
 
     def export_code(self, id: str, path: str | Path) -> None:
         """Write the code of a node to a file, from which it comes from then on. Raises OutputError."""
@@ -280,7 +283,7 @@ class Session(OpenDocument):
         command.apply(self)  # nothing is written where the command makes no sense
         code = self.code(id)
         assert code is not None
-        write_text_atomically(Path(path), code.text)
+        write_text_atomically(Path(path), code.text, sandbox=self.sandbox)
         self.code_files.note(paths.resolve_path(paths.relative(path, self.graph.folder), self.graph.folder), code.text)
         self.apply(command)
 
@@ -296,7 +299,7 @@ class Session(OpenDocument):
     def reread_code(self, path: Path) -> None:
         """Take over what another program wrote to a file of code, drafts of it included; this is no step."""
         self.code_files.forget(path)
-        self.migrate(lambda graph: coding.reread_file_code(graph, path))
+        self.migrate(lambda graph: coding.reread_file_code(graph, path, sandbox=self.sandbox))
         self.note_code_files()
 
     def note_code_files(self) -> None:
@@ -361,7 +364,7 @@ class Session(OpenDocument):
         if self.path is None:
             raise UsageError("this document has no file to read again")
         self.seal()
-        root = load(self.path, self.types)
+        root = load(self.path, self.types, sandbox=self.sandbox)
         before = self._snapshot
         self._saved = root
         self.code_files.clear()
@@ -378,10 +381,10 @@ class Session(OpenDocument):
         self._move_to(Snapshot(root, place, self.selection & keys, self.active if self.active in keys else ""))
 
     def _write_code(self, path: Path, text: str) -> Path:
-        write_text_atomically(path, text)
+        write_text_atomically(path, text, sandbox=self.sandbox)
         self.code_files.note(path, text)
         if self._saved is not None:
-            self._saved = coding.set_file_code(self._saved, path, text)
+            self._saved = coding.set_file_code(self._saved, path, text, sandbox=self.sandbox)
             self.revision += 1
         return path
 

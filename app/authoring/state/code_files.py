@@ -9,6 +9,7 @@ from types import MappingProxyType
 from ...document.disk import read_text
 from ...errors import DocumentError
 from ...graph import Graph
+from ...resources.sandbox import Sandbox
 from ..edits import coding
 from .memo import Memo
 
@@ -20,7 +21,8 @@ class CodeFiles:
     their code in one file have the same text.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, sandbox: Sandbox) -> None:
+        self._sandbox = sandbox
         self._on_disk: dict[Path, str] = {}
         self._version = object()
         """Another object whenever something else is known of the disk."""
@@ -39,14 +41,14 @@ class CodeFiles:
         for path in coding.file_texts(root):
             if path not in self._on_disk:
                 try:
-                    self.note(path, read_text(path))
+                    self.note(path, read_text(path, sandbox=self._sandbox))
                 except DocumentError:
                     self.note(path, "")
 
     def differs(self, path: Path, text: str) -> bool:
         """True if a file holds something else than that text now, or cannot be read."""
         try:
-            return read_text(path) != text
+            return read_text(path, sandbox=self._sandbox) != text
         except DocumentError:
             return True
 

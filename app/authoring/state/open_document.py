@@ -36,6 +36,7 @@ from ...graph import (
     value_at,
 )
 from ...graph.graph import find_value
+from ...resources.sandbox import Sandbox
 from ..edits import clipboard, coding, decor, elements, folding, layout, paths, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.folding import GroupPath
@@ -59,12 +60,13 @@ MAX_FRAME = 1_000_000
 class OpenDocument:
     """A document, where in it the user is, what is selected, and what can be undone.
 
-    `types` are the node types by id, by default all that are installed. `measure` finds the frame range of a graph that
+    `types` are the node types by id, by default all that are installed. `sandbox` says which files may be read and
+    written. `measure` finds the frame range of a graph that
     does not state one; without it only keys count.
     """
 
-    def __init__(self, types: Mapping[str, type[Node]] | None = None) -> None:
-        self._types = types
+    def __init__(self, types: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> None:
+        self._types, self.sandbox = types, sandbox
         self.history = History()
         self.path: Path | None = None
         self.measure: Measure | None = None
@@ -217,7 +219,7 @@ class OpenDocument:
     def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
         """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""
         groups = self._offered_groups
-        groups |= {file: Group(load(file, self.types)) for file in files if file not in groups}
+        groups |= {file: Group(load(file, self.types, sandbox=self.sandbox)) for file in files if file not in groups}
         return tuple(file for file in files if wiring.fits(self.graph, port, is_output, groups[file]))
 
     # --- values ------------------------------------------------------------------------------------------------------
@@ -237,7 +239,7 @@ class OpenDocument:
 
     def code(self, id: str) -> Code | None:
         """The code of a node; None for nodes that are made of none."""
-        return coding.read_node_code(self.graph.nodes.get(id), self.graph.folder)
+        return coding.read_node_code(self.graph.nodes.get(id), self.graph.folder, sandbox=self.sandbox)
 
     def code_in_file(self, id: str) -> Code:
         """The code of a node whose code is in a file. Raises GraphError for other nodes."""

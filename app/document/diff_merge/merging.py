@@ -79,7 +79,7 @@ def merge_graphs(base: Graph, ours: Graph, theirs: Graph) -> MergedGraph:
 
 
 def _graph(parts: Tree) -> Graph:
-    return loads(text_of(parts), follow=False)
+    return loads(text_of(parts), sandbox=None)
 
 
 @dataclass

@@ -98,7 +98,9 @@ class FileGrid:
     def draw(self, browsing: Browsing) -> bool:
         """True if an item was double-clicked."""
         if self._pictures is None:
-            self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
+            self._pictures = FileThumbnails(
+                self._context.store.file.parent / "thumbnails", self._context.session.sandbox
+            )
         scale, items, double_clicked = ui_scale(), browsing.items, False
         self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
         imgui.begin_child("grid")

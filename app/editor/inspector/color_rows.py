@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from halation.nodes import ColorSettings, Value
+from halation.nodes import Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetColorSettings
-from ...color.management import get_color_manager, list_builtin_configs, load_ocio, mark_color_settings
+from ...color.management import ColorManager, list_builtin_configs, load_ocio
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..shared.dialogs import Browse
 from .rows import Rows
 
@@ -27,16 +27,14 @@ _REC709 = "linear Rec.709"
 
 
 @lru_cache(maxsize=8)
-def space_names(color: ColorSettings, mark: str) -> tuple[str, ...]:
-    """The roles and color spaces of a config. `mark` changes when it does."""
-    manager = get_color_manager(color)
+def space_names(manager: ColorManager) -> tuple[str, ...]:
+    """The roles and color spaces of a config."""
     return (*manager.spaces.getRoleNames(), *manager.list_spaces())
 
 
 @lru_cache(maxsize=8)
-def _linear(color: ColorSettings, mark: str) -> tuple[str, ...]:
+def _linear(manager: ColorManager) -> tuple[str, ...]:
     """The spaces that can be worked in."""
-    manager = get_color_manager(color)
     kind = load_ocio().REFERENCE_SPACE_SCENE
     return tuple(
         name
@@ -80,7 +78,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         elif index is not None:
             config = "" if index == 0 else choices[index]
             rows.act(lambda: session.apply(SetColorSettings(config=config)))
-    usable = settings_in_use(context)
+    usable = find_color_manager(context)
     if fault := context.coloring.fault:
         rows.field_note(fault, rows.palette.error)
     rows.name(
@@ -89,7 +87,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         doc="The linear color space that pictures are in between nodes",
         changed=bool(color.working),
     )
-    known = (_REC709, *_linear(ColorSettings(usable.config), mark_color_settings(usable)))
+    known = (_REC709, *_linear(usable))
     index = choose(fields, "working space", color.working or _REC709, known, rows.field())
     rows.record("working space")
     if index is not None:
@@ -99,8 +97,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
 
 def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:
     """Which color space something is in, from those of the config; empty stands for finding out."""
-    color = settings_in_use(rows.context)
-    known = (FOUND, *space_names(color, mark_color_settings(color)))
+    known = (FOUND, *space_names(find_color_manager(rows.context)))
     shown = FOUND if now in ("", "auto") else now
     choices = known if shown in known else (shown, *known)
     index = choose(fields, key, shown, choices, width)

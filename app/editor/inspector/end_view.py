@@ -18,7 +18,7 @@ from ..fields.color_field import color_field
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..toolkit.words import tip
 from .color_rows import space_field
 from .file_field import PICTURE, FileField
@@ -164,7 +164,7 @@ class EndView:
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
-            known = ("", *list_views(color=settings_in_use(context)))
+            known = ("", *list_views(manager=find_color_manager(context)))
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
             )

@@ -13,10 +13,11 @@ from imgui_bundle import imgui
 from ...errors import HalationError
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
+from ...resources.sandbox import Sandbox
 from ...watch.sequence_files import representative_file
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..shared.dialogs import browse
 from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
@@ -37,9 +38,9 @@ FIRST = "first color layer"
 class FileField:
     """The fields of files, and what is known of the files."""
 
-    def __init__(self, fields: Fields) -> None:
+    def __init__(self, fields: Fields, sandbox: Sandbox) -> None:
         self.fields = fields
-        self.known = Layers()
+        self.known = Layers(sandbox)
         self._textures = Textures()
 
     def close(self) -> None:
@@ -84,7 +85,7 @@ class FileField:
             rows.field_note(fault.removeprefix(f"{self._full(rows, value)}: "), rows.palette.error)
         elif declaration.holds == "picture":
             header = self.known.header(self._file(rows, value))
-            frames = _frames(self._full(rows, value))
+            frames = _frames(self._full(rows, value), rows.context.session.sandbox)
             rows.field_note(frames + described(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
     def space(self, rows: Rows, value: str, layer: str, wanted: str) -> None:
@@ -92,7 +93,7 @@ class FileField:
         said, wrong = (
             ("", False)
             if not value
-            else self.known.space(self._file(rows, value), layer, settings_in_use(rows.context), wanted)
+            else self.known.space(self._file(rows, value), layer, find_color_manager(rows.context), wanted)
         )
         if said:
             shown = said.removeprefix(f"{self._file(rows, value)}: ")
@@ -157,16 +158,18 @@ class FileField:
 
     def _file(self, rows: Rows, value: str) -> Path:
         """The file; of a sequence one that is there."""
-        return representative_file(self._full(rows, value), rows.context.session.frames[0])
+        return representative_file(
+            self._full(rows, value), rows.context.session.frames[0], sandbox=rows.context.session.sandbox
+        )
 
     def _full(self, rows: Rows, value: str) -> Path:
         return Path(rows.context.session.graph.folder, value)
 
 
-def _frames(path: Path) -> str:
+def _frames(path: Path, sandbox: Sandbox) -> str:
     """Which frames a sequence has; nothing for a single picture."""
     try:
-        found = find_sequence(str(path))
+        found = find_sequence(str(path), sandbox=sandbox)
     except HalationError:
         return ""
     if found is None or not found.frames:

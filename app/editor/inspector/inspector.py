@@ -29,7 +29,7 @@ class Inspector:
     def __init__(self, context: InspectorContext) -> None:
         self._context = context
         self._fields = Fields(DARK)
-        self._files = FileField(self._fields)
+        self._files = FileField(self._fields, context.session.sandbox)
         self._values = ValueRows(self._fields, self._files)
         self._node = NodeView(self._fields, self._values)
         self._end = EndView(self._fields, self._files)

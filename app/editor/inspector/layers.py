@@ -6,16 +6,17 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from halation.nodes import ColorSettings, Kind
+from halation.nodes import Kind
 
 from ...authoring.background.cache import BackgroundCache
 from ...color.display import NO_VIEW, to_display
 from ...color.file_space import FileSpace
-from ...color.management import mark_color_settings
+from ...color.management import ColorManager
 from ...color.transforms import Array
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, read_info, read_layer
 from ...media.color_spaces import find_layer_spaces
+from ...resources.sandbox import Sandbox
 from ...watch.versions import FileVersions
 
 WIDTH, HEIGHT = 96, 54
@@ -25,19 +26,19 @@ _NOTHING = 1e9
 
 Key = tuple[str, str, str | None]
 """Path, version of the file, layer; a layer of None stands for the header."""
-SpaceKey = tuple[str, str, ColorSettings, str, str]
-"""Path, version of the file, how colors are managed, the version of the config, what the color is said to be."""
+SpaceKey = tuple[str, str, ColorManager, str]
+"""Path, version of the file, how colors are managed, what the color is said to be."""
 
 
 class Layers:
     """What is in files: never waits for one. What was asked for last is read first."""
 
-    def __init__(self) -> None:
-        self._made: BackgroundCache[Key, ImageInfo | Array | str] = BackgroundCache("layers", _made, _KEPT)
+    def __init__(self, sandbox: Sandbox) -> None:
+        self._sandbox, self._versions = sandbox, FileVersions(sandbox)
+        self._made: BackgroundCache[Key, ImageInfo | Array | str] = BackgroundCache("layers", self._read, _KEPT)
         self._spaces: BackgroundCache[SpaceKey, Mapping[str, FileSpace] | str] = BackgroundCache(
-            "spaces", _spaces, _KEPT
+            "spaces", self._find_spaces, _KEPT
         )
-        self._versions = FileVersions()
 
     def header(self, path: Path) -> ImageInfo | str | None:
         """The header, a sentence if there is none, None while it is being read."""
@@ -55,10 +56,10 @@ class Layers:
         found = None if fault else self._made.get((str(path), version, layer))
         return found if isinstance(found, np.ndarray) else None
 
-    def space(self, path: Path, layer: str, color: ColorSettings, wanted: str) -> tuple[str, bool]:
+    def space(self, path: Path, layer: str, manager: ColorManager, wanted: str) -> tuple[str, bool]:
         """What the color of a layer is in and how that is known, and whether that is a fault; "" while it is read."""
         version, fault = self._versions.of(path)
-        found = None if fault else self._spaces.get((str(path), version, color, mark_color_settings(color), wanted))
+        found = None if fault else self._spaces.get((str(path), version, manager, wanted))
         header = self.header(path)
         if found is None or isinstance(found, str) or not isinstance(header, ImageInfo):
             return (found, True) if isinstance(found, str) else ("", False)
@@ -82,35 +83,35 @@ class Layers:
         self._made.close()
         self._spaces.close()
 
+    # --- in threads --------------------------------------------------------------------------------------------------
 
-def _made(key: Key) -> ImageInfo | Array | str:
-    path, _, layer = key
-    try:
-        header = read_info(path)
-        return header if layer is None else small_picture(path, layer, header)
-    except HalationError as fault:
-        return str(fault)
-    except Exception as fault:
-        return f"{path}: cannot be shown ({fault})"
+    def _read(self, key: Key) -> ImageInfo | Array | str:
+        path, _, layer = key
+        try:
+            header = read_info(path, sandbox=self._sandbox)
+            return header if layer is None else small_picture(path, layer, header, self._sandbox)
+        except HalationError as fault:
+            return str(fault)
+        except Exception as fault:
+            return f"{path}: cannot be shown ({fault})"
+
+    def _find_spaces(self, key: SpaceKey) -> Mapping[str, FileSpace] | str:
+        path, _, manager, wanted = key
+        try:
+            return find_layer_spaces(path, manager, wanted, sandbox=self._sandbox)
+        except HalationError as fault:
+            return str(fault)
+        except Exception as fault:
+            return f"{path}: cannot be read ({fault})"
 
 
-def _spaces(key: SpaceKey) -> Mapping[str, FileSpace] | str:
-    path, _, color, _, wanted = key
-    try:
-        return find_layer_spaces(path, color, wanted)
-    except HalationError as fault:
-        return str(fault)
-    except Exception as fault:
-        return f"{path}: cannot be read ({fault})"
-
-
-def small_picture(path: str, layer: str, header: ImageInfo) -> Array:
+def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) -> Array:
     """A layer at most 96 x 54 pixels large, [h, w, 3] of uint8: every n-th pixel, data from its lowest to its highest.
 
     Raises InputError.
     """
     found = find_layer(header, layer)
-    array = read_layer(path, layer, Kind.IMAGE).array
+    array = read_layer(path, layer, Kind.IMAGE, sandbox=sandbox).array
     step = max(1, -(-array.shape[1] // WIDTH), -(-array.shape[0] // HEIGHT))
     small = np.ascontiguousarray(array[::step, ::step, :3], dtype=np.float32)
     if found.is_data:

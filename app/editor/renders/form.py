@@ -24,6 +24,7 @@ from ...graph.frames import (
 )
 from ...media.sequences import find_sequence
 from ...media.video.library import load_pyav
+from ...resources.sandbox import Sandbox
 
 if TYPE_CHECKING:
     from .context import RendersContext
@@ -155,13 +156,14 @@ class RenderForm:
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.chosen_outputs()))
         key = paths, frames, self.list_fault if not frames else ""
         if self._seen[0] != key or now - self._seen[1] > _FRESH:
-            self._seen = (key, now, find_targets(paths, frames, key[2]))
+            self._seen = (key, now, find_targets(paths, frames, key[2], self.context.session.sandbox))
         return self._seen[2]
 
     def options(self) -> RenderJob:
         """The choices as the exporter wants them."""
         frames = self.frames()
         job = RenderJob(
+            sandbox=self.context.session.sandbox,
             frames=frames,
             precision=self.precision or None,
             view=self.view,
@@ -208,7 +210,7 @@ def _add_number(path: str) -> str:
         return path
 
 
-def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> RenderTargets:
+def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str, sandbox: Sandbox) -> RenderTargets:
     """The files that a render would write, and how many of them are there already."""
     if fault or not paths:
         return RenderTargets(fault=fault or "Choose an output to render.")
@@ -216,7 +218,7 @@ def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) ->
         for path in paths:
             check_numbered(path, frames)
         names = [_at(path, frame) for path, frame in ((paths[0], frames[0]), (paths[-1], frames[-1]))]
-        exist = sum(_count_existing(path, frames) for path in paths)
+        exist = sum(_count_existing(path, frames, sandbox) for path in paths)
     except HalationError as error:
         return RenderTargets(fault=str(error))
     count = sum(1 if is_video(path) else len(frames) for path in paths)
@@ -228,9 +230,9 @@ def _at(path: str, frame: int) -> str:
     return pattern.name(frame) if pattern else path
 
 
-def _count_existing(path: str, frames: tuple[int, ...]) -> int:
+def _count_existing(path: str, frames: tuple[int, ...], sandbox: Sandbox) -> int:
     """How many of the files are there."""
     if Pattern.parse(path) is None or len(frames) == 1:
         return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows
-    sequence = find_sequence(path)
+    sequence = find_sequence(path, sandbox=sandbox)
     return len(sequence.names.keys() & set(frames)) if sequence else 0

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 
 from ...color.display import list_views
 from ...graph.frames import format_frames
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import main_button, quiet_button, width_of_buttons
@@ -153,7 +153,7 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
         form.precision = next(name for name, text in DEPTHS if text == chosen)
     if format in VIEWED or format == "mixed":
         own = "as the output says"
-        if chosen := choose(context, "View", form.view or own, (own, *list_views(color=settings_in_use(context)))):
+        if chosen := choose(context, "View", form.view or own, (own, *list_views(manager=find_color_manager(context)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]

@@ -222,7 +222,9 @@ class RenderQueueView:
         chosen = self._choose_picture(export)
         if chosen is not None:
             if self._pictures is None:
-                self._pictures = FileThumbnails(self._context.store.file.parent / "thumbnails")
+                self._pictures = FileThumbnails(
+                    self._context.store.file.parent / "thumbnails", self._context.session.sandbox
+                )
             pixels_or_fault = self._pictures.get(*chosen)
             if pixels_or_fault is not None and not isinstance(pixels_or_fault, str):
                 self._shown[export] = chosen

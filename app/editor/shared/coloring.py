@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
-from halation.nodes import ColorSettings
-
 from ...graph import color_settings
 
 if TYPE_CHECKING:
     from ...authoring.preview.color_fallback import ColorFallback
     from ...authoring.session import Session
+    from ...color.management import ColorManager
 
 
 class ColorContext(Protocol):
@@ -23,6 +22,6 @@ class ColorContext(Protocol):
     def coloring(self) -> ColorFallback: ...
 
 
-def settings_in_use(context: ColorContext) -> ColorSettings:
-    """The color settings of the document, or of the built-in config where its own cannot be read."""
+def find_color_manager(context: ColorContext) -> ColorManager:
+    """How colors are managed in the document; by the built-in config where its own cannot be read."""
     return context.coloring.resolve(color_settings(context.session.root))

@@ -14,6 +14,7 @@ from ...authoring.preferences import Recent
 from ...authoring.recovery.recovery import RecoveredWork
 from ...custom_nodes.plugins import preset_paths
 from ...media.pictures.thumbnail import load_thumbnail
+from ...resources.sandbox import UNRESTRICTED
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import main_button, outline, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -194,7 +195,7 @@ class StartScreen:
         lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
         corner = ImVec2(high.x, low.y + picture_height)
         if self._pictured[path]:
-            texture = self._textures.get(path, lambda: load_thumbnail(picture(path)))
+            texture = self._textures.get(path, lambda: load_thumbnail(picture(path), sandbox=UNRESTRICTED))
             lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
         lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(palette.text), name)
         if imgui.is_item_hovered():

@@ -13,6 +13,7 @@ from ...errors import HalationError
 from ...graph import Graph
 from ...media.layers import split_layer
 from ...media.sequences import find_sequence
+from ...resources.sandbox import Sandbox
 
 EVERY = 1.0
 """Seconds between two looks at most, while the graph changes."""
@@ -37,11 +38,11 @@ class MissingFrames:
         of = session.root, dict(session.bindings)
         if now - self._at > STALE or (now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
             self._at, self._of = now, of
-            self.gaps = find_gaps(session.root, session.bindings)
+            self.gaps = find_gaps(session.root, session.bindings, session.sandbox)
         return self.gaps
 
 
-def find_gaps(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
+def find_gaps(graph: Graph, bindings: Mapping[str, object], sandbox: Sandbox) -> Gaps:
     """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
     paths = [split_layer(str(file))[0] for file in bindings.values() if isinstance(file, str | Path)]
     with suppress(HalationError):
@@ -51,7 +52,7 @@ def find_gaps(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
     gaps: set[tuple[int, int]] = set()
     for path in dict.fromkeys(paths):
         try:
-            sequence = find_sequence(path)
+            sequence = find_sequence(path, sandbox=sandbox)
         except HalationError:
             continue
         if sequence is not None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.background.cache import BackgroundCache
 from ...errors import HalationError
+from ...resources.sandbox import UNRESTRICTED, Sandbox
 
 if TYPE_CHECKING:
     from ...color.transforms import Array
@@ -21,8 +22,8 @@ _IN_MEMORY, _ON_DISK, _WAITING = 400, 2000, 48
 class FileThumbnails:
     """What was asked for last is decoded first. `folder` keeps what was decoded, for the next time."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, sandbox: Sandbox) -> None:
+        self._folder, self._sandbox = folder, sandbox
         self._decoded: BackgroundCache[tuple[Path, float], Array | str] = BackgroundCache(
             "thumbnails", self._load_or_make, _IN_MEMORY, _WAITING, self._tidy
         )
@@ -54,16 +55,16 @@ class FileThumbnails:
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]
         cached_file = self._folder / f"{name}.png"
         with contextlib.suppress(HalationError):
-            return load_thumbnail(cached_file)
+            return load_thumbnail(cached_file, sandbox=UNRESTRICTED)
         try:
-            pixels = make_thumbnail(path, WIDTH, HEIGHT)
+            pixels = make_thumbnail(path, WIDTH, HEIGHT, sandbox=self._sandbox)
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
             return f"{path}: cannot be shown ({fault})"
         with contextlib.suppress(HalationError, OSError):
             self._folder.mkdir(parents=True, exist_ok=True)
-            save_thumbnail(cached_file, pixels)
+            save_thumbnail(cached_file, pixels, sandbox=UNRESTRICTED)
         return pixels
 
     def _tidy(self) -> None:

@@ -8,10 +8,10 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
-from halation.nodes import ColorSettings, Kind
+from halation.nodes import Kind
 
 from ...color.display import to_display
-from ...color.management import DEFAULT_COLOR
+from ...color.management import ColorManager, get_default_color_manager
 from ...graph import OUTPUTS, Graph, Port
 from ...media.comparison.data_range import Array, are_normals, balance_range, find_data_range
 from ...renderer.viewing.look import Look
@@ -71,11 +71,11 @@ def look_of(
     span: tuple[float, float],
     view: str,
     surround: RGB,
-    color: ColorSettings = DEFAULT_COLOR,
+    manager: ColorManager | None = None,
 ) -> Look:
     """What the display needs to know.
 
-    `span` is the range of data, `view` what the picture asks for, `color` how its colors are managed.
+    `span` is the range of data, `view` what the picture asks for, `manager` how its colors are managed.
     """
     region = None
     if state.region is not None:
@@ -97,7 +97,7 @@ def look_of(
         view=state.view or view,
         display=state.display,
         look=state.look,
-        color=color,
+        manager=manager or get_default_color_manager(),
         compare=compare,
         wipe=state.wipe,
         angle=state.wipe_angle,
@@ -122,7 +122,7 @@ def displayed(pixels: Array, look: Look) -> Array:
     if look.meaning != "image":
         return np.clip((rgb_of(pixels) - look.low) / max(look.high - look.low, 1e-6), 0.0, 1.0)
     lit = np.concatenate([rgb_of(pixels) * np.float32(2.0**look.exposure), _alpha(pixels)], axis=2)
-    shown = to_display(lit, look.view, bits=32, display=look.display, look=look.look, color=look.color)[..., :3]
+    shown = to_display(lit, look.view, bits=32, display=look.display, look=look.look, manager=look.manager)[..., :3]
     cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color without alpha is light
     return np.clip(shown, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
 

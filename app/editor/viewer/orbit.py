@@ -173,7 +173,7 @@ def _places(context: ViewerContext, node: Node) -> np.ndarray:
     """Where the scene's triangles are, but for a floor or backdrop around the rest. It was loaded to be shown."""
     name, file, up = (getattr(node, value) for value in ("scene", "file", "up"))
     path = str(PurePath(context.session.graph.folder, file))
-    mesh = load_mesh(SceneFile(path, up) if name == "file" else BuiltInScene(name))
+    mesh = load_mesh(SceneFile(path, up) if name == "file" else BuiltInScene(name), sandbox=context.session.sandbox)
     vertices = cast("np.ndarray", mesh.vertices)
     column = np.cumsum([0, *ATTRIBUTES.values()])[list(ATTRIBUTES).index("object_material_moving")]
     return without_surroundings(vertices[:, :3], vertices[:, column])

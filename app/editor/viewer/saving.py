@@ -39,5 +39,11 @@ def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | N
 
 def _save(context: ViewerContext, path: Path, pixels: np.ndarray) -> None:
     """Display-referred pixels 0..1: decoded, so that the view of the file encodes them as they are."""
-    write_picture(path, {"image": decode_srgb(pixels).astype(np.float32)}, kinds={"image": Kind.IMAGE}, view="none")
+    write_picture(
+        path,
+        {"image": decode_srgb(pixels).astype(np.float32)},
+        kinds={"image": Kind.IMAGE},
+        view="none",
+        sandbox=context.session.sandbox,
+    )
     context.log.add(f"saved {path}")

@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...renderer.viewing.plates import Plate
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet_button, tool, width_of_buttons
 from ..toolkit.words import draw_empty_panel
@@ -158,7 +158,9 @@ class ScopesPanel:
         span = range_of(viewer, meaning, lambda: whole)
         return displayed(
             part,
-            look_of(viewer, sight, meaning, span, view, self._context.palette.surround, settings_in_use(self._context)),
+            look_of(
+                viewer, sight, meaning, span, view, self._context.palette.surround, find_color_manager(self._context)
+            ),
         )
 
     def _image(self, name: str, rgb: np.ndarray, logarithmic: bool, dark: bool) -> np.ndarray:

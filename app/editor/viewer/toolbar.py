@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.display import NO_LOOK, list_displays, list_looks, list_views
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
 from ..toolkit.fields import number
@@ -269,7 +269,7 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
 
 
 def _view(context: ViewerContext, asked: str) -> _ViewerTool:
-    viewer, color = context.viewer, settings_in_use(context)
+    viewer, color = context.viewer, find_color_manager(context)
 
     def menu() -> None:
         if context.coloring.fault:

@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import SetValue
 from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
-from ..shared.coloring import settings_in_use
+from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner
@@ -169,7 +169,7 @@ class Viewer:
             meaning = meaning_of(viewer, shown.kind, samples)
             viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
             look = look_of(
-                viewer, sight, meaning, viewer.span, now.view, palette.surround, settings_in_use(self._context)
+                viewer, sight, meaning, viewer.span, now.view, palette.surround, find_color_manager(self._context)
             )
         texture = self._context.log.attempt(
             lambda: self._context.display.draw("viewer", sight.panel, now.a, now.b, look)

@@ -11,13 +11,16 @@ from ...authoring.background.render_overviews import RenderOverviews
 from ...authoring.log import Log
 from ...authoring.preferences import PreferenceStore, state_folder
 from ...authoring.preview import Preview
+from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.recovery.recovery import RecoveryFile
+from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
 from ...graph import Graph
 from ...inputs.provider import MediaProvider
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
+from ...resources.sandbox import Sandbox
 from ..actions import table
 from ..shared.action import Actions
 from ..shared.stage import DocumentStage
@@ -35,13 +38,13 @@ class SystemClipboard:
         imgui.set_clipboard_text(text)
 
 
-def assemble(device: Device, state: Path | None = None) -> Editor:
+def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Editor:
     """Build an editor on a window's device, with an empty graph. `state` is the folder of everything it remembers."""
     folder = state or state_folder()
     store, log = PreferenceStore(folder), Log()
-    renderer = Renderer(device, budget=store.current.memory_budget * 2**20)
-    renders, session = RenderOverviews(), Session()
-    session.measure = _measure
+    renderer = Renderer(device, budget=store.current.memory_budget * 2**20, sandbox=sandbox)
+    renders, session = RenderOverviews(sandbox), Session(sandbox=sandbox)
+    session.measure = lambda graph, bindings: _measure(graph, bindings, sandbox)
     renderer.pictures.describer = renders.describe_render
     display = Display(device)
     return Editor(
@@ -54,13 +57,15 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
         display,
         Probe(device),
         Interface(store),
+        RenderQueue(sandbox),
+        renders,
+        ColorFallback(sandbox),
         log,
-        renders=renders,
     )
 
 
-def _measure(graph: Graph, bindings: Mapping[str, str]) -> tuple[int, int]:
-    pictures = MediaProvider()
+def _measure(graph: Graph, bindings: Mapping[str, str], sandbox: Sandbox) -> tuple[int, int]:
+    pictures = MediaProvider(sandbox=sandbox)
     return pictures.find_frames(graph, pictures.bind(graph, bindings))
 
 

@@ -10,6 +10,7 @@ from ...authoring.edits.coding import ENDINGS
 from ...errors import HalationError
 from ...media.sequences import find_sequence
 from ...renderer.provenance.recipe import has_recipe
+from ...resources.sandbox import Sandbox
 from ...watch.sequence_files import suggest_patterns
 from ..shared.dialogs import Question
 from ..workflows.documents import DocumentWorkflow
@@ -26,16 +27,16 @@ def take_files(editor: Editor, documents: DocumentWorkflow, paths: Sequence[Path
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         documents.open_graph(graphs[0])
         return
-    if len(paths) == 1 and _has_graph(paths[0]):
+    if len(paths) == 1 and _has_graph(paths[0], editor.session.sandbox):
         ask_graph_or_picture(editor, documents, paths[0])
         return
     add_files(editor, paths)
 
 
-def _has_graph(path: Path) -> bool:
+def _has_graph(path: Path, sandbox: Sandbox) -> bool:
     """True for a picture that Halation rendered, which holds the graph that made it."""
     try:
-        return path.suffix.casefold() not in (".json", *ENDINGS) and has_recipe(path)
+        return path.suffix.casefold() not in (".json", *ENDINGS) and has_recipe(path, sandbox=sandbox)
     except HalationError:
         return False
 
@@ -55,7 +56,7 @@ def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path
 def add_files(editor: Editor, paths: Sequence[Path]) -> None:
     """Make nodes of files."""
     codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
-    files, frames = suggest_patterns([path for path in paths if path not in codes])
+    files, frames = suggest_patterns([path for path in paths if path not in codes], sandbox=editor.session.sandbox)
     files = (*codes, *files)
     at = editor.canvas.pointer
     editor.dialogs.open.discard("start")
@@ -68,7 +69,7 @@ def add_files(editor: Editor, paths: Sequence[Path]) -> None:
         drop(files)
         return
     first, pattern = single[0], frames[single[0]]
-    sequence = find_sequence(str(pattern))
+    sequence = find_sequence(str(pattern), sandbox=editor.session.sandbox)
     count = len(sequence.frames) if sequence else 0
     editor.dialogs.question = Question(
         "One of a sequence",

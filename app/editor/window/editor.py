@@ -47,12 +47,12 @@ class Editor:
     display: Display
     probe: Probe
     interface: Interface
+    exports: RenderQueue
+    renders: RenderOverviews
+    coloring: ColorFallback
     log: Log = field(default_factory=Log)
-    exports: RenderQueue = field(default_factory=RenderQueue)
     watcher: FileWatcher = field(default_factory=FileWatcher)
-    renders: RenderOverviews = field(default_factory=RenderOverviews)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
-    coloring: ColorFallback = field(default_factory=ColorFallback)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     code: CodeState = field(default_factory=CodeState)

@@ -102,7 +102,7 @@ class FrameUpdater:
         editor.watcher.watch(
             session.path,
             find_group_files(session.root),
-            list_sequence_files(find_pictures(session.root, session.bindings)),
+            list_sequence_files(find_pictures(session.root, session.bindings), sandbox=session.sandbox),
             [shader_folder()],
             [self._nodes.folder],
             code_files(session.root),

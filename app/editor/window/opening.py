@@ -11,14 +11,15 @@ from pathlib import Path
 from imgui_bundle import hello_imgui, immapp
 
 from ...authoring.preferences import state_folder
+from ...resources.sandbox import Sandbox
 from .opengl import best_version
 from .window import Window
 
 
-def open_window(path: Path | None, bindings: Mapping[str, str]) -> None:
+def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox) -> None:
     """Run the editor. Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted."""
     state = state_folder()
-    window = Window(path, bindings, version=best_version(), state=state)
+    window = Window(path, bindings, sandbox, version=best_version(), state=state)
     keep_layout(window.params, state)
     with _close_on_signals(window) as signals:
         run(window)

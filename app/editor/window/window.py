@@ -13,6 +13,7 @@ import glfw  # isort: skip
 
 from ...compiler import Form
 from ...renderer.opening import adopt_window
+from ...resources.sandbox import Sandbox
 from ..shared.dialogs import Browse
 from ..theme import fonts, style
 from ..theme.palette import Palette
@@ -43,13 +44,14 @@ class Window:
         self,
         path: Path | None,
         bindings: Mapping[str, str],
+        sandbox: Sandbox,
         *,
         version: tuple[int, int] = (4, 5),
         state: Path | None = None,
         size: tuple[int, int] = SIZE,
         form: Form | None = None,
     ) -> None:
-        self._path, self._bindings, self._state = path, dict(bindings), state
+        self._path, self._bindings, self._sandbox, self._state = path, dict(bindings), sandbox, state
         self._form: Form | None = form
         self.editor: Editor
         self._contexts: Contexts
@@ -124,8 +126,8 @@ class Window:
 
     def _prepare(self) -> None:
         enable_error_recovery()
-        self.device = adopt_window(self._form)
-        self.editor = assemble(self.device, self._state)
+        self.device = adopt_window(self._form, sandbox=self._sandbox)
+        self.editor = assemble(self.device, self._sandbox, self._state)
         open_first(self.editor, self._path, self._bindings)
         self._contexts = compose_contexts(self.editor)
         self._updater = FrameUpdater(self.editor, self._contexts)

@@ -91,7 +91,7 @@ class DocumentWorkflow:
 
         def restore() -> None:
             self.session.restore(recovered)
-            self.recovery.adopt(recovered)
+            self.recovery.adopt(recovered, self.session.sandbox)
             self._show_document()
 
         self._unless_unsaved(lambda: self.log.attempt(restore), "recover")

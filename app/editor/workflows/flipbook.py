@@ -63,7 +63,7 @@ class FlipbookPlayer:
         """Ask for pictures to play, alone or beside others."""
 
         def play(path: Path) -> None:
-            strip = FlipbookStrip.from_file(path)
+            strip = FlipbookStrip.from_file(path, sandbox=self.stage.document.sandbox)
             self.open(*(first, strip) if first else (strip,))
 
         title = f"Compare {first.name} with" if first else "Play pictures"

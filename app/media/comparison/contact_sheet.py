@@ -14,6 +14,7 @@ from ...color.display import to_display
 from ...color.transforms import Array, decode_srgb
 from ...errors import OutputError
 from ...resources.atomic_write import write_atomically
+from ...resources.sandbox import Sandbox
 
 RGB = tuple[float, float, float]
 
@@ -148,7 +149,7 @@ def make_grid_sheet(
     return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
-def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
+def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbox: Sandbox) -> None:
     """Keep a sheet as JPEG, small enough for a page. Raises OutputError."""
     pixels = np.ascontiguousarray((_encode_srgb(light) * 255.0 + 0.5).astype(np.uint8))
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "uint8")
@@ -162,7 +163,7 @@ def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
         if output is None or not (output.close() and succeeded):
             raise OutputError(f"{path}: cannot be written: {oiio.geterror() or 'the encoder gave no reason'}")
 
-    write_atomically(path, encode, pixels.nbytes)
+    write_atomically(path, encode, pixels.nbytes, sandbox=sandbox)
 
 
 @dataclass(frozen=True)

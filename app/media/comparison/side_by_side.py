@@ -10,6 +10,7 @@ import numpy as np
 from halation.nodes import Kind
 
 from ...color.transforms import Array
+from ...resources.sandbox import Sandbox
 from ..pictures.writer import write_picture
 from .contact_sheet import make_sheet, show_data, show_light
 from .metrics import amplify_difference
@@ -25,7 +26,7 @@ class PicturePair:
     view: str = ""
 
 
-def write_side_by_side(path: Path, pairs: Mapping[str, PicturePair], titles: tuple[str, str]) -> None:
+def write_side_by_side(path: Path, pairs: Mapping[str, PicturePair], titles: tuple[str, str], sandbox: Sandbox) -> None:
     """A row for each pair: before, after, and the difference with its largest as white. Raises OutputError."""
     cells: dict[str, Array] = {}
     for name, pair in pairs.items():
@@ -41,4 +42,6 @@ def write_side_by_side(path: Path, pairs: Mapping[str, PicturePair], titles: tup
                 cells[f"{name}: {title}"] = show_data(picture, low, high if high > low else low + 1.0)
         pair_of_pictures = pictures if len(pictures) == len(titles) else (pictures[0], np.zeros_like(pictures[0]))
         cells[f"{name}: difference"] = amplify_difference(pair_of_pictures[1], pair_of_pictures[0])
-    write_picture(path, {"image": make_sheet(cells, len(titles) + 1)}, kinds={"image": Kind.IMAGE}, view="none")
+    write_picture(
+        path, {"image": make_sheet(cells, len(titles) + 1)}, kinds={"image": Kind.IMAGE}, view="none", sandbox=sandbox
+    )

@@ -12,8 +12,9 @@ import numpy as np
 from halation.nodes import BuiltInScene, Scene
 
 from ...errors import InputError
-from ...resources.input_files import check_inside, fingerprint
+from ...resources.input_files import fingerprint
 from ...resources.mesh import ATTRIBUTES, Mesh
+from ...resources.sandbox import Sandbox
 from .built_in import BUILT_IN, MeshPart
 
 Array = np.ndarray
@@ -25,20 +26,22 @@ _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 """From a world whose y points up to one whose z does, as Blender's importers turn it."""
 
 
-def load_mesh(scene: Scene) -> Mesh:
+def load_mesh(scene: Scene, sandbox: Sandbox) -> Mesh:
     """The triangles of a scene, z up.
 
     Raises:
         InputError: the file is missing, holds no triangles, or cannot be read.
     """
-    return _load(scene, "" if isinstance(scene, BuiltInScene) else fingerprint(scene.path))
+    return _load(
+        scene, "" if isinstance(scene, BuiltInScene) else fingerprint(scene.path, sandbox=sandbox), sandbox=sandbox
+    )
 
 
 @lru_cache(maxsize=8)
-def _load(scene: Scene, mark: str) -> Mesh:
+def _load(scene: Scene, mark: str, sandbox: Sandbox) -> Mesh:
     if isinstance(scene, BuiltInScene):
         return _join_parts(BUILT_IN[scene.name]())
-    parts = _read_parts(scene.path)
+    parts = _read_parts(scene.path, sandbox=sandbox)
     if scene.up == "y":
         parts = [part.rotate(_Y_UP) for part in parts]
     return _join_parts(parts)
@@ -64,7 +67,7 @@ def _join_parts(parts: list[MeshPart]) -> Mesh:
     return Mesh(digest.hexdigest(), all_vertices, all_indices)
 
 
-def _read_parts(path: str) -> list[MeshPart]:
+def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
     """The meshes of a file where they stand."""
     import trimesh
 
@@ -72,7 +75,7 @@ def _read_parts(path: str) -> list[MeshPart]:
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
     try:
-        scene: Any = trimesh.load_scene(path, resolver=_make_resolver(path))
+        scene: Any = trimesh.load_scene(path, resolver=_make_resolver(path, sandbox=sandbox))
         nodes = [_read_part(scene, name) for name in scene.graph.nodes_geometry]
     except InputError:
         raise
@@ -87,13 +90,13 @@ def _read_parts(path: str) -> list[MeshPart]:
     return parts
 
 
-def _make_resolver(path: str) -> Any:
+def _make_resolver(path: str, sandbox: Sandbox) -> Any:
     """Finds the files that a mesh names, such as buffers and materials, as far as they may be read."""
     from trimesh.resolvers import FilePathResolver
 
     class SandboxedResolver(FilePathResolver):
         def get(self, name: str) -> bytes:
-            check_inside(Path(self.parent, name.strip()))
+            sandbox.check(Path(self.parent, name.strip()))
             return super().get(name)
 
     return SandboxedResolver(path)
@@ -138,7 +141,7 @@ def _read_normals(mesh: Any) -> Array:
     )
     corners, count = faces.ravel(), len(mesh.vertices)
     sums = [np.bincount(corners, (angles * normals[:, axis : axis + 1]).ravel(), count) for axis in range(3)]
-    return unitize(np.stack(sums, axis=1))
+    return np.asarray(unitize(np.stack(sums, axis=1)))
 
 
 def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:

@@ -12,6 +12,7 @@ from halation.nodes import Size
 from ...errors import InputError
 from ...resources.input_files import check_file, fingerprint
 from ...resources.machine import available_cores
+from ...resources.sandbox import Sandbox
 from ..channels import ChannelPart, group_channels
 from ..layers import ImageInfo
 from ..limits import check_size
@@ -46,9 +47,9 @@ oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
 
 
 @contextmanager
-def open_picture(path: str | Path) -> Iterator[oiio.ImageInput]:
+def open_picture(path: str | Path, sandbox: Sandbox) -> Iterator[oiio.ImageInput]:
     """Open a file; alpha is left as stored, because it must be applied to linear color. Raises InputError."""
-    file = check_file(path)
+    file = check_file(path, sandbox=sandbox)
     settings = oiio.ImageSpec()
     settings.attribute("oiio:UnassociatedAlpha", 1)
     picture = None
@@ -64,7 +65,7 @@ def open_picture(path: str | Path) -> Iterator[oiio.ImageInput]:
             picture.close()
 
 
-def describe_picture(picture: oiio.ImageInput, path: str) -> ImageInfo:
+def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> ImageInfo:
     """The header of an open file. Parts of another size (previews, pages) are left out. Raises InputError."""
     size = _upright_size(picture.spec())
     check_size(path, size)
@@ -80,7 +81,9 @@ def describe_picture(picture: oiio.ImageInput, path: str) -> ImageInfo:
         index += 1
     picture.geterror()  # that there is no further part
     format = picture.format_name()
-    return ImageInfo(path, size, group_channels(parts), fingerprint(path), format, is_whole and format in _BY_ROWS)
+    return ImageInfo(
+        path, size, group_channels(parts), fingerprint(path, sandbox=sandbox), format, is_whole and format in _BY_ROWS
+    )
 
 
 def read_orientation(spec: oiio.ImageSpec) -> int:

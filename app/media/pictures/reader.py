@@ -9,6 +9,7 @@ import OpenImageIO as oiio
 
 from ...color.transforms import Array
 from ...errors import InputError
+from ...resources.sandbox import Sandbox
 from ..convert import LayerRequest, Pixels, convert_layer, select_channels
 from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
@@ -28,10 +29,10 @@ def scale_integers(block: Array, info: ImageInfo, spec: oiio.ImageSpec) -> Array
     return scale_to_unit(block, spec) if block.dtype == np.uint32 and info.format != "openexr" else block
 
 
-def read_picture_layers(path: str, requests: Sequence[LayerRequest]) -> list[Pixels]:
+def read_picture_layers(path: str, requests: Sequence[LayerRequest], sandbox: Sandbox) -> list[Pixels]:
     """Read layers of one file. Raises InputError."""
-    with open_picture(path) as picture:
-        info = describe_picture(picture, path)
+    with open_picture(path, sandbox=sandbox) as picture:
+        info = describe_picture(picture, path, sandbox=sandbox)
         layers = [find_layer(info, request.layer) for request in requests]
         results: list[Pixels] = []
         for request, layer, block in zip(requests, layers, decode_layers(picture, info, layers), strict=True):

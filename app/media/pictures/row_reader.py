@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from ...color.transforms import Array
 from ...errors import InputError
+from ...resources.sandbox import Sandbox
 from ..convert import LayerRequest, Pixels, convert_layer, select_channels
 from ..layers import ImageInfo, Layer, find_layer
 from ..limits import check_memory
@@ -20,7 +21,7 @@ _MORE_ROWS = 16
 block of scan lines in EXR files with ZIP compression (OpenEXR file layout): fewer would decode the same block again."""
 
 
-def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
+def read_rows(path: str, request: LayerRequest, first: int, end: int, sandbox: Sandbox) -> Pixels:
     """Rows `first` to before `end` of what `read_layer` returns, of a file that can be read by rows (`by_rows`).
 
     A pixel that is not finite is repaired from its neighbors, and a repaired pixel counts as a finite neighbor. So the
@@ -30,8 +31,8 @@ def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
     Raises:
         InputError: as `read_layer`.
     """
-    with open_picture(path) as picture:
-        info = describe_picture(picture, path)
+    with open_picture(path, sandbox=sandbox) as picture:
+        info = describe_picture(picture, path, sandbox=sandbox)
         layer = find_layer(info, request.layer)
         picture.seek_subimage(layer.part, 0)
         spec = picture.spec()

@@ -12,6 +12,7 @@ from halation.nodes import Kind, Size
 from ...color.encoding import Encoding
 from ...color.transforms import Array
 from ...resources.atomic_write import replace_file
+from ...resources.sandbox import Sandbox
 from ..metadata import add_metadata
 from .writer import Precision, encode_exr_parts, encoder_error, open_encoder
 
@@ -36,6 +37,7 @@ class ScanlineWriter:
         compression: str,
         encoding: Encoding,
         metadata: Mapping[str, Any],
+        sandbox: Sandbox,
     ) -> None:
         self._path, self._size, self._name, self._kind, self._metadata = path, size, name, kind, metadata
         self._precision: Precision = precision
@@ -43,7 +45,7 @@ class ScanlineWriter:
         self._output = open_encoder(path, "openexr")
         self._row = 0
         self._open = ExitStack()
-        self._replacement = self._open.enter_context(replace_file(path))
+        self._replacement = self._open.enter_context(replace_file(path, sandbox=sandbox))
 
     def add(self, rows: Array) -> None:
         """Write the next rows: [rows, width, channels]."""

@@ -16,6 +16,7 @@ from ...color.display import to_display
 from ...color.transforms import Array, to_three_channels
 from ...errors import InputError, OutputError
 from ...resources.atomic_write import write_atomically
+from ...resources.sandbox import Sandbox
 from ..metadata import read_metadata
 from .open import describe_fault, open_picture
 from .writer import write_picture
@@ -52,10 +53,10 @@ class StoredPart:
         return int(np.count_nonzero(np.any(wrong, axis=2)))
 
 
-def read_stored_parts(path: str | Path) -> dict[str, StoredPart]:
+def read_stored_parts(path: str | Path, sandbox: Sandbox) -> dict[str, StoredPart]:
     """The parts of a file by name. Nothing is repaired or converted. Raises InputError."""
     count = 0
-    with open_picture(path) as handle:
+    with open_picture(path, sandbox=sandbox) as handle:
         while handle.seek_subimage(count, 0):
             count += 1
     settings = oiio.ImageSpec()
@@ -73,16 +74,16 @@ def read_stored_parts(path: str | Path) -> dict[str, StoredPart]:
     return parts
 
 
-def describe_maker(path: str | Path) -> str:
+def describe_maker(path: str | Path, sandbox: Sandbox) -> str:
     """What rendered a picture: renderer, driver and version as its header has them, "" where it does not say."""
-    attributes = read_metadata(path)
+    attributes = read_metadata(path, sandbox=sandbox)
     parts = [str(attributes[key]) for key in _MAKER if attributes.get(key)]
     if len(parts) > 1 and _MAKER[2] in attributes:
         parts[-1] = f"Halation {parts[-1]}"
     return ", ".join(parts)
 
 
-def copy_picture(path: Path, source: Path) -> None:
+def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
     """Replace a file by a copy of another, whole or not at all; its folder is made. Raises OutputError."""
 
     def copy(name: str) -> None:
@@ -92,7 +93,7 @@ def copy_picture(path: Path, source: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as refusal:
         raise OutputError(f"{path}: its folder cannot be made ({refusal.strerror}); choose another") from None
-    write_atomically(path, copy, source.stat().st_size)
+    write_atomically(path, copy, source.stat().st_size, sandbox=sandbox)
 
 
 def encode_for_viewing(part: StoredPart, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
@@ -116,9 +117,9 @@ def encode_png(codes: Array) -> bytes:
         return path.read_bytes()
 
 
-def write_difference(path: Path, differences: Mapping[str, Array]) -> None:
+def write_difference(path: Path, differences: Mapping[str, Array], sandbox: Sandbox) -> None:
     """Absolute differences of layers as an EXR of 32 bits. Raises OutputError."""
-    write_picture(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float")
+    write_picture(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float", sandbox=sandbox)
 
 
 def _to_codes(numbers: Array) -> Array:

@@ -12,6 +12,7 @@ from ...color.display import NO_VIEW, to_display
 from ...color.transforms import Array
 from ...errors import InputError
 from ...resources.atomic_write import write_atomically
+from ...resources.sandbox import Sandbox
 from ..info import read_info
 from ..layers import find_layer
 from ..pixels import read_layer
@@ -19,7 +20,7 @@ from ..pixels import read_layer
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 
 
-def make_thumbnail(path: str | Path, width: int, height: int) -> Array:
+def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
     """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
 
     Floating-point color is seen through the default view; data and what is encoded already are shown as they are.
@@ -27,8 +28,8 @@ def make_thumbnail(path: str | Path, width: int, height: int) -> Array:
     Raises:
         InputError: as `media.read`.
     """
-    layer = find_layer(read_info(path), "")
-    pixels = read_layer(path, "", Kind.IMAGE).array
+    layer = find_layer(read_info(path, sandbox=sandbox), "")
+    pixels = read_layer(path, "", Kind.IMAGE, sandbox=sandbox).array
     step = max(1, min(pixels.shape[1] // (2 * width), pixels.shape[0] // (2 * height)))
     small = np.ascontiguousarray(pixels[::step, ::step, :3], dtype=np.float32)
     scale = min(width / small.shape[1], height / small.shape[0], 1.0)
@@ -47,7 +48,7 @@ def list_readable_endings() -> frozenset[str]:
     return frozenset(f".{ending.lower()}" for _, _, endings in entries for ending in endings.split(",") if ending)
 
 
-def load_thumbnail(path: str | Path) -> Array:
+def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
     """The bytes of an 8-bit RGB file, [h, w, 3] of uint8. Raises InputError."""
     picture = oiio.ImageBuf(str(path))
     pixels = picture.get_pixels(oiio.UINT8) if Path(path).is_file() and picture.read() else None
@@ -57,7 +58,7 @@ def load_thumbnail(path: str | Path) -> Array:
     return np.asarray(pixels)
 
 
-def save_thumbnail(path: str | Path, pixels: Array) -> None:
+def save_thumbnail(path: str | Path, pixels: Array, sandbox: Sandbox) -> None:
     """Keep [h, w, 3] of uint8 as PNG. Raises OutputError."""
     height, width = pixels.shape[:2]
 
@@ -67,4 +68,4 @@ def save_thumbnail(path: str | Path, pixels: Array) -> None:
             output.write_image(np.ascontiguousarray(pixels))
             output.close()
 
-    write_atomically(path, encode, pixels.nbytes)
+    write_atomically(path, encode, pixels.nbytes, sandbox=sandbox)

@@ -17,6 +17,7 @@ from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
 from ...resources.render_choices import Precision
+from ...resources.sandbox import Sandbox
 from ..channels import is_depth
 from ..metadata import add_metadata
 from .finite import to_half
@@ -58,6 +59,7 @@ def write_picture(
     view: str = "",
     metadata: Mapping[str, Any] | None = None,
     encoding: Encoding | None = None,
+    sandbox: Sandbox,
 ) -> None:
     """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
 
@@ -86,7 +88,7 @@ def write_picture(
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
-    write_atomically(path, _make_encoder(path, format, parts), room)
+    write_atomically(path, _make_encoder(path, format, parts), room, sandbox=sandbox)
 
 
 def stores_halves(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
@@ -102,10 +104,11 @@ def check_destination(
     compression: str = "zip",
     view: str = "",
     encoding: Encoding | None = None,
+    sandbox: Sandbox,
 ) -> None:
     """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""
     _check_layers(path, kinds, sizes, compression, encoding or Encoding(view))
-    check_writable(path)
+    check_writable(path, sandbox=sandbox)
 
 
 def _check_layers(

@@ -25,6 +25,7 @@ from typing import Any
 from halation.nodes import Size
 
 from ...errors import InputError
+from ...resources.sandbox import Sandbox
 from .library import HOW_TO_INSTALL, load_pyav
 
 _CHECKED_FRAMES = 8
@@ -100,7 +101,7 @@ class VideoInfo:
 
 
 @contextmanager
-def open_video(path: str) -> Iterator[tuple[Any, Any, Any]]:
+def open_video(path: str, sandbox: Sandbox) -> Iterator[tuple[Any, Any, Any]]:
     """An open container, its first stream of pictures, and what decodes that.
 
     Raises:
@@ -142,19 +143,19 @@ def describe_video_fault(error: Exception) -> str:
 
 
 @lru_cache(maxsize=64)
-def survey_video(path: str, mark: str) -> tuple[VideoInfo, FrameIndex]:
+def survey_video(path: str, mark: str, sandbox: Sandbox) -> tuple[VideoInfo, FrameIndex]:
     """Look through a video; the same version of a file, which `mark` tells, is looked through once.
 
     Raises:
         InputError: it cannot be read, or has no frames.
     """
     av = load_pyav()
-    with open_video(path) as (container, stream, decoder):
+    with open_video(path, sandbox=sandbox) as (container, stream, decoder):
         try:
             index = _index_packets(container, stream)
         except av.FFmpegError as error:
             raise InputError(f"{path}: {describe_video_fault(error)}") from error
-    with open_video(path) as (container, stream, decoder):
+    with open_video(path, sandbox=sandbox) as (container, stream, decoder):
         try:
             decoded_frames = decode_frames(container, stream, decoder)
             first = list(islice(decoded_frames, _CHECKED_FRAMES))

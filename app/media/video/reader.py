@@ -16,6 +16,7 @@ from threading import Lock
 from typing import Any
 
 from ...errors import InputError
+from ...resources.sandbox import Sandbox
 from .index import FrameIndex, KeyFrame, decode_frames, demux_packets, describe_video_fault, open_video, survey_video
 from .library import load_pyav
 
@@ -26,23 +27,23 @@ _NEAR = 12
 and broadcast is 12 to 15 frames."""
 
 
-def read_frame(path: str, mark: str, number: int) -> Any:
+def read_frame(path: str, mark: str, number: int, sandbox: Sandbox) -> Any:
     """A frame of a video as PyAV has it; the first is 1.
 
     Raises:
         InputError: there is no such frame, or it is damaged.
     """
-    facts, _ = survey_video(path, mark)
+    facts, _ = survey_video(path, mark, sandbox=sandbox)
     if not 1 <= number <= facts.count:
         raise InputError(f"{path}: has no frame {number}, only 1-{facts.count}")
-    return _open_reader(path, mark).read_frame(number)
+    return _open_reader(path, mark, sandbox=sandbox).read_frame(number)
 
 
 class VideoReader:
     """One open video. `frame` may be called on any thread."""
 
-    def __init__(self, path: str, mark: str) -> None:
-        self.path, self._mark = path, mark
+    def __init__(self, path: str, mark: str, sandbox: Sandbox) -> None:
+        self.path, self._mark, self._sandbox = path, mark, sandbox
         self._lock = Lock()
         self._resources = ExitStack()
         self._streams: tuple[Any, Any, Any] = (None, None, None)
@@ -64,7 +65,7 @@ class VideoReader:
                 return self._cache[number]
             try:
                 if self._index is None:
-                    self._index = survey_video(self.path, self._mark)[1]
+                    self._index = survey_video(self.path, self._mark, sandbox=self._sandbox)[1]
                     self._reopen()
                 frame = self._seek_frame(self._index, number) if self._index.times else self._count_to(number)
             except (av.FFmpegError, MemoryError) as error:
@@ -156,7 +157,7 @@ class VideoReader:
         """Open it anew, at the beginning."""
         self._resources.close()
         self._position = 0
-        self._streams = self._resources.enter_context(open_video(self.path))
+        self._streams = self._resources.enter_context(open_video(self.path, sandbox=self._sandbox))
         return self._streams
 
 
@@ -165,5 +166,5 @@ def _frame_bytes(frame: Any) -> int:
 
 
 @lru_cache(maxsize=6)
-def _open_reader(path: str, mark: str) -> VideoReader:
-    return VideoReader(path, mark)
+def _open_reader(path: str, mark: str, sandbox: Sandbox) -> VideoReader:
+    return VideoReader(path, mark, sandbox=sandbox)

@@ -15,6 +15,7 @@ from halation.nodes import Kind, Size
 from ...color.encoding import Encoding
 from ...errors import OutputError
 from ...resources.atomic_write import check_writable, replace_file
+from ...resources.sandbox import Sandbox
 from ..pictures.writer import choose_shown_layer
 from .codecs import find_codec
 from .library import load_pyav
@@ -40,12 +41,18 @@ _NTSC = 1001
 
 
 def check_video(
-    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, codec: str, encoding: Encoding
+    path: str | Path,
+    kinds: Mapping[str, Kind],
+    sizes: Mapping[str, Size],
+    *,
+    codec: str,
+    encoding: Encoding,
+    sandbox: Sandbox,
 ) -> None:
     """Refuse, before there are pixels, what a `VideoWriter` would refuse. Raises UsageError, OutputError."""
     encoding.check_names()
     find_codec(path, codec, sizes[choose_shown_layer(path, kinds)])
-    check_writable(path)
+    check_writable(path, sandbox=sandbox)
 
 
 class VideoWriter:
@@ -66,13 +73,14 @@ class VideoWriter:
         deep: bool = False,
         encoding: Encoding | None = None,
         metadata: Mapping[str, Any] | None = None,
+        sandbox: Sandbox,
     ) -> None:
         """Open it. Raises UsageError for what cannot be, OutputError where nothing can be written."""
         self.path, self.size, self._rate = Path(path), size, to_exact_rate(rate)
         self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
         self._format, self._count = self._codec.pixels[deep], 0
         self._av, self._resources = load_pyav(), ExitStack()
-        self._replacement = self._resources.enter_context(replace_file(path, self.path.suffix))
+        self._replacement = self._resources.enter_context(replace_file(path, sandbox, self.path.suffix))
         try:
             self._container, self._stream = self._open_container(_choose_tags(metadata or {}))
         except BaseException:

@@ -12,11 +12,13 @@ from msgspec.structs import replace
 
 from ... import media
 from ...color.encoding import Encoding
+from ...color.management import get_color_manager
 from ...compiler import Plan, Precision
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
 from ...resources.picture import Picture
+from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
 
 
@@ -58,13 +60,13 @@ class Destination(Struct, frozen=True):
 
 
 def plan_destinations(
-    graph: Graph, wanted: RenderRequest, writing: OutputSettings, frames: Sequence[int]
+    graph: Graph, wanted: RenderRequest, writing: OutputSettings, frames: Sequence[int], sandbox: Sandbox
 ) -> dict[int, tuple[Destination, ...]]:
     """The files of every frame; an EXR may be named for several outputs.
 
     Raises UsageError, also where several frames would go into one file.
     """
-    files = _group_outputs(graph, wanted, writing)
+    files = _group_outputs(graph, wanted, writing, sandbox)
     for file in files:
         check_numbered(str(file.path), frames)
     return {frame: tuple(replace(file, path=_name_at_frame(file.path, frame)) for file in files) for frame in frames}
@@ -76,7 +78,9 @@ def _name_at_frame(path: Path, frame: int) -> Path:
     return path if pattern is None else Path(pattern.name(frame))
 
 
-def _group_outputs(graph: Graph, wanted: RenderRequest, writing: OutputSettings) -> tuple[Destination, ...]:
+def _group_outputs(
+    graph: Graph, wanted: RenderRequest, writing: OutputSettings, sandbox: Sandbox
+) -> tuple[Destination, ...]:
     """What is to be written, by the names that were given."""
     names = tuple(wanted.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
@@ -95,11 +99,11 @@ def _group_outputs(graph: Graph, wanted: RenderRequest, writing: OutputSettings)
         if same in files and not (layered and name and name not in files[same]):
             raise UsageError(f"-o {path}: this file is given twice; give every output a file of its own")
         files[same] = (*files.get(same, ()), *((name,) if name else names))
-    return tuple(_describe_destination(graph, wanted, writing, path, files[path]) for path in files)
+    return tuple(_describe_destination(graph, wanted, writing, path, files[path], sandbox) for path in files)
 
 
 def check_destinations(
-    found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: OutputSettings
+    found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: OutputSettings, sandbox: Sandbox
 ) -> None:
     """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
 
@@ -111,9 +115,13 @@ def check_destinations(
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
         sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
         if is_video(str(file.path)):
-            media.check_video(file.path, file.kinds, sizes, codec=writing.codec, encoding=file.encoding)
+            media.check_video(
+                file.path, file.kinds, sizes, codec=writing.codec, encoding=file.encoding, sandbox=sandbox
+            )
             continue
-        media.check_destination(file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding)
+        media.check_destination(
+            file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding, sandbox=sandbox
+        )
 
 
 def select_half_outputs(files: Sequence[Destination], writing: OutputSettings) -> frozenset[str]:
@@ -129,7 +137,7 @@ def select_half_outputs(files: Sequence[Destination], writing: OutputSettings) -
 
 
 def _describe_destination(
-    graph: Graph, wanted: RenderRequest, writing: OutputSettings, path: Path, names: Sequence[str]
+    graph: Graph, wanted: RenderRequest, writing: OutputSettings, path: Path, names: Sequence[str], sandbox: Sandbox
 ) -> Destination:
     layers: dict[str, str] = {}
     kinds: dict[str, Kind] = {}
@@ -143,7 +151,8 @@ def _describe_destination(
         layers[layer], kinds[layer] = name, _find_kind(graph, _find_port(wanted, name))
     first = _find_port(wanted, names[0]) if names else Port("", "")
     asked = graph.outputs[first.socket].view if first.node == OUTPUTS and not writing.space else ""
-    encoding = Encoding(writing.view or asked, writing.display, writing.look, writing.space, color_settings(graph))
+    manager = get_color_manager(color_settings(graph), sandbox)
+    encoding = Encoding(writing.view or asked, writing.display, writing.look, writing.space, manager)
     return Destination(path, layers, kinds, encoding)
 
 

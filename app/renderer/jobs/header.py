@@ -11,11 +11,11 @@ from hashlib import blake2b
 from typing import Any
 
 from ... import document, media
-from ...color.management import digest_color_settings
 from ...compiler import Pass, Plan, Target
 from ...errors import HalationError
 from ...graph import Graph
 from ...graph.paths import inline_files
+from ...resources.sandbox import Sandbox
 from ...version import VERSION
 from ..engine import RenderRequest
 from .destinations import Destination, OutputSettings
@@ -47,13 +47,13 @@ def make_header(
     """
     found: dict[str, Any] = {}
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):
-        found = media.read_metadata(path) | found
+        found = media.read_metadata(path, sandbox=hashes.sandbox) | found
     found = {name: item for name, item in found.items() if not name.startswith(PREFIX)}
     found["halation:graph"] = graph
     found["halation:version"] = VERSION
     found["halation:renderer"] = target.renderer
     found["halation:settings"] = format_settings(wanted, target, writing, file, frames if plan.memories else None)
-    if color := digest_color_settings(file.encoding.color):
+    if color := file.encoding.manager.digest:
         found["halation:color"] = color
     for source in sources:
         found |= describe_source(source, hashes)
@@ -104,24 +104,24 @@ def compute_frame_key(
         before = _hash_parts(graph, led, wanted.scale, wanted.size, plan.target.form)
     keys = _compute_content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
-    seen = (file.view, writing.display, writing.look, writing.space, digest_color_settings(file.encoding.color))
+    seen = (file.view, writing.display, writing.look, writing.space, file.encoding.manager.digest)
     how = (file.path.suffix, *seen, writing.compression, writing.precision)
     return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
 
 
-def has_key(file: Destination) -> bool:
+def has_key(file: Destination, sandbox: Sandbox) -> bool:
     """True if that file is there and says what it was made of."""
-    return bool(_read_key(file))
+    return bool(_read_key(file, sandbox=sandbox))
 
 
-def matches_key(file: Destination, key: str) -> bool:
+def matches_key(file: Destination, key: str, sandbox: Sandbox) -> bool:
     """True if that file is there and says that it was made with that key."""
-    return _read_key(file) == key
+    return _read_key(file, sandbox=sandbox) == key
 
 
-def _read_key(file: Destination) -> object:
+def _read_key(file: Destination, sandbox: Sandbox) -> object:
     try:
-        return media.read_metadata(file.path).get(_KEY) if file.path.is_file() else None
+        return media.read_metadata(file.path, sandbox=sandbox).get(_KEY) if file.path.is_file() else None
     except HalationError:  # whatever it is, it is not what would be written
         return None
 

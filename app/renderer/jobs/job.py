@@ -134,19 +134,19 @@ class _Job:
         progress: JobProgress | None,
         frames: tuple[int, ...],
     ) -> None:
-        self._files = plan_destinations(graph, wanted, writing, frames)
+        self._files = plan_destinations(graph, wanted, writing, frames, renderer.sandbox)
         first = self._files[frames[0]]
         by_rows = select_row_outputs(first) if renderer.device.target.memory else frozenset[str]()
         wanted = replace(wanted, halves=select_half_outputs(first, writing), by_rows=by_rows)
         self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
         self._resume, self._progress, self._frames = resume, progress, frames
         self._reel = FrameRenderer(renderer, graph, wanted)
-        self._hashes = FileHashes()
+        self._hashes = FileHashes(sandbox=self._renderer.sandbox)
         self._sources = SourceFinder(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
         self._behind = WriteQueue[FrameReport]()
         self._fault: HalationError | None = None
         self._reports: list[FrameReport] = []
-        self._films = VideoWriters(writing, self._rate)
+        self._films = VideoWriters(writing, self._rate, renderer.sandbox)
         self._strips: ScanlineWriters | None = None
         self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
@@ -209,7 +209,7 @@ class _Job:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._reel.plan(frame), self._files[frame]
             reading = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            check_destinations(files, plan, reading, self._writing)
+            check_destinations(files, plan, reading, self._writing, sandbox=self._renderer.sandbox)
             task = _Task(frame, files, plan, self._sources.find(plan, frame, self._reel.history_start(frame)))
             self.seconds["compile"] += time.perf_counter() - started
             if self._resume and self._is_done(task):
@@ -220,21 +220,23 @@ class _Job:
 
     def _is_done(self, task: _Task) -> bool:
         """True if the files of a frame are there and would come out the same."""
-        if not all(map(has_key, task.files)):
+        if not all(has_key(file, self._renderer.sandbox) for file in task.files):
             return False
         wanted = replace(self._wanted, frame=task.frame)
         keys = (
             compute_frame_key(self._text, wanted, task.plan, file, self._writing, task.sources, self._hashes)
             for file in task.files
         )
-        return all(map(matches_key, task.files, keys))
+        return all(matches_key(file, key, self._renderer.sandbox) for file, key in zip(task.files, keys, strict=True))
 
     def _render_frame(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
         started, passes = time.perf_counter(), 0
         self._hashes.begin(task.sources)
         kept = self._renderer.runner.lease()
-        self._strips = ScanlineWriters(task.plan, task.files, self._writing, lambda file: self._make_header(task, file))
+        self._strips = ScanlineWriters(
+            task.plan, task.files, self._writing, lambda file: self._make_header(task, file), self._renderer.sandbox
+        )
         for run in self._reel.steps(task.frame, kept, following=following.frame if following else None):
             run.rows = self._strips.take
             with run:
@@ -293,6 +295,7 @@ class _Job:
                     compression=self._writing.compression,
                     metadata=said,
                     encoding=file.encoding,
+                    sandbox=self._renderer.sandbox,
                 )
             self.seconds["write"] += time.perf_counter() - started
             pictures = (file.path for file in task.files if file.path not in self._writing.videos)

@@ -18,6 +18,7 @@ from msgspec import Struct, field
 from ...errors import UsageError
 from ...graph.frames import is_video
 from ...resources.render_choices import DEFAULT_TIMEOUT, Form, Precision
+from ...resources.sandbox import Sandbox
 
 
 class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -29,6 +30,8 @@ class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_un
     name "" stands for all outputs.
     """
 
+    sandbox: Sandbox
+    """Which files may be read and written, wherever the job runs."""
     graph: str = "-"
     document: str = ""
     inputs: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -55,8 +58,6 @@ class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_un
     processes: int = 1
     timeout: float = DEFAULT_TIMEOUT
     """Seconds that a pass of code in the graph may take; 0 for no limit."""
-    root: str = ""
-    """The folder below which all files must lie; "" for no limit."""
 
     @property
     def files(self) -> tuple[tuple[str, Path], ...]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...compiler import Plan
+from ...resources.sandbox import Sandbox
 from ..execution.decoding import Array
 from .destinations import Destination, OutputSettings
 
@@ -33,9 +34,10 @@ class ScanlineWriters:
         files: Sequence[Destination],
         writing: OutputSettings,
         said: Callable[[Destination], Mapping[str, Any]],
+        sandbox: Sandbox,
     ) -> None:
         names = plan.tiling.by_rows if plan.tiling else frozenset[str]()
-        self._plan, self._writing, self._said = plan, writing, said
+        self._plan, self._writing, self._said, self._sandbox = plan, writing, said, sandbox
         self._files = [file for file in files if names.issuperset(file.layers.values())]
         self._open: dict[Path, ScanlineWriter] = {}
 
@@ -58,6 +60,7 @@ class ScanlineWriters:
                     compression=self._writing.compression,
                     encoding=file.encoding,
                     metadata=self._said(file),
+                    sandbox=self._sandbox,
                 )
             self._open[file.path].add(pixels)
 

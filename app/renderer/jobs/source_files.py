@@ -20,6 +20,7 @@ from ...graph import INPUTS, OUTPUTS, Graph
 from ...graph.frames import format_frames
 from ...resources.input_files import content_hash, fingerprint
 from ...resources.picture import Picture
+from ...resources.sandbox import Sandbox
 
 if TYPE_CHECKING:
     from halation.nodes import Missing
@@ -46,7 +47,8 @@ class SourceFile(Struct, frozen=True):
 class FileHashes:
     """SHA-256 of files, computed on another thread, once for every version of a file."""
 
-    def __init__(self) -> None:
+    def __init__(self, sandbox: Sandbox) -> None:
+        self.sandbox = sandbox
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="hash")
         self._found: dict[tuple[str, str], Future[str]] = {}
         self._chains: dict[str, tuple[tuple[str, ...], hashlib._Hash]] = {}
@@ -79,9 +81,9 @@ class FileHashes:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _start(self, path: str) -> Future[str]:
-        key = (path, fingerprint(path))
+        key = (path, fingerprint(path, self.sandbox))
         if key not in self._found:
-            self._found[key] = self._pool.submit(content_hash, path)
+            self._found[key] = self._pool.submit(content_hash, path, self.sandbox)
         return self._found[key]
 
 
@@ -109,7 +111,7 @@ class SourceFinder:
         layer = pictures[0].layer if owner.startswith(f"{INPUTS}.") else ""
         source = SourceFile(owner, pictures[0].path, layer)
         path, missing = self._picture_paths.get(owner, ("", "error"))
-        sequence = media.find_sequence(path) if path else None
+        sequence = media.find_sequence(path, sandbox=self._pictures.sandbox) if path else None
         if sequence is None or not (lead or len({picture.path for picture in pictures}) > 1):
             return source
         led = self._led.setdefault(owner, {})

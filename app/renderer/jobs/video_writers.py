@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import media
+from ...resources.sandbox import Sandbox
 from ..execution.decoding import Array
 from .destinations import Destination, OutputSettings
 
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 class VideoWriters:
     """Opened when their first frame comes; what is not finished leaves nothing behind."""
 
-    def __init__(self, writing: OutputSettings, rate: Callable[[], float | Fraction]) -> None:
-        self._writing, self._rate = writing, rate
+    def __init__(self, writing: OutputSettings, rate: Callable[[], float | Fraction], sandbox: Sandbox) -> None:
+        self._writing, self._rate, self._sandbox = writing, rate, sandbox
         self._open: dict[Path, media.VideoWriter] = {}
 
     def add(self, file: Destination, layers: Mapping[str, Array], said: Mapping[str, Any]) -> None:
@@ -33,6 +34,7 @@ class VideoWriters:
                 deep=self._writing.precision == "float",
                 encoding=file.encoding,
                 metadata=said,
+                sandbox=self._sandbox,
             )
         self._open[file.path].add(layers, file.kinds)
 

@@ -17,7 +17,7 @@ from ...errors import InputError, UsageError
 from ...graph import INPUTS, Graph, did_you_mean
 from ...graph.frames import Pattern
 from ...graph.paths import change_paths, relocate_path
-from ...resources.sandbox import outside
+from ...resources.sandbox import Sandbox
 from ..jobs.source_files import FileHashes
 from .recipe import Recipe, RecordedFile, read_recipe
 
@@ -45,12 +45,12 @@ class FileFinder:
     below the folders of `search`, there under other names too.
     """
 
-    def __init__(self, recipe: Recipe, given: Mapping[str, str], search: Sequence[Path]) -> None:
+    def __init__(self, recipe: Recipe, given: Mapping[str, str], search: Sequence[Path], sandbox: Sandbox) -> None:
         self._recipe, self._search = recipe, search
         self._texts = {owner: text for owner, (text, _) in find_path_texts(recipe.graph).items()}
         self._given = {self._resolve_owner(name): path for name, path in given.items()}
         self._bases = (recipe.path.parent, Path(), *search, presets()[0].parent)
-        self._hashes = FileHashes()
+        self._hashes, self._sandbox = FileHashes(sandbox), sandbox
         self._others: dict[str, str] | None = None
 
     def find_all(self) -> tuple[LocatedFile, ...]:
@@ -65,7 +65,11 @@ class FileFinder:
         return tuple(
             LocatedFile(used, "same", path)
             for used in self._recipe.used
-            if (path := next((path for path in self._list_candidates(used) if _exists(used, path)), ""))
+            if (
+                path := next(
+                    (path for path in self._list_candidates(used) if _exists(used, path, sandbox=self._sandbox)), ""
+                )
+            )
         )
 
     def _resolve_owner(self, name: str) -> str:
@@ -92,13 +96,13 @@ class FileFinder:
     def _inspect(self, used: RecordedFile, path: str) -> LocatedFile | None:
         """What is at a path, if there is anything; of a sequence, at that of one of its files or at its pattern."""
         if not used.frames:
-            if not _may_be_read(path):
+            if not _may_be_read(path, sandbox=self._sandbox):
                 return None
             digest = self._hashes.hash_file(path)
             return LocatedFile(used, "same" if digest == used.digest else "changed", path, digest)
         pattern = Pattern.parse(path) or Pattern.parse(str(Path(path).with_name(used.pattern)))
         files = [pattern.name(frame) for frame in used.frames] if pattern else []
-        if not pattern or not all(map(_may_be_read, files)):
+        if not pattern or not all(_may_be_read(file, self._sandbox) for file in files):
             return None
         digest = self._hashes.hash_files(files)
         return LocatedFile(used, "same" if digest == used.together else "changed", pattern.text, digest)
@@ -127,7 +131,11 @@ class FileFinder:
             for top in self._search:
                 for folder, _, names in os.walk(top):
                     files = (str(Path(folder, name)) for name in names if Path(name).suffix.casefold() in endings)
-                    self._others |= {self._hashes.hash_file(file): file for file in files if _may_be_read(file)}
+                    self._others |= {
+                        self._hashes.hash_file(file): file
+                        for file in files
+                        if _may_be_read(file, sandbox=self._sandbox)
+                    }
         return self._others.get(used.digest, "")
 
     def find_text(self, owner: str) -> str:
@@ -140,13 +148,13 @@ def find_text(texts: Mapping[str, str], owner: str) -> str:
     return texts.get(owner) or next((text for name, text in texts.items() if name.rpartition(".")[0] == owner), "")
 
 
-def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None = None) -> Graph:
+def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> Graph:
     """The graph that made a picture, with the files it was made of where they are easy to find.
 
     Raises InputError, DocumentError: see `read_recipe`.
     """
-    recipe = read_recipe(path, catalogue)
-    return relink_files(recipe.graph, FileFinder(recipe, {}, ()).find_likely())
+    recipe = read_recipe(path, catalogue, sandbox=sandbox)
+    return relink_files(recipe.graph, FileFinder(recipe, {}, (), sandbox=sandbox).find_likely())
 
 
 def relink_files(graph: Graph, found: Sequence[LocatedFile]) -> Graph:
@@ -177,14 +185,14 @@ def _same_drive(full: str, folder: str) -> bool:
     return Path(full).drive == Path(folder).absolute().drive == Path().absolute().drive
 
 
-def _exists(used: RecordedFile, path: str) -> bool:
+def _exists(used: RecordedFile, path: str, sandbox: Sandbox) -> bool:
     pattern = Pattern.parse(path) if used.frames else None
-    return _may_be_read(pattern.name(used.frames[0]) if pattern else path)
+    return _may_be_read(pattern.name(used.frames[0]) if pattern else path, sandbox=sandbox)
 
 
-def _may_be_read(path: str) -> bool:
-    """True for a file that is there, and not beyond the fence."""
-    return Path(path).is_file() and os.access(path, os.R_OK) and not outside(path)
+def _may_be_read(path: str, sandbox: Sandbox) -> bool:
+    """True for a file that is there, and not outside of the sandbox."""
+    return not sandbox.fault(path) and Path(path).is_file() and os.access(path, os.R_OK)
 
 
 def describe_missing(found: Sequence[LocatedFile], path: Path) -> InputError | None:

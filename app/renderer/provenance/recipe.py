@@ -16,6 +16,7 @@ from ...compiler import Form, Precision
 from ...errors import InputError
 from ...graph import Graph
 from ...graph.frames import parse_frames
+from ...resources.sandbox import Sandbox
 from ..jobs.header import PREFIX
 
 _DIGEST = re.compile(r"(?P<name>.+) sha256:(?P<digest>[0-9a-f]{64})")
@@ -64,7 +65,7 @@ class Recipe:
     """What tells one management of color from another, "" for the usual one."""
 
 
-def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = None) -> Recipe:
+def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> Recipe:
     """Read it. Relative paths in the graph start at the picture's folder, for want of a better one.
 
     `catalogue` are the node types by id, by default all that are installed.
@@ -73,14 +74,16 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
         InputError: the file cannot be read, or says nothing of the kind.
         DocumentError: a graph that this version does not understand.
     """
-    said = {name: str(item) for name, item in media.read_metadata(path).items() if name.startswith(PREFIX)}
+    said = {
+        name: str(item) for name, item in media.read_metadata(path, sandbox=sandbox).items() if name.startswith(PREFIX)
+    }
     text = said.get("halation:graph")
     if not text:
         raise InputError(
             f"{path}: its header holds no graph: Halation did not write it, its format cannot hold one ({_HOLDS}), or "
             "another program saved it since"
         )
-    graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue)
+    graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue, sandbox=sandbox)
     try:
         settings = _parse_settings(said.get("halation:settings", ""))
         used = _parse_files(said)
@@ -98,9 +101,9 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
     )
 
 
-def has_recipe(path: str | Path) -> bool:
+def has_recipe(path: str | Path, sandbox: Sandbox) -> bool:
     """True for a picture whose header holds the graph that made it. Raises InputError for no picture."""
-    return bool(media.read_metadata(path).get("halation:graph"))
+    return bool(media.read_metadata(path, sandbox=sandbox).get("halation:graph"))
 
 
 def _parse_settings(text: str) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ...color.management import digest_color_settings
+from ...color.management import get_color_manager
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, find_node_output
 from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
 from ...media.pictures.same_numbers import read_numbers
-from ...resources.sandbox import ROOT
+from ...resources.sandbox import Sandbox
 from ...version import VERSION
 from ..device import Device
 from ..engine import Renderer, RenderRequest
@@ -68,14 +67,14 @@ class Reproduction:
         return all(layer.farthest <= self.tolerance for layer in self.layers)
 
 
-def open_matching_device(recipe: Recipe) -> Device:
+def open_matching_device(recipe: Recipe, sandbox: Sandbox) -> Device:
     """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
     if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED):
-        return open_pinned()
+        return open_pinned(sandbox=sandbox)
     try:
-        return open_device(recipe.form)
+        return open_device(recipe.form, sandbox=sandbox)
     except DeviceError:
-        return open_device()
+        return open_device(sandbox=sandbox)
 
 
 def reproduce(
@@ -98,15 +97,17 @@ def reproduce(
     for file in files:
         if file.resolve() == recipe.path.resolve():
             raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")
-    with tempfile.TemporaryDirectory(prefix="halation-", dir=os.environ.get(ROOT) or None) as folder:
+    with tempfile.TemporaryDirectory(prefix="halation-", dir=renderer.sandbox.root or None) as folder:
         again = Path(folder, recipe.path.name)
         pairs = [(name, file) for file in (again, *files) for name in names]
         writing = OutputSettings(
             pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
         )
         run_job(renderer, graph, wanted, writing, (recipe.frame,))
-        layers = compare_layers(read_numbers(again), read_numbers(recipe.path))
-    differences = tuple(_find_differences(recipe, renderer.device, digest_color_settings(color_settings(graph))))
+        layers = compare_layers(*(read_numbers(path, renderer.sandbox) for path in (again, recipe.path)))
+    differences = tuple(
+        _find_differences(recipe, renderer.device, get_color_manager(color_settings(graph), renderer.sandbox).digest)
+    )
     elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
     allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
     return Reproduction(differences, layers, allowed, tuple(files))

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Protocol, get_args
 
-from ...color.management import mark_color_settings
 from ..device import Device, DeviceTexture, PixelRect, TextureDepth
 from .look import Channels, Look, Meaning, Size, find_origin, to_panel
 from .view_programs import ColorView, ViewProgram, ViewPrograms
@@ -73,7 +72,7 @@ class Display:
         if look.compare not in ("wipe", "difference"):
             b = None
         size = (max(1, size[0]), max(1, size[1]))
-        contents = (size, _identify(a), _identify(b), look, mark_color_settings(look.color))
+        contents = (size, _identify(a), _identify(b), look)
         panel = self._slots.get(slot)
         if panel is None or panel.contents != contents:
             with self._device.save_draw_target():
@@ -127,11 +126,11 @@ class Display:
         textures = [a.texture]
         if view is not None and texels is not None:
             textures.append(self._view_texels(view, a, texels, look))
-            program = self._programs.get(None, look.color, viewed=True)
+            program = self._programs.get(None, look.manager, viewed=True)
             program.set("viewed_first", texels[:2])
             program.set("viewed", 1)
         else:
-            program = self._programs.get(view, look.color, "off" if b is None else look.compare)
+            program = self._programs.get(view, look.manager, "off" if b is None else look.compare)
         _place(program, "a", 0, a, size, look)
         if b is not None:
             textures.append(b.texture)
@@ -146,7 +145,7 @@ class Display:
             if self._texels is not None:
                 self._texels.release()
             self._texels = self._device.create_texture((width, height), 4, "f4", linear=True)
-        program = self._programs.get(view, look.color, texels=True)
+        program = self._programs.get(view, look.manager, texels=True)
         program.set("a", 0)
         program.set("a_channels", a.channels)
         program.set("a_part", (*a.start, *a.size))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from halation.nodes import ColorSettings
+from ...color.management import ColorManager, get_default_color_manager
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Meaning = Literal["image", "field", "vector", "normal"]
@@ -37,8 +37,8 @@ class Look:
     display: str = ""
     look: str = ""
     """A look of OpenColorIO in place of those of the view; "" is what the view says, "none" none."""
-    color: ColorSettings = field(default_factory=ColorSettings)
-    """How colors are managed; a config is a path as it stands."""
+    manager: ColorManager = field(default_factory=get_default_color_manager)
+    """How colors are managed; by default as where no graph says so."""
     compare: Compare = "off"
     wipe: Point = (0.5, 0.5)
     """A point of the line between a and b, as a fraction of picture a."""

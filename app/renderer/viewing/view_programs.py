@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast, get_args
 
-from halation.nodes import ColorSettings
-
 from ...color.gpu_programs import write_view_program
-from ...color.management import mark_color_settings
+from ...color.management import ColorManager
 from ...color.primaries import find_working_space
 from ...compiler import Library, installed_library, library_for
 from ...errors import DeviceError
@@ -62,7 +60,7 @@ class ViewPrograms:
     def get(
         self,
         view: ColorView | None,
-        color: ColorSettings,
+        manager: ColorManager,
         compare: Compare = "off",
         *,
         texels: bool = False,
@@ -73,10 +71,10 @@ class ViewPrograms:
         With `texels` it brings the texels of a picture through the view; with `viewed` it draws what that one made.
         Raises UsageError for an unknown view; GraphError, UsageError without a config.
         """
-        key = (view, color, mark_color_settings(color), compare, texels, viewed)
+        key = (view, manager, compare, texels, viewed)
         if key not in self._programs:
-            text = write_view_program(view.view, view.display, view.look, color) if view else None
-            library = library_for(installed_library(), find_working_space(color))
+            text = write_view_program(view.view, view.display, view.look, manager) if view else None
+            library = library_for(installed_library(), find_working_space(manager))
             self._programs[key] = self._compile(text, _source(text, library, compare, texels, viewed))
         return self._programs[key]
 

@@ -15,6 +15,7 @@ from halation.document import dumps
 from halation.errors import DocumentError, GraphError
 from halation.graph import Control, Graph, Input, Output, Port
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, Photo, chain
 
 
@@ -28,7 +29,12 @@ def links(graph: Graph) -> dict[str, str]:
 
 def moved(graph: Graph, *chosen: str, keep_links: bool = False) -> tuple[Graph, tuple[str, ...]]:
     """`graph` with a copy of some of its elements."""
-    return paste_part(graph, read_part(copy_elements(graph, chosen), "", TOYS), positions(graph), keep_links=keep_links)
+    return paste_part(
+        graph,
+        read_part(copy_elements(graph, chosen), "", TOYS, sandbox=UNRESTRICTED),
+        positions(graph),
+        keep_links=keep_links,
+    )
 
 
 def test_ids_are_fresh_and_links_among_the_copies_are_kept():
@@ -86,7 +92,7 @@ def test_ends_are_shared_where_they_are_the_same_and_added_where_not():
 
 def test_a_whole_graph_file_can_be_pasted():
     graph = chain(2)
-    after, put = paste_part(Graph(), read_part(dumps(graph), "", TOYS), {})
+    after, put = paste_part(Graph(), read_part(dumps(graph), "", TOYS, sandbox=UNRESTRICTED), {})
     assert set(put) == {"n0", "n1", "inputs.beauty", "outputs.image"}
     assert links(after) == links(graph)
 
@@ -94,7 +100,7 @@ def test_a_whole_graph_file_can_be_pasted():
 def test_relative_paths_lead_to_the_same_files(tmp_path):
     (tmp_path / "one").mkdir()
     graph = Graph(nodes={"p": Photo(path="a.exr")}, folder=str(tmp_path / "one"))
-    found = read_part(copy_elements(graph, ["p"]), str(tmp_path / "two"), TOYS)
+    found = read_part(copy_elements(graph, ["p"]), str(tmp_path / "two"), TOYS, sandbox=UNRESTRICTED)
     assert found.nodes["p"] == Photo(path="../one/a.exr")
     assert not found.extra
 
@@ -124,14 +130,14 @@ def test_names_of_copies(name, kind, wanted):
 @pytest.mark.parametrize("text", ["", "some words", "[1]", "https://example.org"])
 def test_text_that_is_no_graph(text):
     with pytest.raises(GraphError, match="no nodes to paste"):
-        read_part(text, "", TOYS)
+        read_part(text, "", TOYS, sandbox=UNRESTRICTED)
 
 
 def test_a_damaged_graph_says_where():
     with pytest.raises(DocumentError, match="clipboard: not valid JSON"):
-        read_part('{"halation": 1, ', "", TOYS)
+        read_part('{"halation": 1, ', "", TOYS, sandbox=UNRESTRICTED)
     with pytest.raises(DocumentError, match="this is no graph"):
-        read_part(json.dumps({"from": 3}), "", TOYS)
+        read_part(json.dumps({"from": 3}), "", TOYS, sandbox=UNRESTRICTED)
 
 
 def test_an_empty_graph_has_nothing_to_paste():

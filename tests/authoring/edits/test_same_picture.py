@@ -16,6 +16,7 @@ from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Port, signature
 from halation.nodes import catalogue
 from halation.resources.picture import Picture
+from halation.resources.sandbox import UNRESTRICTED
 from headers import Headers
 from random_graphs import SIZE, random_graph
 
@@ -53,7 +54,7 @@ def flat(graph: Graph) -> dict[str, float]:
 
 
 def saved(graph: Graph) -> Graph:
-    return loads(dumps(graph))
+    return loads(dumps(graph), sandbox=UNRESTRICTED)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -97,7 +98,7 @@ def test_groups_in_groups(seed):
 def test_copy_and_paste_of_everything(seed):
     graph, _ = made(seed)
     everything = set(positions(graph))
-    part = clipboard.read_part(clipboard.copy_elements(graph, everything), "", catalogue())
+    part = clipboard.read_part(clipboard.copy_elements(graph, everything), "", catalogue(), sandbox=UNRESTRICTED)
     again, put = clipboard.paste_part(Graph(), part, {})
     assert keys(again) == keys(graph)
     assert set(put) == everything

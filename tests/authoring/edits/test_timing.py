@@ -19,6 +19,7 @@ from halation.authoring.session import Session
 from halation.document import dumps, loads
 from halation.errors import GraphError
 from halation.graph import Control, Expression, Graph, Keys, Output, Port, evaluate_at_frame, problems
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain
 
 
@@ -31,7 +32,7 @@ KEYS = Keys().set(1, 0.5).set(9, 2.0)
 
 @pytest.fixture
 def session() -> Session:
-    made = Session({**TOYS, "gain": Gain})
+    made = Session({**TOYS, "gain": Gain}, sandbox=UNRESTRICTED)
     graph = Graph(outputs={"image": Output()})
     for id in ("a", "b", "c"):
         graph = graph.add(id, Gain())
@@ -70,7 +71,7 @@ def test_a_group_and_its_end(session):
     assert graph.animation[Port(id, "strength")] == Expression(f"{id}.gain * 2")
     assert [gains(graph, frame) for frame in FRAMES] == before
     assert [problem.socket for problem in problems(graph, session.types)] == ["image"], "the end of the chain is open"
-    assert loads(dumps(graph), catalogue=session.types) == graph
+    assert loads(dumps(graph), catalogue=session.types, sandbox=UNRESTRICTED) == graph
     session.apply(Ungroup(id))
     assert session.root.animation[port("b.gain")] == Expression("a.gain * 2")
     assert [gains(session.root, frame) for frame in FRAMES] == before

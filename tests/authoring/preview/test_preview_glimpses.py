@@ -16,6 +16,7 @@ from halation.nodes import catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
 from halation.renderer import Renderer, RenderRequest
+from halation.resources.sandbox import UNRESTRICTED
 from previews import IMAGE, chain, pixels, request_preview, settle
 
 WIDTH, HEIGHT = 1001, 701
@@ -61,7 +62,7 @@ def texels(engine: Renderer, monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 def whole(engine: Renderer, graph: Graph, port: Port = IMAGE) -> np.ndarray:
     """By a renderer that has computed nothing else."""
-    other = Renderer(engine.device)
+    other = Renderer(engine.device, sandbox=UNRESTRICTED)
     try:
         return other.render(graph, RenderRequest(BINDINGS, {"x": port}))["x"]
     finally:

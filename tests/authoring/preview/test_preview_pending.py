@@ -12,6 +12,7 @@ from halation.graph import Graph, Port
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.read_render import ReadRender
 from halation.render_layers.render import read_render
+from halation.resources.sandbox import UNRESTRICTED
 
 
 @pytest.fixture
@@ -35,7 +36,7 @@ def test_nothing_is_compiled_until_it_is_known(engine, preview, graph):
         asked.append(path)
         if not ready:
             raise OverviewPending(path, lambda: bool(ready))
-        return read_render(path, named)
+        return read_render(path, named, sandbox=UNRESTRICTED)
 
     engine.pictures.look = look
     preview.want(graph, {"A": Port("render", "depth")})

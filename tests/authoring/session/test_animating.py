@@ -23,6 +23,7 @@ from halation.authoring.commands import (
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Expression, Keys, Port
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, chain
 
 
@@ -35,7 +36,7 @@ GAIN = port("gain.gain")
 
 @pytest.fixture
 def session() -> Session:
-    made = Session({**TOYS, "gain": Gain})
+    made = Session({**TOYS, "gain": Gain}, sandbox=UNRESTRICTED)
     made.apply(ReplaceGraph("Start", chain(2).add("gain", Gain())))
     return made
 

@@ -32,6 +32,7 @@ from halation.document import dumps, loads
 from halation.errors import GraphError
 from halation.graph import Graph, Input, Keys, Output, Port, Unknown
 from halation.graph.paths import rebase_paths
+from halation.resources.sandbox import UNRESTRICTED
 
 GAIN = 'vec4 gain(vec4 image, float k // = 2, 0..4, "How Much"\n) { return image * k; }'
 HEAD = '/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/'
@@ -40,7 +41,7 @@ GLOW = HEAD + "\nvoid main() { gl_FragColor = vec4(1.0); }"
 
 def start(text: str = GAIN) -> Session:
     """A session with one node of code, `code`, between the ends."""
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input()).add_output("out", Output(width=4))))
     session.apply(AddNode("glsl", link=Port("inputs", "image")))
     session.apply(Connect(Port("code", "out"), Port("outputs", "out")))
@@ -55,7 +56,7 @@ def written(session: Session, id: str = "code") -> CustomNode:
 
 
 def test_a_new_node_is_linked_and_says_what_it_is() -> None:
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input())))
     assert "glsl" in session.fitting(Port("inputs", "image"), True)
     id = session.apply(AddNode("glsl", link=Port("inputs", "image")))
@@ -75,7 +76,7 @@ def test_broken_code_keeps_what_it_was_given_and_comes_back() -> None:
     assert isinstance(item, BrokenCodeNode) and "line 1: 'uniform'" in item.fault
     assert session.graph.links == links and "k" in session.graph.controls
     assert session.problems["code"][0].severity == "error"
-    again = loads(dumps(session.root))
+    again = loads(dumps(session.root), sandbox=UNRESTRICTED)
     assert dumps(again) == dumps(session.root) and isinstance(again.nodes["code"], Unknown)
     session.apply(SetCode("code", GAIN))
     assert written(session).k == 3.0 and session.graph.links == links
@@ -148,8 +149,10 @@ def test_code_in_a_file_is_a_draft_until_it_is_saved(filed: Session, tmp_path: P
     filed.apply(SetCode("gain", more))
     assert filed.drafts == {file: more} and filed.dirty and file.read_text() == GAIN
     inside = next(item for item in filed.root.nodes.values() if hasattr(item, "graph"))
-    assert [coding.read_node_code(item, "").text for item in inside.graph.nodes.values()] == [more]  # pyright: ignore
-    kept = loads(dumps(filed.recoverable), folder=str(tmp_path))
+    assert [coding.read_node_code(item, "", sandbox=UNRESTRICTED).text for item in inside.graph.nodes.values()] == [
+        more
+    ]  # pyright: ignore
+    kept = loads(dumps(filed.recoverable), folder=str(tmp_path), sandbox=UNRESTRICTED)
     assert kept.nodes["gain"].code.text == more and not kept.nodes["gain"].code.file  # pyright: ignore
     assert filed.save_code("gain") == file
     assert file.read_text() == more and not filed.drafts and not filed.dirty
@@ -190,21 +193,23 @@ def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: P
     (tmp_path / "elsewhere").mkdir()
     filed.save_as(tmp_path / "elsewhere/copy.json")
     assert filed.code("gain").file == "../shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
-    again = Session()
+    again = Session(sandbox=UNRESTRICTED)
     again.open(tmp_path / "elsewhere/copy.json")
     assert again.root == filed.root
     filed.select("gain")
-    other = Session()
+    other = Session(sandbox=UNRESTRICTED)
     other.save_as(tmp_path / "third.json")
     other.apply(PasteText(filed.copy()))
     assert other.code("gain").file == "shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
-    broken = Graph(folder=str(tmp_path)).add("x", coding.make_file_node("none.glsl", str(tmp_path)))
+    broken = Graph(folder=str(tmp_path)).add(
+        "x", coding.make_file_node("none.glsl", str(tmp_path), sandbox=UNRESTRICTED)
+    )
     assert rebase_paths(broken, str(tmp_path / "elsewhere")).nodes["x"].raw["file"] == "../none.glsl"  # pyright: ignore
 
 
 def test_shaders_of_another_format_are_dropped_too(tmp_path: Path) -> None:
     (tmp_path / "Glow 2.fs").write_text(GLOW)
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     (id,) = session.apply(DropFiles([tmp_path / "Glow 2.fs"]))
     assert (id, written(session, id).id) == ("Glow_2", "isf")
 
@@ -231,10 +236,10 @@ def acts(session: Session) -> None:
 def test_code_survives_all_acts(broken: bool) -> None:
     session = start("nonsense" if broken else GAIN)
     acts(session)
-    copies = [item for item in session.graph.nodes.values() if coding.read_node_code(item, "")]
+    copies = [item for item in session.graph.nodes.values() if coding.read_node_code(item, "", sandbox=UNRESTRICTED)]
     assert len(copies) == 3
     assert all(isinstance(item, Unknown) == (broken and id != "renamed") for id, item in session.graph.nodes.items())
-    assert loads(dumps(session.root)) == session.root or broken
+    assert loads(dumps(session.root), sandbox=UNRESTRICTED) == session.root or broken
 
 
 def test_code_is_replaced_and_replaces() -> None:

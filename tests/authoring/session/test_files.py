@@ -13,12 +13,13 @@ from halation.document import dumps, load
 from halation.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
 from halation.graph import Graph, Group, Input, Output, Port
 from halation.presets import sample
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, Photo, Soften, chain
 
 
 @pytest.fixture
 def session() -> Session:
-    return Session(TOYS)
+    return Session(TOYS, sandbox=UNRESTRICTED)
 
 
 def written(path: Path, graph: Graph) -> Path:
@@ -34,7 +35,7 @@ def test_open_save_and_open_again(session, tmp_path):
     session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.save()
     assert not session.dirty and session.history.can_undo
-    assert load(path, TOYS) == session.root
+    assert load(path, TOYS, sandbox=UNRESTRICTED) == session.root
 
 
 def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
@@ -65,14 +66,14 @@ def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
     inner = Graph(nodes={"p": Photo(path="b.exr")}, outputs={"image": Output()})
     written(tmp_path / "one/lib/inner.json", inner)
     graph = Graph(inputs={"plate": Input(file="plates/a.exr")}, folder=str(tmp_path / "one"))
-    graph = graph.add("g", Group(load(tmp_path / "one/lib/inner.json", TOYS), "lib/inner.json"))
+    graph = graph.add("g", Group(load(tmp_path / "one/lib/inner.json", TOYS, sandbox=UNRESTRICTED), "lib/inner.json"))
     graph = graph.add("p", Photo(path="plates/c.exr")).add("q", Photo(path="/far/d.exr")).add("r", Photo())
     session.open(written(tmp_path / "one/doc.json", graph))
     session.select("p")
     session.apply(MakeGroup("local"))
     (tmp_path / "two").mkdir()
     session.save_as(tmp_path / "two/doc.json")
-    root = load(tmp_path / "two/doc.json", TOYS)
+    root = load(tmp_path / "two/doc.json", TOYS, sandbox=UNRESTRICTED)
     assert root == session.root and not session.dirty
     assert root.inputs["plate"].file == "../one/plates/a.exr"
     assert root.nodes["g"].path == "../one/lib/inner.json" and root.nodes["g"].graph == inner
@@ -95,7 +96,7 @@ def test_a_document_is_not_saved_into_itself(session, tmp_path):
     with pytest.raises(UsageError, match="of the document itself"):
         session.select(session.apply(AddNode("gain")))
         session.save_group(session.apply(MakeGroup()), tmp_path / "doc.json")
-    outer = Session(TOYS)
+    outer = Session(TOYS, sandbox=UNRESTRICTED)
     outer.open(path)
     with pytest.raises(GraphError, match="cannot hold itself"):
         outer.apply(AddGroupFile(tmp_path / "doc.json"))
@@ -107,11 +108,11 @@ def test_a_preset_opens_as_a_new_document_that_finds_its_files(session, tmp_path
     assert session.path is None and not session.dirty
     session.save_as(tmp_path / "mine.json")
     assert session.graph.value(Port("p", "path")) == "presets/samples/a.exr"
-    assert load(path, TOYS).nodes["p"] == Photo(path="samples/a.exr")
+    assert load(path, TOYS, sandbox=UNRESTRICTED).nodes["p"] == Photo(path="samples/a.exr")
 
 
 def test_a_preset_as_a_node_depends_on_no_file(tmp_path):
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     id = session.apply(AddGroupFile(next(path for path in presets.paths() if path.stem == "soft_bloom")))
     item = session.graph.nodes[id]
     assert isinstance(item, Group) and not item.path
@@ -182,7 +183,7 @@ def test_a_change_of_classes_reaches_the_whole_history(session):
 
 
 def test_dropped_files(tmp_path):
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     session.save_as(tmp_path / "doc.json")
     path = written(tmp_path / "my look.json", Graph(outputs={"image": Output()}))
     ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0)))
@@ -200,7 +201,7 @@ def test_dropped_files(tmp_path):
 
 
 def test_a_dropped_render_is_read_as_one():
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     (id,) = session.apply(DropFiles([sample()]))
     assert session.graph.nodes[id].id == "read_render"
     matte = session.apply(AddMatte(id, "object"))

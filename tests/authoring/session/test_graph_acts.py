@@ -48,6 +48,7 @@ from halation.document import load
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Port
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Gain, chain
 
 
@@ -57,7 +58,7 @@ def port(text: str) -> Port:
 
 @pytest.fixture
 def session() -> Session:
-    made = Session(TOYS)
+    made = Session(TOYS, sandbox=UNRESTRICTED)
     made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
@@ -215,7 +216,7 @@ def test_groups_from_files(session, tmp_path):
         session.apply(SetValue(port("n0.gain"), 2.0))
     session.leave()
     session.save()
-    assert load(tmp_path / "doc.json", TOYS) == session.root
+    assert load(tmp_path / "doc.json", TOYS, sandbox=UNRESTRICTED) == session.root
     session.apply(MakeGroupLocal(id))
     session.enter(id)
     session.apply(SetValue(port("n0.gain"), 2.0))
@@ -305,7 +306,7 @@ def test_cut_copy_and_paste(session):
     assert session.apply(PasteText(text)) == ("n1",)
     assert session.selection == {"n1"} and "n1.image" not in links(session)
     assert session.apply(DuplicateSelection()) == ("n3",)
-    other = Session(TOYS)
+    other = Session(TOYS, sandbox=UNRESTRICTED)
     assert other.apply(PasteText(text, (50.0, 60.0))) == ("n1",) and other.position("n1") == (50.0, 60.0)
     assert isinstance(other.root, Graph)
 
@@ -331,7 +332,7 @@ def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(se
 
 
 def test_presets_that_fit_a_port():
-    session, files = Session(), presets.paths()
+    session, files = Session(sandbox=UNRESTRICTED), presets.paths()
     session.apply(AddNode("gaussian_blur"))
     some = session.fitting_files(files, port("gaussian_blur.out"), True)
     assert some and set(some) <= set(files)

@@ -20,18 +20,19 @@ from halation.authoring.session import Session
 from halation.authoring.state import history
 from halation.errors import GraphError
 from halation.graph import Graph, Port
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, chain
 
 
 @pytest.fixture
 def session() -> Session:
-    made = Session(TOYS)
+    made = Session(TOYS, sandbox=UNRESTRICTED)
     made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
 
 def test_a_new_document_has_one_output_and_no_past():
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     assert session.elements == ("outputs.image",)
     assert session.history.steps == () and not session.dirty and session.name == "untitled"
     assert "blur" not in session.types and "gaussian_blur" in session.types
@@ -152,7 +153,7 @@ def test_problems_by_element(session):
 
 
 def test_layout_is_saved_with_the_first_edit_so_that_nothing_jumps():
-    session = Session(TOYS)
+    session = Session(TOYS, sandbox=UNRESTRICTED)
     graph = replace(chain(3), ui={})
     session._restart(graph, None, graph)
     assert not session.dirty

@@ -19,6 +19,7 @@ from halation.errors import GraphError
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 from halation.resources.picture import Picture
+from halation.resources.sandbox import UNRESTRICTED
 from headers import Headers
 from toy_nodes import TOYS, chain
 
@@ -29,7 +30,7 @@ def port(text: str) -> Port:
 
 @pytest.fixture
 def session() -> Session:
-    made = Session(TOYS)
+    made = Session(TOYS, sandbox=UNRESTRICTED)
     made.apply(ReplaceGraph("Start", chain(3)))
     return made
 
@@ -95,7 +96,7 @@ def test_every_group_has_a_view_of_its_own(session):
 
 
 def test_what_the_compiler_is_asked_for():
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     graph = Graph(inputs={"image": Input()}, outputs={"image": Output()})
     for id, before in (("a", "inputs.image"), ("b", "a.out"), ("c", "b.out")):
         graph = graph.add(id, catalogue()["gaussian_blur"]()).connect(port(before), Port(id, "image"))

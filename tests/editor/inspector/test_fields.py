@@ -10,6 +10,7 @@ from halation.editor.inspector.applying import apply, as_text, common, from_text
 from halation.editor.theme.palette import DARK
 from halation.errors import HalationError, UsageError
 from halation.graph import Graph, Port, Unknown
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Blend, Gain, Soften
 
 GAIN = Gain.values["gain"]
@@ -17,7 +18,7 @@ GAIN = Gain.values["gain"]
 
 @pytest.fixture
 def session() -> Session:
-    made = Session(TOYS)
+    made = Session(TOYS, sandbox=UNRESTRICTED)
     made.apply(
         ReplaceGraph("Start", Graph({"one": Gain(gain=1.0), "two": Gain(gain=3.0), "blend": Blend(), "soft": Soften()}))
     )

@@ -10,11 +10,12 @@ import pytest
 from halation.editor.inspector.layers import Layers, described, small_picture
 from halation.media import ImageInfo, read_info, write_picture
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 
 @pytest.fixture
 def layers():
-    made = Layers()
+    made = Layers(sandbox=UNRESTRICTED)
     yield made
     made.close()
 
@@ -25,7 +26,9 @@ def picture(tmp_path: Path) -> Path:
     depth = np.linspace(5.0, 25.0, 40 * 200, dtype=np.float32).reshape(40, 200, 1)
     depth[0, 0] = np.inf
     color = np.full((40, 200, 4), 1.0, np.float32)
-    write_picture(path, {"beauty": color, "depth": depth}, kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD})
+    write_picture(
+        path, {"beauty": color, "depth": depth}, kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD}, sandbox=UNRESTRICTED
+    )
     return path
 
 
@@ -46,7 +49,7 @@ def test_headers_and_pictures_come_later(layers, picture):
 
 
 def test_data_is_shown_from_its_lowest_to_its_highest(picture):
-    small = small_picture(str(picture), "depth", read_info(picture))
+    small = small_picture(str(picture), "depth", read_info(picture, sandbox=UNRESTRICTED), sandbox=UNRESTRICTED)
     assert small[0, 1].max() < 5 and small[-1, -1].min() > 245
     assert (small[0, 0] == 255).all()
 
@@ -66,13 +69,13 @@ def test_a_damaged_file_is_a_sentence(layers, tmp_path):
 def test_another_file_under_the_same_name_is_read_again(layers, picture, monkeypatch):
     monkeypatch.setattr("halation.watch.versions.LOOK_AGAIN", 0.0)
     before = waited(lambda: layers.header(picture))
-    write_picture(picture, {"new": np.zeros((2, 3, 4), np.float32)}, kinds={"new": Kind.IMAGE})
+    write_picture(picture, {"new": np.zeros((2, 3, 4), np.float32)}, kinds={"new": Kind.IMAGE}, sandbox=UNRESTRICTED)
     after = waited(lambda: layers.header(picture))
     assert (before.size, after.size) == ((200, 40), (3, 2))
 
 
 def test_the_line_about_a_file(picture):
-    header = read_info(picture)
+    header = read_info(picture, sandbox=UNRESTRICTED)
     assert described(header, "") == "200 x 40, RGBA, float16, color"
     assert described(header, "depth") == "200 x 40, Z, float32, data"
     assert described(header, "Deep").startswith("has no layer 'Deep'")

@@ -18,6 +18,7 @@ from halation.editor.shared.dialogs import Browse
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
 from halation.presets import paths
+from halation.resources.sandbox import UNRESTRICTED
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -110,11 +111,11 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
     assert form.file("image") == tmp_path / "mine.png"
-    assert form.options() == RenderJob(frames=(1,))
+    assert form.options() == RenderJob(sandbox=UNRESTRICTED, frames=(1,))
     form.sizing, form.scale, form.precision, form.view = "scale", 0.25, "float", "none"
-    assert form.options() == RenderJob(scale=0.25, frames=(1,), precision="float", view="none")
+    assert form.options() == RenderJob(sandbox=UNRESTRICTED, scale=0.25, frames=(1,), precision="float", view="none")
     form.sizing, form.size = "size", (64, 32)
-    assert form.options() == RenderJob(size=(64, 32), frames=(1,), precision="float", view="none")
+    assert form.options() == RenderJob(sandbox=UNRESTRICTED, size=(64, 32), frames=(1,), precision="float", view="none")
 
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:

@@ -24,6 +24,7 @@ from halation.editor.window.contexts import Contexts, compose_contexts
 from halation.editor.window.editor import Editor
 from halation.graph import Port
 from halation.presets import paths
+from halation.resources.sandbox import UNRESTRICTED
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -37,7 +38,7 @@ def desk(tmp_path: Path) -> Editor:
     log = Log()
     actions = Actions(table(), lambda: store.current.shortcuts, log)
     return Editor(
-        DocumentStage(Session()),
+        DocumentStage(Session(sandbox=UNRESTRICTED)),
         preview,
         store,
         actions,

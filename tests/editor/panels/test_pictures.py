@@ -12,12 +12,13 @@ from halation.errors import InputError
 from halation.media import write_picture
 from halation.media.pictures.thumbnail import list_readable_endings, load_thumbnail, make_thumbnail, save_thumbnail
 from halation.nodes import Kind
+from halation.resources.sandbox import UNRESTRICTED
 
 
 def picture(path: Path, value: float, width: int = 400, height: int = 100) -> Path:
     array = np.full((height, width, 4), value, np.float32)
     array[..., 3] = 1.0
-    write_picture(path, {"image": array}, kinds={"image": Kind.IMAGE}, view="none")
+    write_picture(path, {"image": array}, kinds={"image": Kind.IMAGE}, view="none", sandbox=UNRESTRICTED)
     return path
 
 
@@ -30,40 +31,42 @@ def ready(pictures: FileThumbnails, path: Path, at: float = 1.0):
 
 
 def test_a_thumbnail_keeps_the_shape_and_the_color(tmp_path: Path) -> None:
-    small = make_thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64)
+    small = make_thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64, sandbox=UNRESTRICTED)
     assert small.shape == (16, 64, 3)
     assert np.abs(small.astype(int) - 128).max() <= 1
 
 
 def test_small_pictures_are_not_enlarged(tmp_path: Path) -> None:
-    assert make_thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64).shape == (4, 8, 3)
+    assert make_thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64, sandbox=UNRESTRICTED).shape == (4, 8, 3)
 
 
 def test_light_is_seen_through_the_view(tmp_path: Path) -> None:
     """Light eight times as bright as white is still told from white."""
-    bright, white = (make_thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64) for at in (8.0, 1.0))
+    bright, white = (
+        make_thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64, sandbox=UNRESTRICTED) for at in (8.0, 1.0)
+    )
     assert bright.mean() > white.mean() + 10
     assert white.mean() < 254
 
 
 def test_saved_and_loaded(tmp_path: Path) -> None:
     pixels = np.random.default_rng(1).integers(0, 255, (5, 7, 3)).astype(np.uint8)
-    save_thumbnail(tmp_path / "a.png", pixels)
-    assert np.array_equal(load_thumbnail(tmp_path / "a.png"), pixels)
+    save_thumbnail(tmp_path / "a.png", pixels, sandbox=UNRESTRICTED)
+    assert np.array_equal(load_thumbnail(tmp_path / "a.png", sandbox=UNRESTRICTED), pixels)
     (tmp_path / "b.png").write_bytes(b"no")
     for name in ("b.png", "c.png"):
         with pytest.raises(InputError, match="no small picture"):
-            load_thumbnail(tmp_path / name)
+            load_thumbnail(tmp_path / name, sandbox=UNRESTRICTED)
 
 
 def test_what_was_decoded_is_kept_for_the_next_time(tmp_path: Path) -> None:
     file, kept = picture(tmp_path / "a.exr", 0.5), tmp_path / "kept"
-    first = FileThumbnails(kept)
+    first = FileThumbnails(kept, sandbox=UNRESTRICTED)
     made = ready(first, file)
     first.close()
     assert len(list(kept.iterdir())) == 1
     file.unlink()
-    again = FileThumbnails(kept)
+    again = FileThumbnails(kept, sandbox=UNRESTRICTED)
     assert np.array_equal(ready(again, file), made)
     assert isinstance(ready(again, file, 2.0), str)
     again.close()
@@ -71,7 +74,7 @@ def test_what_was_decoded_is_kept_for_the_next_time(tmp_path: Path) -> None:
 
 def test_what_is_no_picture_has_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "a.png").write_bytes(b"this is text")
-    pictures = FileThumbnails(tmp_path / "kept")
+    pictures = FileThumbnails(tmp_path / "kept", sandbox=UNRESTRICTED)
     found = ready(pictures, tmp_path / "a.png")
     pictures.close()
     assert isinstance(found, str)
@@ -80,7 +83,7 @@ def test_what_is_no_picture_has_a_sentence(tmp_path: Path) -> None:
 
 
 def test_only_what_was_asked_for_last_waits(tmp_path: Path) -> None:
-    pictures = FileThumbnails(tmp_path)
+    pictures = FileThumbnails(tmp_path, sandbox=UNRESTRICTED)
     for index in range(500):
         pictures.get(tmp_path / f"missing{index}.png", 0.0)
     assert isinstance(ready(pictures, tmp_path / "missing499.png", 0.0), str)

@@ -7,6 +7,7 @@ from halation.authoring.commands import SetFrameRange
 from halation.authoring.session import Session
 from halation.editor.timeline.playback import Course, Playback
 from halation.editor.timeline.state import TimelineState
+from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS
 
 
@@ -98,7 +99,7 @@ def test_somebody_else_seeks_or_changes_the_range():
 
 
 def test_the_part_that_is_played_and_what_is_seen():
-    session, state = Session(TOYS), TimelineState()
+    session, state = Session(TOYS, sandbox=UNRESTRICTED), TimelineState()
     session.apply(SetFrameRange(1, 100))
     state.set_part(session, 20, 140)
     assert state.span(session) == (20, 100)

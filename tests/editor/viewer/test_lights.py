@@ -33,6 +33,7 @@ from halation.nodes import (
     look_at,
     numbers_of,
 )
+from halation.resources.sandbox import UNRESTRICTED
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
 CAMERA = look_at((0.0, -5.0, 0.0), (0.0, 0.0, 0.0), (1.0, 2.0))
@@ -59,7 +60,7 @@ def editor() -> Any:
     """With a node that has lights and a camera, selected. What is seen has no depth yet."""
     said: list[str] = []
     made = SimpleNamespace(
-        session=Session({**catalogue(), "lamps": Lit}),
+        session=Session({**catalogue(), "lamps": Lit}, sandbox=UNRESTRICTED),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
         lights={},

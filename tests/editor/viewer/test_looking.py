@@ -17,6 +17,7 @@ from halation.editor.viewer.wanted import list_wanted_ports
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind
 from halation.renderer.viewing.look import Look
+from halation.resources.sandbox import UNRESTRICTED
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0, pan=(3.0, 4.0))
 
@@ -49,7 +50,7 @@ def test_ranges_are_measured_unless_they_are_given() -> None:
 
 
 def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
-    session = Session()
+    session = Session(sandbox=UNRESTRICTED)
     noise = session.apply(AddNode("noise"))
     graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
     graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
@@ -95,7 +96,7 @@ def test_scopes_see_data_in_its_range() -> None:
 @pytest.fixture
 def editor() -> Any:
     return SimpleNamespace(
-        session=Session(),
+        session=Session(sandbox=UNRESTRICTED),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
         store=SimpleNamespace(current=SimpleNamespace(proxy_while_dragging=True)),

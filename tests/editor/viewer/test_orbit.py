@@ -20,6 +20,7 @@ from halation.editor.viewer.state import ViewerState
 from halation.graph import INPUTS, Input, Port
 from halation.media.meshes.load import load_mesh
 from halation.nodes import BuiltInScene, Kind, catalogue, look_at
+from halation.resources.sandbox import UNRESTRICTED
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
 ASPECT = 2.0
@@ -30,7 +31,7 @@ START = Orbit((0.1, 0.2, 0.75), 6.5, 8.0, 14.0)
 def editor() -> Any:
     """With a scene that is seen."""
     made = SimpleNamespace(
-        session=Session(catalogue()),
+        session=Session(catalogue(), sandbox=UNRESTRICTED),
         viewer=ViewerState(picture=(400, 200)),
         interface=SimpleNamespace(dragging=False),
         lights={},
@@ -126,7 +127,7 @@ def test_a_framed_scene_fills_the_picture(editor: Any, name: Any, azimuth: float
     steps = len(session.history.steps)
     frame_scene(editor)
     assert len(session.history.steps) == steps + 1
-    vertices: Any = load_mesh(BuiltInScene(name)).vertices
+    vertices: Any = load_mesh(BuiltInScene(name), sandbox=UNRESTRICTED).vertices
     places = without_surroundings(vertices[:, :3], vertices[:, 16])
     assert 0 < len(places) < len(vertices)
     seen = np.column_stack([places, np.ones(len(places))]) @ np.reshape(now(editor).camera(ASPECT).rows, (3, 4)).T

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation.errors import UsageError
-from halation.resources.sandbox import ROOT, fenced, outside
+from halation.resources.sandbox import ROOT_VARIABLE, UNRESTRICTED, Sandbox, read_process_sandbox
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -63,8 +63,7 @@ def test_what_may_be_read_lies_inside(tree: Path, parts: list[str], absolute: bo
     os.chdir(tree / "in")
     try:
         path = "/".join([str(tree), *parts] if absolute else parts)
-        with fenced(tree / "in"):
-            refused = outside(path)
+        refused = UNRESTRICTED.narrow(tree / "in").fault(path)
         try:
             truth = Path(path).resolve().is_relative_to((tree / "in").resolve())
         except (OSError, RuntimeError, ValueError):
@@ -79,19 +78,22 @@ def test_what_may_be_read_lies_inside(tree: Path, parts: list[str], absolute: bo
         os.chdir(here)
 
 
-def test_without_a_fence_all_may_be_read(tree: Path) -> None:
-    assert outside(tree / "out" / "file") == "" and outside("/") == ""
+def test_without_a_root_all_may_be_read(tree: Path) -> None:
+    assert UNRESTRICTED.fault(tree / "out" / "file") == "" and UNRESTRICTED.fault("/") == ""
 
 
-def test_a_fence_holds_for_processes_and_ends(tree: Path) -> None:
-    assert ROOT not in os.environ
-    with fenced(tree / "in" / "deep" / "back"):
-        assert os.environ[ROOT] == str((tree / "in").resolve())
-        with fenced(tree / "in" / "deep"):
-            assert outside(tree / "in" / "file")
-        assert not outside(tree / "in" / "file")
-        with pytest.raises(UsageError, match="lies outside"), fenced(tree / "out"):
-            pass
-    assert ROOT not in os.environ
-    with pytest.raises(UsageError, match="there is no such folder"), fenced(tree / "nowhere"):
-        pass
+def test_a_sandbox_is_made_smaller_only(tree: Path) -> None:
+    sandbox = UNRESTRICTED.narrow(tree / "in" / "deep" / "back")
+    assert sandbox == Sandbox(str((tree / "in").resolve()))
+    assert sandbox.narrow(tree / "in" / "deep").fault(tree / "in" / "file") and not sandbox.fault(tree / "in" / "file")
+    with pytest.raises(UsageError, match="lies outside"):
+        sandbox.narrow(tree / "out")
+    with pytest.raises(UsageError, match="there is no such folder"):
+        UNRESTRICTED.narrow(tree / "nowhere")
+
+
+def test_the_environment_asks_for_one(tree: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(ROOT_VARIABLE, raising=False)
+    assert read_process_sandbox() is UNRESTRICTED
+    monkeypatch.setenv(ROOT_VARIABLE, str(tree / "in" / "deep" / "back"))
+    assert read_process_sandbox() == Sandbox(str((tree / "in").resolve()))
