@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 import pytest
 from film_scans import write_cineon
 from halation.color.header_space import REC709, HeaderSpace, make_gamut_matrix
-from halation.color.management import get_color_manager
+from halation.color.management import get_color_manager, get_default_color_manager
 from halation.errors import InputError
 from halation.media import read_layer
 from halation.media.color_spaces import describe_color_spaces, find_layer_spaces
@@ -200,4 +200,4 @@ def test_portable_maps(tmp_path, ending, format):
 def test_a_name_that_the_author_wrote_is_refused(tmp_path, light):
     path = write_picture(tmp_path / "a.exr", light, attributes={"colorInteropID": ("string", "my studio log")})
     with pytest.raises(InputError, match="'my studio log' is unknown: give the input a color_space"):
-        find_layer_spaces(path, sandbox=UNRESTRICTED)
+        find_layer_spaces(path, get_default_color_manager(), sandbox=UNRESTRICTED)
