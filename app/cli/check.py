@@ -85,6 +85,8 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
             problem = finding.problem
             sentence, *excerpt = problem.sentence.split("\n")  # an excerpt shows where in an expression the fault is
             print(f"{path}:{finding.line}: {problem.severity}: {sentence} [{problem.rule.name}]", *excerpt, sep="\n")
+        if report.omitted and not quiet:
+            print(f"{path}: and {report.omitted} more")
         if not quiet and not report.findings and path in graphs:
             print(f"{path}: ok")
     if not reports:
@@ -92,7 +94,8 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
     elif len(reports) > 1 and not quiet:
         severities = [finding.problem.severity for report in reports for finding in report.findings]
         counts = [f"{severities.count(word)} {word}s" for word in ("error", "warning")]
-        print_note(f"{len(reports)} graphs: {', '.join(counts)}")
+        omitted = sum(report.omitted for report in reports)
+        print_note(f"{len(reports)} graphs: {', '.join(counts)}{f', and {omitted} more' if omitted else ''}")
     return reports
 
 
@@ -138,6 +141,7 @@ def _report_facts(report: CheckReport, strict: bool) -> dict[str, Any]:
         "graph": report.file,
         "exit_code": _exit_code(report, strict),
         "problems": [describe(finding) for finding in report.findings],
+        **({"omitted": report.omitted} if report.omitted else {}),
     }
 
 

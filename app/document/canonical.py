@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping
+from json.encoder import encode_basestring
+from types import MappingProxyType
 from typing import Any, cast
 
 from ..errors import GraphError
 from .limits import MAX_NESTING
-from .syntax import member
+from .syntax import Trail, spell_path
 
 WIDTH = 100
 """Columns within which an object or list stays on one line."""
@@ -17,43 +18,59 @@ WIDTH = 100
 _SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outputs"})
 """Sections of a document that have a line for every entry, however short, so that a diff shows one entry."""
 
-_ENCODER = json.JSONEncoder(ensure_ascii=False)
-
 
 def pretty(document: Mapping[str, Any]) -> str:
     """Sorted keys, two spaces, one line for all that fits but code. Raises GraphError for what JSON cannot hold."""
-    return _text(document, 0, 0, "", 1) + "\n"
+    return _text(document, 0, 0, None, 1) + "\n"
 
 
-def _text(item: Any, indent: int, column: int, path: str, depth: int) -> str:
+def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) -> str:
     """`item` as text that starts at `column` of a line that is indented by `indent`."""
-    if not isinstance(item, Mapping | list | tuple):
-        return _scalar(item, path)
+    if not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):  # the first are known at once
+        return _scalar(item, trail)
+    if not item:
+        return "[]" if isinstance(item, list | tuple) else "{}"
     if depth > MAX_NESTING:
-        raise GraphError(f"{path}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files")
-    if isinstance(item, Mapping):
+        where = spell_path(trail)
+        raise GraphError(f"{where}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files")
+    inner, texts = indent + 2, list[str]()
+    if not isinstance(item, list | tuple):
         known = cast("Mapping[str, Any]", item)
         if odd := next((key for key in known if type(key) is not str), None):
-            raise GraphError(f"{path}: the key {odd!r} cannot be saved; JSON has only text as keys")
-        parts = [(f"{_scalar(key, path)}: ", known[key], member(path, key)) for key in sorted(known)]
+            raise GraphError(f"{spell_path(trail)}: the key {odd!r} cannot be saved; JSON has only text as keys")
         opening, closing = "{", "}"
+        for key in sorted(known):
+            start, part = f"{encode_basestring(key)}: ", known[key]
+            texts.append(start + _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
     else:
-        parts = [("", part, member(path, place)) for place, part in enumerate(cast("list[Any]", item))]
         opening, closing = "[", "]"
-    inner = indent + 2
-    texts = [key + _text(part, inner, inner + len(key), where, depth + 1) for key, part, where in parts]
-    flat = f"{opening}{', '.join(texts)}{closing}"
-    fits = "\n" not in flat and column + len(flat) < WIDTH
-    is_code = opening == "[" and path.endswith(".code") and len(texts) > 1
-    if not texts or (fits and path and path not in _SPREAD and not is_code):
-        return flat
+        texts += [
+            _text(part, inner, inner, Trail(trail, place), depth + 1)
+            for place, part in enumerate(cast("list[Any]", item))
+        ]
+    # The first test is for speed: most of what is long need not be joined to see that it does not fit.
+    length = sum(map(len, texts)) + 2 * len(texts)
+    section = trail is not None and trail.outer is None and trail.key in _SPREAD
+    is_code = opening == "[" and trail is not None and trail.outer and trail.key == "code" and len(texts) > 1
+    if column + length < WIDTH and trail is not None and not section and not is_code:
+        flat = f"{opening}{', '.join(texts)}{closing}"
+        if "\n" not in flat:
+            return flat
     lines = ",\n".join(" " * inner + text for text in texts)
     return f"{opening}\n{lines}\n{' ' * indent}{closing}"
 
 
-def _scalar(item: Any, path: str) -> str:
-    if isinstance(item, float) and not math.isfinite(item):
-        raise GraphError(f"{path}: {item} cannot be saved; set a finite number")
-    if item is None or isinstance(item, bool | int | float | str):
-        return _ENCODER.encode(item)
-    raise GraphError(f"{path}: {item!r} cannot be saved; JSON has no {type(item).__name__}")
+def _scalar(item: Any, trail: Trail | None) -> str:
+    if isinstance(item, str):
+        return encode_basestring(item)
+    if item is None:
+        return "null"
+    if isinstance(item, bool):
+        return "true" if item else "false"
+    if isinstance(item, int):
+        return int.__repr__(item)
+    if not isinstance(item, float):
+        raise GraphError(f"{spell_path(trail)}: {item!r} cannot be saved; JSON has no {type(item).__name__}")
+    if not math.isfinite(item):
+        raise GraphError(f"{spell_path(trail)}: {item} cannot be saved; set a finite number")
+    return float.__repr__(item)

@@ -6,6 +6,12 @@ MAX_BYTES = 32 * 2**20
 MAX_NESTING = 64
 """Objects and lists inside each other."""
 
+MAX_PARTS = 1_500_000
+"""Objects, lists and their entries in a file: fifteen for each of 100,000 nodes, which take about nine."""
+
+MAX_KEY = 1000
+"""Characters of a key: the names of nodes and sockets, and paths of links. Messages repeat them."""
+
 MAX_GROUPS = 32
 """Groups inside each other."""
 

@@ -1,25 +1,38 @@
-"""Where things stand in the text of a document: JSON path -> line."""
+"""Where things stand in the text of a document: JSON path -> line.
+
+A text may be hostile, so its parts are not all given their paths: a key of a megabyte around a thousand parts would
+make a gigabyte of them. The paths that are asked for come first. The text is then read once, and only inside of
+containers that one of those paths leads through.
+"""
 
 from __future__ import annotations
 
 import json
 import re
 from bisect import bisect_right
+from collections.abc import Iterable
 from itertools import accumulate
 
 from .syntax import member
 
-_TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[{}\[\],:]|[^\s{}\[\],:"]+', re.DOTALL)
+_STRING = r'"(?:[^"\\]++|\\.)*+"?+'
+_KEY = re.compile(rf'(?:[^"{{}}\[\]]++|{_STRING}(?!\s*+:))*+(?:({_STRING})\s*+:|([{{}}\[\]]))', re.DOTALL)
+"""In an object: the next key, or the next bracket that is not in a string."""
+_ENTRY = re.compile(rf'\s*+(?:({_STRING}|[^\s{{}}\[\],:"]++)|([{{}}\[\]])|[,:])', re.DOTALL)
+"""In a list: the next scalar, bracket or comma."""
+_BRACKET = re.compile(rf'(?:[^"{{}}\[\]]++|{_STRING})*+([{{}}\[\]])', re.DOTALL)
+"""The next bracket that is not in a string."""
 
 
 class Positions:
-    """The lines on which the parts of a text begin: an entry of an object at its key, one of a list at itself.
+    """The lines on which parts of a text begin: an entry of an object at its key, one of a list at itself.
 
-    The text is taken to be JSON; of one that is damaged, the part before the damage is known.
+    `paths` are all that will be asked for, as errors write them. The text is taken to be JSON; of one that is damaged,
+    the part before the damage is known.
     """
 
-    def __init__(self, text: str) -> None:
-        self._places = _places(text)
+    def __init__(self, text: str, paths: Iterable[str]) -> None:
+        self._places = _find_places(text, _prefixes(paths))
         self._starts = [0, *accumulate(len(line) + 1 for line in text.split("\n"))]
 
     def __contains__(self, path: str) -> bool:
@@ -31,41 +44,60 @@ class Positions:
         Of a key that is there more than once the first one counts, or the `last`.
         """
         while path and path not in self._places:
-            path = path[: max(path.rfind("."), path.rfind("["), 0)]
-        places = self._places.get(path, (0,))
-        return bisect_right(self._starts, places[-1 if last else 0])
+            path = _shorten(path)
+        return bisect_right(self._starts, self._places[path][1 if last else 0])
 
 
-def _places(text: str) -> dict[str, list[int]]:
-    """Where in the text every part begins, by JSON path."""
-    found: dict[str, list[int]] = {}
+def _shorten(path: str) -> str:
+    """The path without its last part. A key may hold a dot: then this is no path, and only one step more."""
+    return path[: max(path.rfind("."), path.rfind("["), 0)]
+
+
+def _prefixes(paths: Iterable[str]) -> frozenset[str]:
+    """The paths and all that is around them."""
+    prefixes = {""}
+    for path in paths:
+        while path not in prefixes:
+            prefixes.add(path)
+            path = _shorten(path)
+    return frozenset(prefixes)
+
+
+def _find_places(text: str, prefixes: frozenset[str]) -> dict[str, tuple[int, int]]:
+    """Where in the text each part of these paths begins, the first time and the last."""
+    begin = len(text) - len(text.lstrip())
+    places = {"": (begin, begin)}
     above: list[tuple[str, bool, int]] = []
     path, is_list, count = "", False, 0
-    key: str | None = None
-    key_next = False
-    for token in _TOKEN.finditer(text):
-        word, here = token[0], token.start()
-        if word in "}]":
+    part, at = "", 0 if len(prefixes) > 1 else len(text)
+    while token := (_ENTRY if is_list else _KEY).match(text, at):
+        word, bracket, at = token[1], token[2], token.end()
+        if word or (is_list and bracket in ("{", "[")):
+            part = member(path, count if is_list else _text(word))
+            if part in prefixes:
+                here = token.start(1 if word else 2)
+                places[part] = places.get(part, (here, here))[0], here
+        if bracket in ("}", "]"):
             if not above:
                 break
             path, is_list, count = above.pop()
-            key_next = False
-        elif word == ",":
-            key_next, key, count = not is_list, None, count + 1
-        elif word == ":":
-            key_next = False
-        elif key_next:
-            key = _text(word)
-            found.setdefault(member(path, key), []).append(here)
-        else:
-            mine = member(path, count) if is_list else path if key is None else member(path, key)
-            if is_list or not above:
-                found.setdefault(mine, []).append(here)
-            if word in "{[":
-                above.append((path, is_list, count))
-                path, is_list, count, key = mine, word == "[", 0, None
-                key_next = not is_list
-    return found
+        elif bracket and part not in prefixes:
+            at = _skip(text, at)
+        elif bracket:
+            above.append((path, is_list, count))
+            path, is_list, count = part, bracket == "[", 0
+        elif is_list and not word:
+            count += 1
+    return places
+
+
+def _skip(text: str, start: int) -> int:
+    """The end of the container that `start` is inside of."""
+    depth = 1
+    while depth and (bracket := _BRACKET.match(text, start)):
+        depth += 1 if bracket[1] in "{[" else -1
+        start = bracket.end()
+    return len(text) if depth else start
 
 
 def _text(word: str) -> str:

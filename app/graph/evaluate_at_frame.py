@@ -16,7 +16,10 @@ from .keys import Keys, round_keys
 from .model import Port, Settings
 from .names import did_you_mean
 from .values import coerce, describe_type
+from .walk import find_cyclic
 
+_LONG = 4000
+"""Letters of a sentence about an expression that reads others: it shows the text of each, with a line below."""
 CHANNELS = {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
 
 
@@ -72,16 +75,8 @@ def find_expression_loops(graph: Graph) -> Iterator[tuple[Port, str]]:
         for port, item in graph.animation.items()
         if isinstance(item, Expression)
     }
-    for port in reads:
-        visited, todo = set[Port](), list(reads[port])
-        while todo:
-            read_port = todo.pop()
-            if read_port == port:
-                yield port, f"{port}: its expression depends on itself"
-                break
-            if read_port not in visited:
-                visited.add(read_port)
-                todo.extend(reads.get(read_port, ()))
+    cyclic = find_cyclic(reads)
+    yield from ((port, f"{port}: its expression depends on itself") for port in reads if port in cyclic)
 
 
 def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
@@ -121,33 +116,63 @@ class _FrameEvaluation:
         if not is_animated(graph):
             return graph
         values = _ValueEvaluation(graph, self._frame, self._settings)
-        for port, plain in {port: values.evaluate(port) for port in graph.animation}.items():
-            graph = graph.put(port, plain)
-        for id, item in graph.nodes.items():
-            if isinstance(item, Group) and is_animated(item.graph):
-                graph = replace(graph, nodes={**graph.nodes, id: Group(self.evaluate(item.body()), item.path)})
-        return graph
+        graph = graph.put_all({port: values.evaluate(port) for port in graph.animation})
+        inner = {
+            id: Group(self.evaluate(item.body()), item.path)
+            for id, item in graph.nodes.items()
+            if isinstance(item, Group) and is_animated(item.graph)
+        }
+        return replace(graph, nodes={**graph.nodes, **inner}) if inner else graph
 
 
 class _ValueEvaluation:
-    """Evaluates values of one graph, without its groups, at one frame; each once."""
+    """Evaluates values of one graph, without its groups, at one frame; each once.
+
+    What an expression reads is evaluated before it. So evaluation does not go deeper with every expression that reads
+    another one, and thousands in a row work. A fault is kept for whoever reads that value: an expression may name one
+    that it does not use at this frame.
+    """
 
     def __init__(self, graph: Graph, frame: int, settings: Settings) -> None:
         self._graph, self._frame, self._settings = graph, frame, settings
-        self._results: dict[Port, Plain] = {}
-        self._in_progress: list[Port] = []
+        self._results: dict[Port, Plain | GraphError] = {}
+        self._in_progress: set[Port] = set()
 
     def evaluate(self, port: Port) -> Plain:
-        animation = self._graph.animation.get(port)
-        if animation is None:
+        """The value at the frame. Raises GraphError."""
+        if port not in self._graph.animation:
             return self._graph.value(port)
         if port not in self._results:
             if port in self._in_progress:
                 raise GraphError(f"{port}: its expression depends on itself", node=port.node)
-            self._in_progress.append(port)
-            self._results[port] = self._evaluate_animation(port, animation)
-            self._in_progress.pop()
-        return self._results[port]
+            self._evaluate_with_reads(port)
+        plain = self._results[port]
+        if isinstance(plain, GraphError):
+            raise GraphError(str(plain), node=plain.node)
+        return plain
+
+    def _evaluate_with_reads(self, port: Port) -> None:
+        """Evaluate an animated value after all that it reads."""
+        todo, begun = [port], self._in_progress
+        while todo:
+            port = todo[-1]
+            if port in self._results:
+                todo.pop()
+            elif port not in begun:
+                begun.add(port)
+                todo += [other for other in reversed(self._find_reads(port)) if other not in begun]
+            else:
+                try:
+                    self._results[port] = self._evaluate_animation(port, self._graph.animation[port])
+                except GraphError as error:
+                    self._results[port] = error.with_traceback(None)
+
+    def _find_reads(self, port: Port) -> list[Port]:
+        """The animated values that an expression names."""
+        animation = self._graph.animation[port]
+        names = animation.names if isinstance(animation, Expression) else ()
+        ports = (find_named_value(self._graph, name)[0] for name in names if _names_a_value(self._graph, name))
+        return [other for other in ports if other in self._graph.animation]
 
     def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
         value = find_value(self._graph.node(port.node), port.socket, port.node)
@@ -157,6 +182,8 @@ class _ValueEvaluation:
         try:
             number = animation.evaluate(self._frame, (self._frame - first) / rate, rate, self._evaluate_name)
         except GraphError as error:
+            if len(str(error)) > _LONG:  # it comes through many expressions, each of which would make it longer
+                raise
             raise GraphError(f"{port} at frame {self._frame}: {error}", node=port.node) from None
         return fit_to_value(port, value, number, self._frame)
 

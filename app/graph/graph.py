@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any, Self
 
@@ -15,7 +16,7 @@ from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
 from .ends import EndSection, move_end
-from .model import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
+from .model import Control, Input, Output, Port, Settings, Signature, Unknown, class_signature, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
 from .relink import move_links, relink
@@ -40,11 +41,20 @@ class Group:
 
     def body(self) -> Graph:
         """The body with the group's values set where its controls point."""
-        graph = self.graph
-        for name, plain in self.values.items():
-            if name in graph.controls:
-                graph = graph.put(graph.controls[name].target, plain)
-        return graph
+        controls = self.graph.controls
+        return self.graph.put_all({controls[name].target: self.values[name] for name in self.values if name in controls})
+
+    def with_values(self, **values: Plain) -> Group:
+        """The group with other settings of some controls."""
+        return dataclasses.replace(self, values={**self.values, **values})
+
+    @cached_property
+    def signature(self) -> Signature:
+        """The inputs, outputs and controls of the body."""
+        inputs = {name: end.socket(name) for name, end in self.graph.inputs.items()}
+        outputs = {name: end.socket(name) for name, end in self.graph.outputs.items()}
+        values = {name: value for name in self.graph.controls if (value := control_value(self.graph, name))}
+        return Signature(inputs, outputs, values)
 
 
 Item = Node | Group | Unknown
@@ -102,7 +112,8 @@ class Graph(Wired[Item]):
         face = signature(item)
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
-        value = pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
+        known = face.values if port.socket in face.values else {**face.inputs, **face.values}
+        value = pick(known, port.socket, f"node '{port.node}' has no input")
         if not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value
@@ -118,11 +129,7 @@ class Graph(Wired[Item]):
     def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
         """The port that can feed `target` in place of node `id`: the source of its first linked input that fits."""
         face = signature(self.node(id))
-        ports = (
-            sorted(port for port in self.links if port.node == id)
-            if face.anything
-            else [Port(id, name) for name in face.inputs]
-        )
+        ports = self.links_into.get(id, ()) if face.anything else [Port(id, name) for name in face.inputs]
         for source in (self.links[port] for port in ports if port in self.links):
             try:
                 start = self.source(source)
@@ -131,8 +138,6 @@ class Graph(Wired[Item]):
             if source.node != id and (target is None or start is None or conversion(start, target) is None):
                 return source
         return None
-
-    # --- nodes -------------------------------------------------------------------------------------------------
 
     def fresh_id(self, stem: str) -> str:
         """A free node id: `stem`, or `stem2`, `stem3`, ..."""
@@ -214,8 +219,6 @@ class Graph(Wired[Item]):
         self.node(id)
         return self._with(muted=self.muted | {id} if on else self.muted - {id})
 
-    # --- links and values --------------------------------------------------------------------------------------
-
     def connect(self, source: Port, target: Port) -> Self:
         """A graph with a link from `source` to `target`, which replaces an earlier link to `target`."""
         if fault := self.link_fault(source, target):
@@ -240,26 +243,32 @@ class Graph(Wired[Item]):
 
         Checks type, choice and hard range.
         """
-        if isinstance(value, Animation):
-            return self.animate(port, value)
+        return self.animate(port, value) if isinstance(value, Animation) else self.put(port, self.fit(port, value))
+
+    def fit(self, port: Port, value: object) -> Plain:
+        """Convert a setting to the type of a value. Raises GraphError if the value cannot be set to it."""
         declaration = find_value(self.node(port.node), port.socket, port.node)
-        if fault := value_fault(declaration, value):
-            raise GraphError(f"{port}: {fault}")
         plain = coerce(declaration, value)
-        assert plain is not None
-        return self.put(port, plain)
+        if (fault := value_fault(declaration, value)) or plain is None:
+            raise GraphError(f"{port}: {fault}")
+        return plain
 
     def put(self, port: Port, plain: Plain) -> Self:
         """`set` without checks; a port that does not exist changes nothing."""
-        item = self.nodes.get(port.node)
-        if isinstance(item, Group) and port.socket in item.graph.controls:
-            item = dataclasses.replace(item, values={**item.values, port.socket: plain})
-        elif isinstance(item, Node) and port.socket in item.values:
-            item = item.with_values(**{port.socket: plain})
-        else:
-            return self
-        animation = without(self.animation, port) if port in self.animation else self.animation
-        return self._with(nodes={**self.nodes, port.node: item}, animation=animation)
+        return self.put_all({port: plain})
+
+    def put_all(self, plains: Mapping[Port, Plain]) -> Self:
+        """`put` of many values at once."""
+        changed: dict[str, dict[str, Plain]] = {}
+        for port, plain in plains.items():
+            item = self.nodes.get(port.node)
+            if port.socket in (item.graph.controls if isinstance(item, Group) else getattr(item, "values", ())):
+                changed.setdefault(port.node, {})[port.socket] = plain
+        nodes = {
+            id: item.with_values(**changed[id]) for id in changed if not isinstance(item := self.nodes[id], Unknown)
+        }
+        still = {port: item for port, item in self.animation.items() if port.socket not in changed.get(port.node, ())}
+        return self._with(nodes={**self.nodes, **nodes}, animation=still) if changed else self
 
     def animate(self, port: Port, animation: Animation | None) -> Self:
         """A graph where a value is animated; with None it is not, and has its setting again."""
@@ -285,8 +294,6 @@ class Graph(Wired[Item]):
         if not isinstance(item, Group):
             raise GraphError(f"'{path}' looks inside '{head}', which is not a group: write {head}.value")
         return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
-
-    # --- inputs, outputs and controls --------------------------------------------------------------------------
 
     def add_input(self, name: str, input: Input) -> Self:
         """A graph with one more input."""
@@ -329,8 +336,6 @@ class Graph(Wired[Item]):
         after = self._move_end("controls", old, new)
         return after if old in self.nodes else after._with(animation=move_animation(self.animation, old, new))
 
-    # --- private -----------------------------------------------------------------------------------------------
-
     def _with(self, **changes: Any) -> Self:
         if "links" in changes and "routes" in self.ui:
             ends = {str(target) for target in changes["links"]}
@@ -348,20 +353,11 @@ class Graph(Wired[Item]):
         return self._with(**move_end(self, section, old, new))
 
 
-# --- signatures of nodes ---------------------------------------------------------------------------------------------
-
-
 def signature(item: Item) -> Signature:
     """The sockets and values of a node. Those of a group are the inputs, outputs and controls of its body."""
     if isinstance(item, Node):
-        outputs = {name: output.socket for name, output in item.outputs.items()}
-        return Signature(item.inputs, outputs, item.values, pointwise=isinstance(item, Pointwise))
-    if isinstance(item, Unknown):
-        return Signature({}, {}, {}, anything=True)
-    inputs = {name: end.socket(name) for name, end in item.graph.inputs.items()}
-    outputs = {name: end.socket(name) for name, end in item.graph.outputs.items()}
-    values = {name: value for name in item.graph.controls if (value := control_value(item.graph, name))}
-    return Signature(inputs, outputs, values)
+        return class_signature(type(item))
+    return item.signature if isinstance(item, Group) else Signature({}, {}, {}, anything=True)
 
 
 def control_value(graph: Graph, name: str) -> Value | None:

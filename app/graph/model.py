@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, cast
 
-from halation.nodes import ColorSettings, Kind, Missing, Plain, Size, Socket, Value
+from halation.nodes import ColorSettings, Kind, Missing, Node, Plain, Pointwise, Size, Socket, Value
 from msgspec import Struct
 
 from ..errors import GraphError
@@ -135,12 +136,23 @@ class Signature(Struct, frozen=True):
     anything: bool = False
 
 
+@lru_cache(1024)
+def class_signature(kind: type[Node]) -> Signature:
+    """What all nodes of a class show to links."""
+    outputs = {name: output.socket for name, output in kind.outputs.items()}
+    return Signature(kind.inputs, outputs, kind.values, pointwise=issubclass(kind, Pointwise))
+
+
+_SCALARS = frozenset({str, int, float, bool, type(None)})
+
+
 def freeze(item: Any) -> Any:
     """A read-only copy of a JSON tree: objects as mapping proxies, lists as tuples."""
     if isinstance(item, Mapping):
-        return MappingProxyType({key: freeze(part) for key, part in cast("Mapping[str, Any]", item).items()})
+        parts = cast("Mapping[str, Any]", item).items()
+        return MappingProxyType({key: part if type(part) in _SCALARS else freeze(part) for key, part in parts})
     if isinstance(item, list | tuple):
-        return tuple(freeze(part) for part in cast("list[Any]", item))
+        return tuple(part if type(part) in _SCALARS else freeze(part) for part in cast("list[Any]", item))
     return item
 
 

@@ -14,7 +14,7 @@ from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, signature
 from .model import Input, Port, Unknown
-from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
+from .names import INPUTS, OUTPUTS, did_you_mean, limited_suggestions, name_fault, pick
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
 from .values import coerce_numbers, value_fault
@@ -55,7 +55,8 @@ def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tup
 
     `known` holds the installed node types, for suggestions. An input without file or default is none: it may be bound.
     """
-    problems_ = list(_inside(graph, catalogue() if known is None else known, 0))
+    with limited_suggestions():
+        problems_ = list(_inside(graph, catalogue() if known is None else known, 0))
     return tuple(sorted(problems_, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
 
 
@@ -158,10 +159,9 @@ def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) ->
 
 
 def _links(graph: Graph) -> Iterator[Problem]:
-    for target, source in graph.links.items():
-        if fault := graph.link_fault(source, target):
-            sentence = f"'{source}' cannot feed '{target}': {fault}"
-            yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
+    for target, fault in graph.link_faults.items():
+        sentence = f"'{graph.links[target]}' cannot feed '{target}': {fault}"
+        yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
 
 
 def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:

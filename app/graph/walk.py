@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Hashable, Iterable, Mapping, Sequence
 from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from types import MappingProxyType
@@ -13,6 +13,11 @@ from .model import Port
 from .names import INPUTS, OUTPUTS
 
 Steps = Mapping[str, Iterable[str]]
+N = TypeVar("N", bound=Hashable)
+T = TypeVar("T")
+
+_MAX_NAMED = 40
+"""Nodes of a loop that a sentence names: as many as fit into a few lines."""
 
 
 def map_neighbors(names: Collection[str], end: str, pairs: Iterable[tuple[str, str]]) -> Mapping[str, frozenset[str]]:
@@ -37,15 +42,44 @@ def find_loops(steps: Steps, max_count: int = 8) -> tuple[tuple[str, ...], ...]:
             TopologicalSorter(remaining).prepare()
             break
         except CycleError as error:
-            loop = tuple(error.args[1])
-            loops_found.append(loop)
-            remaining = {name: after.difference(loop) for name, after in remaining.items() if name not in loop}
+            loops_found.append(tuple(error.args[1]))
+            inside = set(loops_found[-1])
+            remaining = {name: after - inside for name, after in remaining.items() if name not in inside}
     return tuple(loops_found)
 
 
-def find_reachable(start: str, steps: Steps) -> dict[str, str]:
-    """Every name that `start` leads to, nearest first, with the name that it was first reached from."""
-    reached_from, frontier = dict[str, str](), [start]
+def find_cyclic(steps: Mapping[N, Collection[N]]) -> frozenset[N]:
+    """Every name that leads to itself. In linear time, by strongly connected components (Tarjan 1972)."""
+    cyclic, number, lowest = set[N](), dict[N, int](), dict[N, int]()
+    component: dict[N, None] = {}
+    for root in steps:
+        path = [] if root in number else [(root, iter(steps[root]))]
+        while path:
+            name, rest = path[-1]
+            if name not in number:
+                number[name] = lowest[name] = len(number)
+                component[name] = None
+            for after in rest:
+                if after in component:
+                    lowest[name] = min(lowest[name], number[after])
+                elif after not in number and after in steps:
+                    path.append((after, iter(steps[after])))
+                    break
+            else:
+                path.pop()
+                if path:
+                    lowest[path[-1][0]] = min(lowest[path[-1][0]], lowest[name])
+                if lowest[name] == number[name]:
+                    group = [component.popitem()[0]]
+                    while group[-1] != name:
+                        group.append(component.popitem()[0])
+                    cyclic.update(group if len(group) > 1 or name in steps[name] else ())
+    return frozenset(cyclic)
+
+
+def find_reachable(starts: Iterable[str], steps: Steps) -> dict[str, str]:
+    """Every name that `starts` lead to, nearest first, with the name that it was first reached from."""
+    reached_from, frontier = dict[str, str](), [*starts]
     while frontier:
         next_frontier: list[str] = []
         for name in frontier:
@@ -61,7 +95,7 @@ def find_route(start: str, goal: str, steps: Steps) -> tuple[str, ...]:
     """A shortest route from `start` to `goal`, both included; empty if there is none."""
     if start == goal:
         return (start,)
-    reached_from = find_reachable(start, steps)
+    reached_from = find_reachable([start], steps)
     if goal not in reached_from:
         return ()
     route_back = [goal]
@@ -70,12 +104,11 @@ def find_route(start: str, goal: str, steps: Steps) -> tuple[str, ...]:
     return tuple(reversed(route_back))
 
 
-def describe_loop(loop: Iterable[str]) -> str:
+def describe_loop(loop: Sequence[str]) -> str:
     """A sentence about nodes that form a loop."""
-    return f"the nodes {' -> '.join(loop)} form a loop; remove one of these links"
-
-
-T = TypeVar("T")
+    left_out = len(loop) - _MAX_NAMED
+    names = [*loop[:_MAX_NAMED], f"{left_out} more", loop[-1]] if left_out > 1 else loop
+    return f"the nodes {' -> '.join(names)} form a loop; remove one of these links"
 
 
 class Wired(Generic[T]):
@@ -83,6 +116,16 @@ class Wired(Generic[T]):
 
     nodes: Mapping[str, T]
     links: Mapping[Port, Port]
+
+    def link_fault(self, source: Port, target: Port) -> str | None:
+        """Why a link from `source` cannot feed `target`, loops aside, or None."""
+        raise NotImplementedError
+
+    @cached_property
+    def link_faults(self) -> Mapping[Port, str]:
+        """Why links cannot be, by target, loops aside."""
+        faults = ((target, self.link_fault(source, target)) for target, source in self.links.items())
+        return MappingProxyType({target: fault for target, fault in faults if fault})
 
     def order(self) -> tuple[str, ...]:
         """All nodes, each after those that feed it; the same for equal graphs. Raises GraphError that names a loop."""
@@ -93,16 +136,24 @@ class Wired(Generic[T]):
 
     def upstream(self, id: str) -> frozenset[str]:
         """Every node that `id` (or OUTPUTS) depends on."""
-        return frozenset(find_reachable(id, self.feeding))
+        return frozenset(find_reachable([id], self.feeding))
 
     def downstream(self, id: str) -> frozenset[str]:
         """Every node that depends on `id` (or INPUTS)."""
-        return frozenset(find_reachable(id, self.fed))
+        return frozenset(find_reachable([id], self.fed))
 
     @cached_property
     def feeding(self) -> Mapping[str, frozenset[str]]:
         """For each node and OUTPUTS: the nodes that feed it directly."""
         return map_neighbors(self.nodes, OUTPUTS, ((end.node, start.node) for end, start in self.links.items()))
+
+    @cached_property
+    def links_into(self) -> Mapping[str, tuple[Port, ...]]:
+        """The targets of the links into each node, in order."""
+        targets: dict[str, list[Port]] = {}
+        for port in sorted(self.links):
+            targets.setdefault(port.node, []).append(port)
+        return MappingProxyType({id: tuple(ports) for id, ports in targets.items()})
 
     @cached_property
     def fed(self) -> Mapping[str, frozenset[str]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 
 from halation.nodes import Node, catalogue
@@ -14,6 +15,7 @@ from ..document.disk import read_text
 from ..document.positions import Positions
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
+from ..graph.names import limited_suggestions
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
 from ..resources.sandbox import Sandbox
@@ -55,11 +57,17 @@ class CheckReport:
 
     file: str
     findings: tuple[Finding, ...]
+    omitted: int = 0
+    """How many more there are: nobody reads 100,000 lines. What is left out is no worse than what is not."""
 
     @property
     def code(self) -> int:
         """The worst exit code."""
         return max((finding.code for finding in self.findings), default=0)
+
+
+MAX_FINDINGS = 1000
+"""How many findings a report holds: more than anybody mends without checking again."""
 
 
 @dataclass
@@ -90,11 +98,12 @@ class GraphChecker:
 
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
         """The text of a graph. Relative paths in it start at `folder`."""
-        try:
-            whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
-        except DocumentError as fault:
-            return self._report(file, text, None, self._document_problem(fault, file, text))
-        return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))
+        with limited_suggestions():
+            try:
+                whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
+            except DocumentError as fault:
+                return self._report(file, text, None, self._document_problem(fault, file, text))
+            return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))
 
     def _document_problem(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
         problem, line = texts.unread(fault, text)
@@ -141,11 +150,15 @@ class GraphChecker:
             ]
         if not reported:
             return CheckReport(file, ())
-        lines = Positions(text)
+        # Errors stay: the worst exit code comes first, and `sorted` keeps the order of what is equal.
+        chosen = sorted(reported, key=lambda item: -item[2])[:MAX_FINDINGS]
+        places = [() if line else _find_places(whole_graph, problem) for problem, line, _ in chosen]
+        lines = Positions(text, chain.from_iterable(places))
         findings = [
-            Finding(line or _line(lines, whole_graph, problem), problem, code) for problem, line, code in reported
+            Finding(line or _line(lines, paths, problem), problem, code)
+            for (problem, line, code), paths in zip(chosen, places, strict=True)
         ]
-        return CheckReport(file, tuple(sorted(findings, key=_order)))
+        return CheckReport(file, tuple(sorted(findings, key=_order)), len(reported) - len(chosen))
 
 
 def _order(finding: Finding) -> tuple[int, str, str, str]:
@@ -153,23 +166,31 @@ def _order(finding: Finding) -> tuple[int, str, str, str]:
     return finding.line, problem.severity, problem.rule.name, problem.sentence
 
 
-def _line(lines: Positions, whole_graph: Graph | None, problem: Problem) -> int:
-    """The line of a problem: that of its JSON path, else of whatever its node and socket name."""
+def _line(lines: Positions, paths: Sequence[str], problem: Problem) -> int:
+    """The line of a problem that `paths` belong to."""
     if problem.at:
         return lines.line(problem.at, last=problem.rule is texts.DOUBLE_KEY)
+    return lines.line(next((path for path in paths if path in lines), ""))
+
+
+def _find_places(whole_graph: Graph | None, problem: Problem) -> tuple[str, ...]:
+    """The JSON path of a problem, else those of whatever its node and socket name, the most exact first."""
+    if problem.at:
+        return (problem.at,)
+    if not problem.node and not problem.socket:
+        return ()
     at, *rest = "", *problem.node.split("/")
     for name in rest[:-1]:
         item = whole_graph.nodes.get(name) if whole_graph else None
         whole_graph = item.graph if isinstance(item, Group) else None
         if isinstance(item, Group) and item.path:
-            return lines.line(f"{at}nodes.{name}.path")
+            return (f"{at}nodes.{name}.path",)
         at = f"{at}nodes.{name}.graph."
     node = rest[-1]
-    places = (
+    return (
         f"{at}nodes.{node}.values.{problem.socket}",
         f"{at}links.{node}.{problem.socket}",
         f"{at}{node}.{problem.socket}",
         f"{at}nodes.{node}",
         f"{at}{node}",
     )
-    return lines.line(next((place for place in places if place in lines), ""))

@@ -236,5 +236,6 @@ def _places(graph: Graph, inside: str = "", at: str = "", fixed: str = "") -> di
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
             there = fixed or (f"{at}nodes.{id}.path" if item.path else "")
-            places = {**_places(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.", there), **places}
+            for path, place in _places(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.", there).items():
+                places.setdefault(path, place)
     return places

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, TypeGuard
 
@@ -20,6 +20,8 @@ class GraphFacts:
     """A graph, or the body of a group that is part of its file, that has no errors."""
 
     graph: Graph
+    _bypassed: dict[tuple[Port, object], Port | None] = field(default_factory=dict[tuple[Port, object], "Port | None"])
+    """What reaches a port in place of a node that passes its picture through, by the kind of the target."""
 
     @cached_property
     def readers(self) -> Counter[Port]:
@@ -56,10 +58,23 @@ class GraphFacts:
 
     def source(self, target: Port) -> Port | None:
         """What feeds an input, past all nodes that pass their picture through."""
-        found = self.graph.links.get(target)
-        while found is not None and found.node in self.graph.nodes and self.works(found.node) is None:
-            found = self.graph.bypass(found.node, self.graph.target(target))
-        return found
+        port = self.graph.links.get(target)
+        if port is None or not self._is_passed(port):
+            return port
+        socket, passed = self.graph.target(target), list[tuple[Port, object]]()
+        # What fits depends on the target, by its kind. Many targets behind one long chain walk it once.
+        kind = socket if isinstance(socket, Value) or socket is None else (socket.kind, socket.channels)
+        while port is not None and self._is_passed(port):
+            passed.append((port, kind))
+            if passed[-1] in self._bypassed:
+                port = self._bypassed[passed[-1]]
+                break
+            port = self.graph.bypass(port.node, socket)
+        self._bypassed.update(dict.fromkeys(passed, port))
+        return port
+
+    def _is_passed(self, port: Port) -> bool:
+        return port.node in self.graph.nodes and self.works(port.node) is None
 
     def first(self, id: str) -> Port | None:
         """What feeds the first input of a node: its picture."""

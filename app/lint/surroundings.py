@@ -36,6 +36,7 @@ class Surroundings:
     """What was found out about folders, each looked at once."""
 
     _names: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
+    _spellings: dict[str, dict[str, list[str]]] = field(default_factory=dict[str, dict[str, list[str]]])
     _roots: dict[str, Path | None] = field(default_factory=dict[str, "Path | None"])
 
     def problems(self, graph: Graph) -> Iterator[Problem]:
@@ -72,7 +73,7 @@ class Surroundings:
                 if _is_pattern(part):
                     right.append(part)
                     break
-                alike = [name for name in self._in(here) if _plain(name) == _plain(part)]
+                alike = self._alike(here).get(_plain(part), ())
                 if len(alike) != 1:
                     return ""
                 right.append(alike[0])
@@ -81,6 +82,14 @@ class Surroundings:
             here = os.path.normpath(os.path.join(here, right[-1]))  # noqa: PTH118
         found = "/".join(right)
         return found if found != "/".join(PurePath(path).parts) else ""
+
+    def _alike(self, folder: str) -> dict[str, list[str]]:
+        """What is in a folder, by its name without capitals."""
+        if folder not in self._spellings:
+            spellings = self._spellings.setdefault(folder, {})
+            for name in self._in(folder):
+                spellings.setdefault(_plain(name), []).append(name)
+        return self._spellings[folder]
 
     def _in(self, folder: str) -> frozenset[str]:
         """What is in a folder."""

@@ -86,4 +86,4 @@ def test_did_you_mean() -> None:
     assert did_you_mean("Bloom", ["bloom", "blur"]) == "; did you mean 'bloom'?"
     assert did_you_mean("xyz", ["bloom", "blur"]) == "; there is bloom, blur"
     assert did_you_mean("xyz", []) == ""
-    assert did_you_mean("xyz", map(str, range(100))) == ""
+    assert did_you_mean("xyz", [*map(str, range(100))]) == ""

@@ -34,7 +34,7 @@ def make_space(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | 
     after: dict[str, list[str]] = {}
     for start, end in links:
         after.setdefault(start, []).append(end)
-    behind = {element_of(target), *find_reachable(element_of(target), after)} - {*ids}
+    behind = {element_of(target), *find_reachable([element_of(target)], after)} - {*ids}
     by = _measure_overlap(graph, ids, behind, places, sizes)
     return _push_right(graph, behind, by, places, sizes) if by > 0.0 else graph
 

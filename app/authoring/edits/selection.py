@@ -61,7 +61,5 @@ def _spread(graph: Graph, selection: Collection[str], steps: Steps) -> tuple[str
     for link in element_links(graph):
         for start, end in steps(*link):
             ways.setdefault(start, []).append(end)
-    reached = set(selection)
-    for key in selection:
-        reached |= find_reachable(key, ways).keys()
+    reached = {*selection, *find_reachable(selection, ways)}
     return tuple(key for key in list_elements(graph) if key in reached)

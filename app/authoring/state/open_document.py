@@ -385,12 +385,12 @@ class OpenDocument:
         return self._memo.get(f"timed {len(place)}", (self.root, self.graph), compute)
 
     def _evaluate_now(self, exposed: Iterable[Port]) -> Graph:
-        graph = self.graph
+        graph, changed = self.graph, dict[Port, Plain]()
         for port in dict.fromkeys((*graph.animation, *exposed)):
             with suppress(GraphError):
                 if (plain := self.value_now(port)) != graph.value(port):
-                    graph = graph.put(port, plain)
-        return graph
+                    changed[port] = plain
+        return graph.put_all(changed)
 
     def _measure_frames(self) -> tuple[int, int]:
         if self.measure is not None:

@@ -13,6 +13,7 @@ from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...glsl import Text
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
+from ...graph.names import pick
 
 MAX_DEPTH = 32
 """Groups inside groups. Chosen by judgement: graphs in use nest two or three deep. A file can name itself as the body
@@ -30,24 +31,32 @@ class FlatGraph(Struct):
     faults: dict[Port, str] = field(default_factory=dict[Port, str])
     """Why links are invalid, by target: an error when something follows such a link."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
+    _sources: dict[Port, Port] = field(default_factory=dict[Port, Port])
+    """What has been followed already: thousands of links may share a way through many groups."""
 
     def find_source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
         if port not in self.links:
             return None
-        source, visited = port, set[Port]()
+        source, visited = port, dict[Port, None]()
         while source in self.links:
+            if source in self._sources:
+                source = self._sources[source]
+                break
             if source in self.faults:
                 raise GraphError(self.faults[source], node=source.node)
             if source in visited:
                 group = source.node.rpartition("/")[0]
                 raise GraphError(f"group '{group}' feeds itself: cut one link of the loop", node=group)
-            visited.add(source)
+            visited[source] = None
             source = self.links[source]
+        self._sources.update(dict.fromkeys(visited, source))
         return source
 
     def follow(self, end: Port) -> Port:
         """Like `find_source` without checks, for links that were checked before; the end itself if nothing feeds it."""
+        if end in self._sources:
+            return self._sources[end]
         for _ in range(len(self.links)):
             if end not in self.links:
                 break
@@ -98,7 +107,7 @@ def expand(graph: Graph) -> FlatGraph:
         for target, source in body.links.items():
             inner_target = _enter_groups(body, prefix, target)
             flat.links[inner_target] = _leave_group(body, prefix, source)
-            if fault := body.link_fault(source, target):
+            if fault := body.link_faults.get(target):
                 place = f"in group '{prefix.rstrip('/')}': " if prefix else ""
                 flat.faults[inner_target] = f"{place}'{source}' cannot feed '{target}': {fault}"
     return flat
@@ -134,9 +143,8 @@ def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[st
 
 def _set_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
     """The body of a group with its controls set to values."""
-    for name, value in values.items():
-        body = body.set_control(name, value)
-    return body
+    targets = {name: pick(body.controls, name, "the graph has no control").target for name in values}
+    return body.put_all({target: body.fit(target, values[name]) for name, target in targets.items()})
 
 
 def _enter_groups(body: Graph, prefix: str, target: Port) -> Port:

@@ -8,7 +8,7 @@ from pathlib import PurePath
 from halation.nodes import Kind, Missing, Reader, Source
 from msgspec.structs import replace
 
-from ...graph import INPUTS, Graph, Input, Port, color_settings
+from ...graph import INPUTS, Graph, Group, Input, Port, color_settings
 from ...graph.color import BUILT_IN
 from ...resources.picture import Picture
 from .expand import FlatGraph, expand
@@ -58,6 +58,8 @@ def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tupl
 
     Groups are looked into; a path may stand for a sequence.
     """
+    if not _names_files(graph):
+        return []
     flat = expand(graph)
 
     def find_policy(owner: str) -> Missing:
@@ -72,6 +74,14 @@ def find_named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tupl
         for picture, owner in ReferencedPictures(flat, bindings)
         if not picture.in_memory
     ]
+
+
+def _names_files(graph: Graph) -> bool:
+    """False for a graph that makes all that it shows, which need not be expanded."""
+    return any(not end.kind.is_planned for end in graph.inputs.values()) or any(
+        _names_files(item.graph) if isinstance(item, Group) else isinstance(item, Source)
+        for item in graph.nodes.values()
+    )
 
 
 def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:

@@ -46,10 +46,10 @@ def _filtered(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
     while port and sheet.readers[port] == 1:
         item = sheet.works(port.node)
         if has_trait(item, Trait.RESAMPLES):
-            return port.node, between
+            return port.node, between[::-1]
         if not isinstance(item, Pointwise) or not (name := _picture(sheet, port.node, item)):
             break
-        between.insert(0, port.node)
+        between.append(port.node)
         port = sheet.source(Port(port.node, name))
     return "", []
 

@@ -8,6 +8,7 @@ from typing import Any, cast
 from ...graph import INPUTS, OUTPUTS, Expression, Problem
 from ...graph.evaluate_at_frame import find_named_value
 from ...graph.rules import Rule
+from ...graph.walk import find_reachable
 from ..sheet import Check, GraphFacts
 
 UNUSED_BRANCH = Rule(
@@ -29,18 +30,23 @@ STALE_LAYOUT = Rule(
     "Remove the entries, or save the graph in the editor.",
 )
 
+_MOST_COUNTED = 1_000_000
+"""Nodes that are counted for all dead ends together, about half a second: many ends can share a long branch."""
+
 
 def unused_branch(sheet: GraphFacts) -> Iterator[Problem]:
     """The ends of branches that lead nowhere."""
     graph = sheet.graph
     if not graph.outputs:
         return
-    needed = set(graph.upstream(OUTPUTS)) | _wanted(sheet)
-    for id in sorted(needed):
-        needed |= graph.upstream(id)
-    for id in graph.nodes:
-        if id not in needed and not graph.fed[id] - {id}:
-            rest = len(graph.upstream(id) - needed - {id})
+    ends = [OUTPUTS, *_wanted(sheet)]
+    needed = {*ends, *find_reachable(ends, graph.feeding)}
+    unused = {id: graph.feeding[id] - needed for id in graph.nodes if id not in needed}
+    count = 0
+    for id in unused:
+        if not graph.fed[id] - {id}:
+            rest = len(find_reachable([id], unused).keys() - {id}) if count < _MOST_COUNTED else 0
+            count += rest
             more = f", nor do the {rest} before it" if rest > 1 else ", nor does the one before it" if rest else ""
             sentence = f"'{id}' leads to no output{more}: link it to something, or remove it"
             yield Problem(id, "", sentence, UNUSED_BRANCH, f"nodes.{id}")
