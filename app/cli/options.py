@@ -134,11 +134,15 @@ def override_value(graph: Graph, name: str, text: str) -> Graph:
 
 
 def read_standard_input() -> str:
-    """The text of standard input. Raises DocumentError if it is not UTF-8."""
+    """The text of standard input. Raises DocumentError if it is not UTF-8, or larger than a graph file may be."""
+    from ..document.limits import MAX_BYTES, size_fault
     from ..errors import DocumentError
 
+    content = sys.stdin.buffer.read(MAX_BYTES + 1) if sys.stdin else b""
+    if content and (fault := size_fault(len(content))):
+        raise DocumentError("-", "", fault, rule="unreadable-graph")
     try:
-        return sys.stdin.buffer.read().decode("utf-8-sig") if sys.stdin else ""
+        return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise DocumentError("-", "", f"the text is not UTF-8 (byte {error.start}); save it as UTF-8") from None
 

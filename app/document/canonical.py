@@ -32,7 +32,9 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
         return "[]" if isinstance(item, list | tuple) else "{}"
     if depth > MAX_NESTING:
         where = spell_path(trail)
-        raise GraphError(f"{where}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files")
+        raise GraphError(
+            f"{where}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files"
+        )
     inner, texts = indent + 2, list[str]()
     if not isinstance(item, list | tuple):
         known = cast("Mapping[str, Any]", item)

@@ -150,4 +150,3 @@ def _fault(part: Any) -> str | None:
 def _is_text(text: str) -> bool:
     """False for half a surrogate pair, which JSON can spell and UTF-8 cannot."""
     return text.isascii() or not any("\ud800" <= letter <= "\udfff" for letter in text)
-

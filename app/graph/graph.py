@@ -42,7 +42,9 @@ class Group:
     def body(self) -> Graph:
         """The body with the group's values set where its controls point."""
         controls = self.graph.controls
-        return self.graph.put_all({controls[name].target: self.values[name] for name in self.values if name in controls})
+        return self.graph.put_all(
+            {controls[name].target: self.values[name] for name in self.values if name in controls}
+        )
 
     def with_values(self, **values: Plain) -> Group:
         """The group with other settings of some controls."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from copy import deepcopy
 from pathlib import Path
 from random import Random
 
@@ -70,7 +71,7 @@ def test_a_part_is_something_else(index, rng: Random) -> None:
         holder, key = rng.choice(parts(tree))
         act = rng.random()
         if act < 0.6:
-            holder[key] = rng.choice(ODD)
+            holder[key] = deepcopy(rng.choice(ODD))
         elif act < 0.8 or isinstance(holder, list):
             del holder[key]
         else:
