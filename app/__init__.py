@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .graph import Graph, Port
     from .inputs.provider import Binding
     from .renderer import Renderer
+    from .renderer.execution.trials import TrialProcess
     from .resources.sandbox import Sandbox
 
 __all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
@@ -89,6 +90,10 @@ def render_frames(
     An input may also be bound to a function that makes the picture of a frame. Whatever the order, a frame is always
     the same: nodes with a memory are led up to it from the first frame of the graph, or by its pre-roll.
     """
+    from .graph.custom_code import has_code
+
+    if has_code(graph):
+        _trial_process().start()  # while the renderer is loaded
     from .renderer import FrameRenderer, RenderRequest
     from .resources.sandbox import read_process_sandbox
 
@@ -148,7 +153,15 @@ def _renderer(sandbox: Sandbox) -> Renderer:
     """One device for all calls: opening another costs more than most graphs."""
     from .renderer import Renderer
 
-    return Renderer(sandbox=sandbox)
+    return Renderer(sandbox=sandbox, trial_process=_trial_process())
+
+
+@cache
+def _trial_process() -> TrialProcess:
+    """The process in which programs with code of users are tried."""
+    from .renderer.execution.trials import TrialProcess
+
+    return TrialProcess()
 
 
 def __getattr__(name: str) -> Any:

@@ -104,20 +104,10 @@ class Watchdog:
 
 def needs_watchdog(graph: Graph) -> bool:
     """True if the graph has code nodes, also in groups, and no other process watches this one."""
+    from ..graph.custom_code import has_code
     from ..renderer.execution.progress_beacon import BEACON_FILE
 
     return not os.environ.get(BEACON_FILE) and has_code(graph)
-
-
-def has_code(graph: Graph) -> bool:
-    """True if a code node is in the graph or in one of its groups."""
-    from ..custom_nodes import CustomNode
-    from ..graph import Group
-
-    return any(
-        has_code(node.graph) if isinstance(node, Group) else isinstance(node, CustomNode)
-        for node in graph.nodes.values()
-    )
 
 
 def can_fork() -> bool:

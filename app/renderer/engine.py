@@ -16,6 +16,7 @@ from ..resources.sandbox import Sandbox
 from .device import Device
 from .execution.decoding import Array
 from .execution.runner import Runner
+from .execution.trials import TrialProcess, Trials
 from .opening import open_device
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ class Renderer:
     """Renders graphs on one device and one thread, keeping programs, textures and results for the next time.
 
     `budget` is how many bytes of results may stay on the device. Without a `device` it opens one, and closes it too.
-    `ahead` reads pictures already.
+    `ahead` reads pictures already; `trial_process` has started already, to try programs with code of users.
     """
 
     def __init__(
@@ -73,13 +74,15 @@ class Renderer:
         library: Library | None = None,
         fusion: bool = True,
         ahead: Prefetcher | None = None,
+        trial_process: TrialProcess | None = None,
         sandbox: Sandbox,
     ) -> None:
         self.sandbox = sandbox
         self._owns_device = device is None
         self.device = device or open_device(sandbox=sandbox)
         self.pictures = MediaProvider(prefetcher=ahead, sandbox=sandbox)
-        self.runner = Runner(self.device, self.pictures.load_pixels, budget)
+        self._trial_process = trial_process or TrialProcess()
+        self.runner = Runner(self.device, self.pictures.load_pixels, budget, Trials(self._trial_process))
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""
         self._fusion = fusion
@@ -125,6 +128,7 @@ class Renderer:
     def close(self) -> None:
         """Give back textures, programs and threads, and the device if it was not handed in."""
         self.runner.close()
+        self._trial_process.close()
         if self._owns_device:
             self._owns_device = False
             self.device.close()

@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 from random import Random
 
+import shader_corpus
 from cases import Case
 
 TYPES = ("float", "int", "uint", "vec2", "vec3", "vec4", "bool")
@@ -26,26 +27,47 @@ WORDS = (
 """What code of a node has no business to say."""
 
 
+COMMANDS = (
+    ("render", "graph.json", "-o", "out.exr", "--size", "24x16", "--timeout", "3"),
+    ("check", "graph.json"),
+    ("api", "graph.json"),
+)
+"""The API renders in the process itself, after a trial in another one."""
+
+CODES = frozenset({0, 1, 3, 5})
+
+
 def build_cases(seed: int, count: int) -> Iterator[Case]:
     """So many cases; the same for the same seed."""
     folder = resources.files("halation.shaders")
     corpus = [path.read_text("utf-8") for path in Path(str(folder)).glob("*/*.glsl")]
     for number in range(count):
         rng = Random(f"shaders {seed} {number}")
-        code = shuffle_tokens(rng, rng.choice(corpus)) if rng.random() < 0.15 else write_function(rng)
-        words = rng.choices(
-            (("render", "graph.json", "-o", "out.exr", "--size", "24x16", "--timeout", "3"), ("check", "graph.json")),
-            (3, 1),
-        )[0]
-        yield Case(f"shader-{seed}-{number}", _writer(code), words, seconds=15.0)
+        choice = rng.random()
+        if choice < 0.1:
+            code = shuffle_tokens(rng, rng.choice(corpus))
+        elif choice < 0.2:
+            code = shuffle_tokens(rng, write_function(rng))
+        else:
+            code = write_function(rng)
+        language = "isf" if rng.random() < 0.15 else "glsl"
+        words = rng.choices(COMMANDS, (6, 3, 1))[0]
+        yield Case(f"shader-{seed}-{number}", _writer(code, language), words, seconds=25.0, codes=CODES)
 
 
-def _writer(code: str) -> Callable[[Path], None]:
+def _writer(code: str, language: str) -> Callable[[Path], None]:
+    if language == "isf":
+        inputs = [{"NAME": "picture", "TYPE": "image"}, {"NAME": "count", "TYPE": "long", "DEFAULT": 0}]
+        head = json.dumps({"INPUTS": inputs})
+        main = "void main() { gl_FragColor = effect(IMG_THIS_PIXEL(picture), TIME, count); }"
+        code = f"/*{head}*/\n{code}\n{main}"
+    socket = "picture" if language == "isf" else "image"
     graph = {
         "halation": 1,
+        "settings": {"size": [24, 16]},
         "outputs": {"image": {"type": "Image"}},
-        "nodes": {"s": {"type": "noise"}, "n": {"type": "glsl", "code": code.split("\n")}},
-        "links": {"n.image": "s.out", "outputs.image": "n.out"},
+        "nodes": {"s": {"type": "noise"}, "n": {"type": language, "code": code.split("\n")}},
+        "links": {f"n.{socket}": "s.out", "outputs.image": "n.out"},
     }
 
     def prepare(folder: Path) -> None:
@@ -56,12 +78,16 @@ def _writer(code: str) -> Callable[[Path], None]:
 
 def write_function(rng: Random) -> str:
     """Helpers, macros and the function of a node."""
-    head = [rng.choice(HEADS)(rng) for _ in range(rng.choice((0, 0, 1, 1, 2)))]
-    names = {"image": "vec4", "amount": "float"}
-    body = [_statement(rng, names, 0) for _ in range(rng.randint(1, 8))]
+    heads = (*HEADS, *shader_corpus.HEADS)
+    head = [rng.choice(heads)(rng) for _ in range(rng.choice((0, 0, 0, 1, 1, 2)))]
+    names = {"image": "vec4", "amount": "float", "count": "int"}
+    body = [_statement(rng, names, 0) for _ in range(rng.randint(1, 6))]
+    body += [rng.choice(shader_corpus.STATEMENTS)(rng) for _ in range(rng.choice((0, 1, 1, 2)))]
     body = ["    " + line for line in body]
     last = f"    return {_expression(rng, names, 'vec4', 0)};"
-    return "\n".join([*head, "vec4 effect(vec4 image, float amount) {", *body, last, "}"])
+    return "\n".join(
+        [*head, "vec4 effect(vec4 image, float amount /* = 1 */, int count /* = 0 */) {", *body, last, "}"]
+    )
 
 
 def _expression(rng: Random, names: dict[str, str], kind: str, depth: int) -> str:

@@ -65,7 +65,9 @@ def main() -> None:
     for line in sys.stdin:
         case = json.loads(line)
         code = run_case(case["folder"], case["words"])
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+        peak = 1024 * max(
+            resource.getrusage(whose).ru_maxrss for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+        )
         print(json.dumps({"code": code, "peak": peak}), flush=True)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
 from functools import partial
 
@@ -11,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
-from ...errors import InputError, RenderError
+from ...errors import DeviceError, InputError, RenderError
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
@@ -22,6 +23,7 @@ from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
 from .texture_pool import Lease, PooledTexture, TexturePool
+from .trials import Trials
 
 MAX_TABLES = 64
 MAX_MESHES = 16
@@ -45,8 +47,8 @@ class Counters(Struct):
 class Executor:
     """Programs, textures and buffers on one device, and what is done with them."""
 
-    def __init__(self, device: Device, budget: int) -> None:
-        self.device = device
+    def __init__(self, device: Device, budget: int, trials: Trials | None = None) -> None:
+        self.device, self._trials = device, trials
         self.programs = ProgramCache(device)
         self.textures = TexturePool(device, budget)
         self.counters = Counters()
@@ -90,6 +92,7 @@ class Executor:
 
     def measure(self, plan: Plan, render_pass: Pass, lease: Lease) -> float:
         """Execute a pass and wait for it; the seconds that it took on the device."""
+        self._await_trial(plan, render_pass)
         self.compile(render_pass)
         seconds = self.device.time(partial(self.execute, plan, render_pass, lease))
         self._costs.learn(plan, render_pass, seconds)
@@ -102,8 +105,25 @@ class Executor:
 
     def execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
+        self._await_trial(plan, render_pass)
         with self._watch(render_pass):
             self._execute(plan, render_pass, lease)
+
+    def is_tried(self, plan: Plan, render_pass: Pass) -> bool:
+        """False while another process tries the program of a pass, which `execute` would wait for."""
+        trial = self.begin_trial(plan, render_pass)
+        return trial is None or trial.done()
+
+    def begin_trial(self, plan: Plan, render_pass: Pass) -> Future[DeviceError | None] | None:
+        """Begin to try the program of a pass in another process, where it has code of users and is not known."""
+        if self._trials is None or not render_pass.writers or self._beacon.watched:
+            return None
+        return None if render_pass.shader in self.programs else self._trials.begin(plan, render_pass)
+
+    def _await_trial(self, plan: Plan, render_pass: Pass) -> None:
+        trial = self.begin_trial(plan, render_pass)
+        if trial is not None and (fault := trial.result()):
+            raise fault
 
     @contextmanager
     def _watch(self, render_pass: Pass) -> Iterator[None]:

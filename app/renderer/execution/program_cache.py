@@ -31,6 +31,9 @@ class ProgramCache:
         """The program of a pass. Raises ShaderError with node, file and line where the driver refuses it."""
         return self._programs.get(render_pass.shader, partial(self._compile, render_pass))
 
+    def __contains__(self, shader: Shader) -> bool:
+        return shader in self._programs
+
     def clear(self) -> None:
         """Give everything back to the driver."""
         self._programs.clear()

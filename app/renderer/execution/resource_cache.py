@@ -28,6 +28,9 @@ class ResourceCache(Generic[Key, Resource]):
             self._resources.pop(next(iter(self._resources))).release()
         return resource
 
+    def __contains__(self, key: Key) -> bool:
+        return key in self._resources
+
     def clear(self) -> None:
         """Release all of them."""
         for resource in self._resources.values():

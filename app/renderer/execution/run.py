@@ -42,7 +42,7 @@ class Run(ABC):
     @property
     @abstractmethod
     def ready(self) -> bool:
-        """False while the next step would wait for a file to be decoded."""
+        """False while the next step would wait for a file to be decoded, or for the trial of a program."""
         ...
 
     def __iter__(self) -> Run:
@@ -91,6 +91,8 @@ class WholeRun(Run):
         self._readers = _count_readers(plan, self._needed, self._wanted)
         self._decoding = decode(find_needed_uploads(plan, self._needed, self._wanted, textures))
         self._lease = Lease(textures)
+        for index in self._needed:
+            executor.begin_trial(plan, plan.passes[index])
         for key in self._readers:
             if key in textures:
                 self._lease.take(key)
@@ -105,6 +107,8 @@ class WholeRun(Run):
         if self.ended:
             return True
         ends = self.done == self.total
+        if not ends and not self._executor.is_tried(self.plan, self.plan.passes[self._needed[self.done]]):
+            return False
         numbers = self._wanted if ends else self.plan.passes[self._needed[self.done]].textures
         return all(self._is_here(number) or self._decoding.ready(number) for number in numbers)
 

@@ -19,6 +19,7 @@ from .executor import Executor
 from .run import Run, Timings, WholeRun, find_needed_passes, find_needed_uploads
 from .texture_pool import Lease, PooledTexture
 from .tiles import TiledRun
+from .trials import Trials
 
 
 class TiledOutputs(Struct, frozen=True, eq=False, weakref=True):
@@ -30,9 +31,9 @@ class TiledOutputs(Struct, frozen=True, eq=False, weakref=True):
 class Runner:
     """Executes plans on one device, keeping programs, textures and results between them."""
 
-    def __init__(self, device: Device, load: Loader, budget: int) -> None:
+    def __init__(self, device: Device, load: Loader, budget: int, trials: Trials | None = None) -> None:
         self.device, self._load = device, load
-        self._executor = Executor(device, budget)
+        self._executor = Executor(device, budget, trials)
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
         self._begun: dict[str, Future[DecodedPicture]] = {}

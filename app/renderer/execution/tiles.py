@@ -56,6 +56,7 @@ class TiledRun(Run):
         self._tiling = plan.tiling
         self._runner, self._finished = runner, finished
         self._pictures, self._arrays = _PictureCache(load, by_rows=plan.tiling.target.memory > 0), ArrayPool()
+        self._tile: Run | None = None
         self._passes = self._run()
 
     @property
@@ -64,8 +65,8 @@ class TiledRun(Run):
 
     @property
     def ready(self) -> bool:
-        """True: nothing is decoded before it is wanted."""
-        return True
+        """False while the next pass of a tile would wait for the trial of a program; pictures are read when wanted."""
+        return self._tile is None or self._tile.ready
 
     def __next__(self) -> Pass:
         try:
@@ -118,6 +119,7 @@ class TiledRun(Run):
                     there = self._load_pictures(plan)
                     with self._runner.steps(there, kept, (*plan.outputs.values(), *shared)) as run:
                         before.close()
+                        self._tile = run
                         yield from run
                     del there
                     made_here = self._runner.download(plan, self._arrays)

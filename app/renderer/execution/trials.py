@@ -1,0 +1,192 @@
+"""Programs with code of users are tried in another process before this one compiles them.
+
+A driver may die of a program, never end, or take all memory while it compiles; then only the other process is lost, and
+the node is at fault. What it has compiled this process finds in the driver's cache, so it does not compile twice. The
+process is started when a graph with such code appears, and stays for the next one. Where another process watches this
+one already (`progress_beacon`), nothing is tried.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from queue import Empty, SimpleQueue
+from threading import Thread
+from typing import Any
+
+from msgspec import Struct, field
+
+from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Shader
+from ...errors import DeviceError
+from ...resources.machine import machine_memory, resident_memory
+from ...resources.render_choices import DEFAULT_TIMEOUT
+
+MAX_TRIALS = 1024
+"""Programs whose trials are remembered: twice those that a renderer keeps."""
+
+CHECK_INTERVAL = 0.05
+"""Seconds between two looks at the process: a compiler takes 0.2 GB of memory in that time, measured with Mesa 22.3."""
+
+
+class TrialProcess:
+    """The process that tries programs, started when it is first needed and again when it has died.
+
+    `timeout` is how many seconds a program may take to compile and to run on a few pixels. All is done on a thread that
+    lives as long as this process: the system ends the other one together with the thread that has started it.
+    """
+
+    def __init__(self, timeout: float = DEFAULT_TIMEOUT) -> None:
+        self._timeout = timeout
+        self._process: subprocess.Popen[str] | None = None
+        self._idle_memory = 0
+        self._tasks = SimpleQueue[Callable[[], object] | None]()
+        self._thread: Thread | None = None
+
+    @property
+    def thread_id(self) -> int:
+        """The system's number of the thread that the process belongs to; 0 before anything was tried."""
+        return (self._thread.native_id or 0) if self._thread else 0
+
+    def start(self) -> None:
+        """Have the process ready."""
+        self._do(self._find_process)
+
+    def submit(self, program: Mapping[str, Any], nodes: str) -> Future[DeviceError | None]:
+        """Begin to try a program: what comes of it is the error to raise, or None."""
+        outcome = Future[DeviceError | None]()
+        self._do(lambda: outcome.set_result(self._try(program, nodes)))
+        return outcome
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+        if self._thread is not None:
+            self._tasks.put(None)
+            self._thread.join()
+
+    # --- on the thread -----------------------------------------------------------------------------------------------
+
+    def _do(self, task: Callable[[], object]) -> None:
+        if self._thread is None:
+            self._thread = Thread(target=self._work, name="trial", daemon=True)
+            self._thread.start()
+        self._tasks.put(task)
+
+    def _work(self) -> None:
+        while task := self._tasks.get():
+            task()
+        self._end_process()
+
+    def _end_process(self) -> int:
+        """End the process, if there is one; its exit code."""
+        process, self._process = self._process, None
+        if process is None:
+            return 0
+        process.kill()
+        for pipe in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):  # what it was sent last may not have gone out
+                if pipe:
+                    pipe.close()
+        return process.wait()
+
+    def _find_process(self) -> subprocess.Popen[str]:
+        if self._process is None or self._process.poll() is not None:
+            self._end_process()
+            self._idle_memory = 0
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "halation.renderer.opengl.trial_worker"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                text=True,
+            )
+        return self._process
+
+    def _try(self, program: Mapping[str, Any], nodes: str) -> DeviceError | None:
+        """Try a program and wait for the answer."""
+        try:
+            process = self._find_process()
+        except OSError:
+            return None  # no process can be started: the driver is on its own
+        assert process.stdin and process.stdout
+        with contextlib.suppress(OSError):  # it may have ended: what it answers says so
+            process.stdin.write(json.dumps(program) + "\n")
+            process.stdin.flush()
+        answers = SimpleQueue[str]()
+        reader = Thread(target=lambda: answers.put(process.stdout.readline() if process.stdout else ""), daemon=True)
+        reader.start()
+        began, limit = time.monotonic(), machine_memory() / 2
+        while True:
+            with contextlib.suppress(Empty):
+                if answers.get(timeout=CHECK_INTERVAL):
+                    self._idle_memory = resident_memory(process.pid)
+                    return None
+                process.wait()
+                return _explain(self._end_process(), nodes)
+            memory = resident_memory(process.pid)
+            self._idle_memory = self._idle_memory or memory
+            sentence = ""
+            if memory - self._idle_memory > limit:
+                sentence = f"takes more than {limit / 2**30:.1f} GiB of memory"
+            elif 0.0 < self._timeout < time.monotonic() - began:
+                sentence = f"has not been compiled and run after {self._timeout:g} seconds"
+            if sentence:
+                process.kill()
+                reader.join()
+                self._end_process()
+                return DeviceError(f"node '{nodes}': its code {sentence}: make it smaller", node=nodes)
+
+
+def _explain(code: int, nodes: str) -> DeviceError | None:
+    """The error of a program that ended the process; None where there is no OpenGL that it could be tried on."""
+    if code >= 0:
+        return None
+    name = signal.Signals(-code).name
+    return DeviceError(
+        f"node '{nodes}': its code has ended the process ({name}) that compiled it: make it simpler", node=nodes
+    )
+
+
+class Trials(Struct, eq=False):
+    """The trials of the programs of one renderer, by their text."""
+
+    process: TrialProcess
+    _known: dict[Shader, Future[DeviceError | None]] = field(default_factory=dict[Shader, Future[DeviceError | None]])
+
+    def begin(self, plan: Plan, render_pass: Pass) -> Future[DeviceError | None]:
+        """What comes of the program of a pass; it is tried if it has not been."""
+        shader = render_pass.shader
+        if shader not in self._known:
+            if len(self._known) >= MAX_TRIALS:
+                self._known.pop(next(iter(self._known)))
+            nodes = ", ".join(dict.fromkeys(render_pass.writers.values()))
+            self._known[shader] = self.process.submit(_describe(plan, render_pass), nodes)
+        return self._known[shader]
+
+
+def _describe(plan: Plan, render_pass: Pass) -> dict[str, Any]:
+    """All that the process needs to compile a program as the renderer will."""
+    shader = render_pass.shader
+    kinds = [
+        [(surface.components, surface.depth, shader.foreign) for surface in map(plan.surfaces.__getitem__, numbers)]
+        for numbers in (render_pass.textures, render_pass.targets)
+    ]
+    return {
+        "source": shader.source,
+        "vertex": shader.vertex,
+        "form": shader.form,
+        "foreign": shader.foreign,
+        "reads_images": shader.reads_images,
+        "textures": kinds[0],
+        "targets": kinds[1],
+        "uniforms": list(render_pass.uniforms),
+        "tables": [(table.sampler, unit) for unit, table in enumerate(render_pass.tables, FIRST_TABLE)],
+        "weights": MAX_WEIGHTS if render_pass.weights else 0,
+    }

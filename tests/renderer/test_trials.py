@@ -1,0 +1,116 @@
+"""Programs with code of users are tried in another process first: what happens to that one is an error here."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.custom_nodes import Code, node_type
+from halation.errors import DeviceError, ShaderError
+from halation.graph import Graph, Input, Output, Port
+from halation.nodes.color.exposure import Exposure
+from halation.renderer import Renderer, RenderRequest
+from halation.renderer.execution.trials import TrialProcess
+
+PICTURE = np.full((8, 8, 4), 0.5, np.float32)
+REQUEST = RenderRequest({"image": PICTURE})
+SLOW = """vec4 slow(vec4 image) {
+    float a[16000];
+    a[int(image.r * 1e6)] = 1.0;
+    return vec4(a[int(image.g)]);
+}"""
+
+
+def graph(code: str) -> Graph:
+    made = (
+        Graph()
+        .add_input("image", Input())
+        .add_output("out", Output(width=4))
+        .add("user", node_type(Code("glsl", code))())
+    )
+    return made.connect(Port("inputs", "image"), Port("user", "image")).connect(
+        Port("user", "out"), Port("outputs", "out")
+    )
+
+
+def effect(number: float) -> Graph:
+    """Code that no driver has seen yet."""
+    return graph(f"vec4 f(vec4 image) {{ return image * {number} + {time.time_ns() % 10**9}.0 * 0.0; }}")
+
+
+@pytest.fixture
+def trial_process() -> TrialProcess:
+    return TrialProcess(timeout=2.0)
+
+
+@pytest.fixture
+def tried(trial_process: TrialProcess) -> Iterator[Renderer]:
+    renderer = Renderer(trial_process=trial_process)
+    yield renderer
+    renderer.close()
+
+
+def find_process(trial_process: TrialProcess) -> int:
+    """The number of the process that tries programs."""
+    children = Path(f"/proc/self/task/{trial_process.thread_id}/children").read_text().split()
+    return int(children[0])
+
+
+def test_code_is_tried_once(tried: Renderer) -> None:
+    program = effect(0.5)
+    assert (tried.render(program, REQUEST)["out"] == 0.25).all()
+    began = time.monotonic()
+    again = tried.render(program, RenderRequest({"image": PICTURE[:4]}))
+    assert (again["out"] == 0.25).all() and time.monotonic() - began < 1.0
+
+
+def test_code_that_takes_too_long_to_compile(tried: Renderer) -> None:
+    began = time.monotonic()
+    for _ in range(2):  # what is known is not tried again
+        with pytest.raises(DeviceError, match="node 'user': its code has not been compiled and run after 2 seconds"):
+            tried.render(graph(SLOW), REQUEST)
+    assert time.monotonic() - began < 10.0
+    assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
+def test_code_that_ends_the_process(tried: Renderer, trial_process: TrialProcess) -> None:
+    tried.render(effect(0.25), REQUEST)
+    with tried.runner.steps(tried.compile(graph(SLOW), REQUEST), tried.runner.lease()) as run:
+        assert not run.ready
+        os.kill(find_process(trial_process), signal.SIGSEGV)
+        with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
+            next(run)
+    assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
+
+
+def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
+    """So an editor draws its window meanwhile."""
+    with tried.runner.steps(tried.compile(graph(SLOW), REQUEST), tried.runner.lease()) as run:
+        waits = 0
+        while not run.ready:
+            began = time.monotonic()
+            time.sleep(0.01)
+            assert time.monotonic() - began < 0.2
+            waits += 1
+        assert waits > 50
+        with pytest.raises(DeviceError, match="after 2 seconds"):
+            next(run)
+
+
+def test_faults_of_drivers_keep_their_lines(tried: Renderer) -> None:
+    with pytest.raises(ShaderError, match=r"node 'user': the code of 'f', line 2: .*nothing"):
+        tried.render(graph("vec4 f(vec4 image) {\n return nothing; }"), REQUEST)
+
+
+def test_what_has_no_code_of_users_starts_nothing(tried: Renderer, trial_process: TrialProcess) -> None:
+    plain = Graph().add_input("image", Input()).add_output("out", Output(width=4)).add("node", Exposure(stops=1.0))
+    plain = plain.connect(Port("inputs", "image"), Port("node", "image"))
+    tried.render(plain.connect(Port("node", "out"), Port("outputs", "out")), REQUEST)
+    assert trial_process.thread_id == 0
