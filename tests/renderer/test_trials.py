@@ -17,6 +17,7 @@ from halation.graph import Graph, Input, Output, Port
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest
 from halation.renderer.execution.trials import TrialProcess
+from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.full((8, 8, 4), 0.5, np.float32)
 REQUEST = RenderRequest({"image": PICTURE})
@@ -51,7 +52,7 @@ def trial_process() -> TrialProcess:
 
 @pytest.fixture
 def tried(trial_process: TrialProcess) -> Iterator[Renderer]:
-    renderer = Renderer(trial_process=trial_process)
+    renderer = Renderer(trial_process=trial_process, sandbox=UNRESTRICTED)
     yield renderer
     renderer.close()
 
