@@ -110,7 +110,7 @@ def render_frames(
     first, last = reel.frames
     try:
         for frame in range(first, last + 1) if frames is None else frames:
-            yield frame, reel.render(frame)
+            yield frame, reel.render_frame(frame)
     finally:
         reel.close()
 

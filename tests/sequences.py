@@ -57,7 +57,7 @@ def render_frames(
     options: dict[str, object] = {"precision": "float", **request}
     frame_renderer = FrameRenderer(renderer, graph, RenderRequest(dict(shot), **options))  # type: ignore[arg-type]
     try:
-        return [frame_renderer.render(frame)[output].copy() for frame in frames]
+        return [frame_renderer.render_frame(frame)[output].copy() for frame in frames]
     finally:
         frame_renderer.close()
 

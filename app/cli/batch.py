@@ -43,7 +43,7 @@ class Batch:
 
 def find_middle_frame(renderer: Renderer, graph: Graph) -> int:
     """The frame in the middle of a graph, which shows an animation better than its first frame."""
-    return sum(renderer.frames(graph)) // 2
+    return sum(renderer.find_frames(graph)) // 2
 
 
 @contextmanager

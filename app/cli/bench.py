@@ -109,7 +109,7 @@ def bench(
     if not benchmark.passes:
         raise UsageError(f"{graph}: there is nothing to measure: the graph needs no pass")
     comparison = compare_with_baseline(benchmark, compare, sandbox) if compare else None
-    slower = comparison.slower(highest_ratio) if comparison and highest_ratio is not None else ()
+    slower = comparison.find_slower(highest_ratio) if comparison and highest_ratio is not None else ()
     if as_json:
         print_json(_benchmark_facts(graph, benchmark, renderer.device.description, measured_frames, comparison, slower))
     else:
@@ -140,12 +140,17 @@ def _print_benchmark(benchmark: Benchmark, by_pass: bool, software: bool, repeat
 
     if by_pass:
         rows = [
-            (" + ".join(share.functions) + f"  [{', '.join(share.nodes)}]", share.median, share.read, share.written)
+            (
+                " + ".join(share.functions) + f"  [{', '.join(share.nodes)}]",
+                share.median,
+                share.bytes_read,
+                share.bytes_written,
+            )
             for share in sorted(benchmark.passes, key=lambda share: -share.median)
         ]
     else:
         rows = [
-            (_describe_share(share), share.median, share.read, share.written)
+            (_describe_share(share), share.median, share.bytes_read, share.bytes_written)
             for share in group_by_nodes(benchmark.passes)
         ]
     bar_letter, label_width = _bar_letter(), min(60, max(len(row[0]) for row in rows))
@@ -159,7 +164,7 @@ def _print_benchmark(benchmark: Benchmark, by_pass: bool, software: bool, repeat
         )
     method = "the clock around each pass" if software else "timer queries of the GPU"
     width, height = benchmark.size
-    lead_note = f", {benchmark.lead} frames led up to it" if benchmark.lead else ""
+    lead_note = f", {benchmark.lead_frames} frames led up to it" if benchmark.lead_frames else ""
     print(
         f"{'total':<{label_width}}  {benchmark.median * 1e3:9.3f} ms  at {width}x{height}; "
         f"median of {repeats} by {method}, fastest {benchmark.fastest * 1e3:.3f} ms{lead_note}"
@@ -181,9 +186,9 @@ def _print_comparison(
 ) -> None:
     if comparison.device != device:
         print(f"the baseline was measured on another device: {comparison.device}")
-    if comparison.gone or comparison.new:
-        print(f"{comparison.new} passes are new, {comparison.gone} are gone")
-    for ratio in slower or sorted(comparison.ratios[1:], key=lambda ratio: -ratio.judged)[:5]:
+    if comparison.missing_passes or comparison.new_passes:
+        print(f"{comparison.new_passes} passes are new, {comparison.missing_passes} are gone")
+    for ratio in slower or sorted(comparison.ratios[1:], key=lambda ratio: -ratio.smaller)[:5]:
         print(f"  {_describe_ratio(ratio)}")
     total_ratio = comparison.ratios[0]
     if not slower or total_ratio not in slower:
@@ -201,7 +206,7 @@ def _describe_ratio(ratio: Ratio) -> str:
     name = ", ".join(ratio.nodes) if ratio.nodes else "total"
     functions = f" ({' + '.join(ratio.functions)})" if ratio.functions else ""
     return (
-        f"{ratio.judged:5.2f}x  {name}{functions}: {ratio.then * 1e3:.3f} -> {ratio.now * 1e3:.3f} ms "
+        f"{ratio.smaller:5.2f}x  {name}{functions}: {ratio.before * 1e3:.3f} -> {ratio.current * 1e3:.3f} ms "
         f"(median {ratio.median:.2f}x, fastest {ratio.fastest:.2f}x)"
     )
 
@@ -234,7 +239,7 @@ def _benchmark_facts(
         "programs": benchmark.programs,
         "loading": benchmark.loading,
         "peak_bytes": benchmark.peak_bytes,
-        "lead": benchmark.lead,
+        "lead": benchmark.lead_frames,
         "nodes": [
             {
                 "nodes": list(share.nodes),
@@ -242,8 +247,8 @@ def _benchmark_facts(
                 "median": share.median,
                 "fastest": share.fastest,
                 "share": share.median / benchmark.median,
-                "read_bytes": share.read,
-                "written_bytes": share.written,
+                "read_bytes": share.bytes_read,
+                "written_bytes": share.bytes_written,
             }
             for share in group_by_nodes(benchmark.passes)
         ],
@@ -254,8 +259,8 @@ def _benchmark_facts(
                 "number": name[2],
                 "median": measured.median,
                 "fastest": measured.fastest,
-                "read_bytes": measured.read,
-                "written_bytes": measured.written,
+                "read_bytes": measured.bytes_read,
+                "written_bytes": measured.bytes_written,
             }
             for name, measured in zip(identify_passes(benchmark.passes), benchmark.passes, strict=True)
         ],
@@ -263,8 +268,8 @@ def _benchmark_facts(
     if comparison:
         report["compared"] = {
             "device": comparison.device,
-            "new": comparison.new,
-            "gone": comparison.gone,
+            "new": comparison.new_passes,
+            "gone": comparison.missing_passes,
             "ratios": [_ratio_facts(ratio) for ratio in comparison.ratios],
             "slower": [_ratio_facts(ratio) for ratio in slower],
         }
@@ -277,5 +282,5 @@ def _ratio_facts(ratio: Ratio) -> dict[str, Any]:
         "functions": list(ratio.functions),
         "median": ratio.median,
         "fastest": ratio.fastest,
-        "ratio": ratio.judged,
+        "ratio": ratio.smaller,
     }

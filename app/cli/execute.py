@@ -152,7 +152,7 @@ def _render_here(
     # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
     leads_up = len(job.frames) > 1 and graph.settings.preroll is not None
     renderer = Renderer(
-        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, ahead=prefetcher, sandbox=job.sandbox
+        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
     )
     print_note(renderer.device.description)
     opened_at = time.perf_counter()
@@ -179,7 +179,7 @@ def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) 
     return {
         "written": [str(path) for path in report.written],
         "frames": [item.frame for item in report.frames],
-        "kept": [item.frame for item in report.frames if item.kept],
+        "kept": [item.frame for item in report.frames if item.is_kept],
         "device": device,
         "passes": report.passes,
         "programs": report.programs,

@@ -97,7 +97,7 @@ def make_time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet
     rows: dict[str, dict[str, Array]] = {}
     for name, graph in load_animated_presets().items():
         step(name)
-        first, last = renderer.frames(graph)
+        first, last = renderer.find_frames(graph)
         frames = [first + round((last - first) * part / (_FRAMES_SHOWN - 1)) for part in range(_FRAMES_SHOWN)]
         rows[name] = {str(frame): picture for frame, picture in render_display_frames(graph, renderer, frames).items()}
     return Sheet(make_grouped_sheet(rows, _FRAMES_SHOWN, _WIDTH, letters=_LETTERS), tuple(rows))
@@ -122,7 +122,7 @@ def render_display_frames(graph: Graph, renderer: Renderer, frames: Iterable[int
     name, output = next(iter(graph.outputs.items()))
     frame_renderer = FrameRenderer(renderer, graph, RenderRequest())
     try:
-        return {frame: show_light(frame_renderer.render(frame)[name], output.view) for frame in frames}
+        return {frame: show_light(frame_renderer.render_frame(frame)[name], output.view) for frame in frames}
     finally:
         frame_renderer.close()
 

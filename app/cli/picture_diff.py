@@ -84,7 +84,7 @@ def _render_frame(
     frame_renderer = FrameRenderer(renderer, graph, RenderRequest(inputs, size=canvas[0], scale=canvas[1]))
     try:
         chosen = frame_renderer.frames[0] if frame is None else frame
-        return frame_renderer.render(chosen), chosen
+        return frame_renderer.render_frame(chosen), chosen
     finally:
         frame_renderer.close()
 

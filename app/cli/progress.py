@@ -40,21 +40,21 @@ class JsonLines:
         """Print the ids of the processes that share the frames: who kills this process has to kill them too."""
         print_note(json.dumps({"processes": list(processes)}))
 
-    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
         """Print which pass has ended."""
-        print_note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": nodes}))
+        print_note(json.dumps({"frame": frame, "pass": passes_done, "passes": total, "nodes": nodes}))
 
-    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
         """Print which frame has been written."""
         written = [str(path) for path in report.written]
         print_note(
             json.dumps(
                 {
                     "frame": report.frame,
-                    "done": done,
+                    "done": frames_done,
                     "frames": total,
                     "written": written,
-                    "kept": report.kept,
+                    "kept": report.is_kept,
                     "passes": report.passes,
                 }
             )
@@ -76,17 +76,17 @@ class ProgressBar:
     def report_helpers(self, processes: Sequence[int]) -> None:
         """Nothing: a bar does not show processes."""
 
-    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
         """Show which nodes are computed."""
         if self._frames == 1:
-            self._show(nodes[-1], done, total)
+            self._show(nodes[-1], passes_done, total)
         else:
             self._show(f"frame {frame}  {nodes[-1]}", None, self._frames)
 
-    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
         """Show how many frames are written."""
         if total > 1:
-            self._show(f"frame {report.frame}", done, total)
+            self._show(f"frame {report.frame}", frames_done, total)
 
     def close(self) -> None:
         """Remove the bar."""

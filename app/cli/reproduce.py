@@ -92,7 +92,7 @@ def reproduce(
         print_json(_reproduction_facts(recipe, located_files, reproduction, saved_path))
     else:
         _print_reproduction(recipe, located_files, reproduction)
-    return 0 if reproduction.same else 1
+    return 0 if reproduction.is_same else 1
 
 
 def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path, sandbox: Sandbox) -> str:
@@ -118,10 +118,10 @@ def _print_reproduction(recipe: Recipe, files: tuple[LocatedFile, ...], reproduc
     proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
     print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
     for item in reproduction.differences:
-        print(f"  {item.what:<9} was {item.then}, is {item.now}")
+        print(f"  {item.name:<9} was {item.recorded}, is {item.current}")
     for item in files:
-        name = item.used.pattern or item.used.name
-        old_digest = item.used.together or item.used.digest
+        name = item.recorded.pattern or item.recorded.name
+        old_digest = item.recorded.sequence_digest or item.recorded.digest
         if item.state == "same":
             moved = f" (now {item.path})" if Path(item.path).name != name else ""
             print(f"  input     {_input_name(item)}: {name}: the same{moved}")
@@ -149,18 +149,18 @@ def _describe_layer(layer: LayerDifference, tolerance: float) -> str:
 
 
 def _input_name(item: LocatedFile) -> str:
-    return item.used.owner.removeprefix("inputs.")
+    return item.recorded.owner.removeprefix("inputs.")
 
 
 def _input_facts(item: LocatedFile) -> dict[str, Any]:
-    used = item.used
+    used = item.recorded
     return {
         "name": _input_name(item),
         "file": used.pattern or used.name,
         "layer": used.layer,
         "state": item.state,
         "path": item.path,
-        "then": used.together or used.digest,
+        "then": used.sequence_digest or used.digest,
         "now": item.digest,
     }
 
@@ -170,12 +170,14 @@ def _reproduction_facts(
 ) -> dict[str, Any]:
     return {
         "picture": str(recipe.path),
-        "same": reproduction.same,
+        "same": reproduction.is_same,
         "tolerance": reproduction.tolerance,
         "frame": recipe.frame,
         "version": recipe.version,
         "renderer": recipe.renderer,
-        "differences": [{"what": item.what, "then": item.then, "now": item.now} for item in reproduction.differences],
+        "differences": [
+            {"what": item.name, "then": item.recorded, "now": item.current} for item in reproduction.differences
+        ],
         "inputs": [_input_facts(item) for item in files],
         "pixels": [
             {

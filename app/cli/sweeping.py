@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from halation.nodes import Value
 
     from ..graph import Graph
-    from ..renderer.jobs.sweep import Axis
+    from ..renderer.jobs.sweep import SweepAxis
 
 _RANGE = re.compile(r"\s*(?P<first>[^.].*?)\.\.(?P<last>.+?)/(?P<count>[0-9]+)(?P<log>log)?\s*")
 _MOST = 400
 
 
-def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Graph, tuple[Axis, ...]]:
+def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Graph, tuple[SweepAxis, ...]]:
     """The axes of a sweep in the order of the command line, frames last; and the graph with all single values set.
 
     Raises UsageError.
     """
     from ..errors import UsageError
-    from ..renderer.jobs.sweep import FRAME, Axis, SweepStep, choose_labels
+    from ..renderer.jobs.sweep import FRAME, SweepAxis, SweepStep, choose_labels
 
     texts_by_name: dict[str, list[str]] = {}
     for item in sets:
@@ -52,7 +52,8 @@ def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tupl
         return SweepStep(text, lambda graph: override_value(graph, name, text))
 
     sweep_axes = (
-        Axis(name, axis_labels[name], tuple(make_step(name, text) for text in texts)) for name, texts in steps.items()
+        SweepAxis(name, axis_labels[name], tuple(make_step(name, text) for text in texts))
+        for name, texts in steps.items()
     )
     return graph, tuple(sweep_axes)
 

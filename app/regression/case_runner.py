@@ -69,7 +69,7 @@ def _run_rendering(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
         return _render_only(case, renderer, how)
     graph = _load_graph(case, sandbox=how.sandbox)
     wanted = _make_request(case, graph, how)
-    frames = case.frames or (renderer.frames(graph, wanted)[0],)
+    frames = case.frames or (renderer.find_frames(graph, wanted)[0],)
     with tempfile.TemporaryDirectory(prefix="halation-", dir=how.sandbox.root or None) as name:
         folders = [Path(name) / str(index) for index in range(len(case.goldens))]
         for folder in folders:
@@ -127,7 +127,7 @@ def _render_only(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
     reel = FrameRenderer(renderer, graph, wanted)
     try:
         for frame in case.frames or (reel.frames[0],):
-            pictures = reel.render(frame)
+            pictures = reel.render_frame(frame)
             if not case.error and (said := _find_fault(case, graph, wanted, pictures)):
                 return Outcome(case, "failed", f"frame {frame}: {said}")
     finally:

@@ -12,53 +12,53 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .device import Device, DeviceTexture
     from .engine import DEFAULT_BUDGET, Renderer, RenderRequest
-    from .execution.executor import Counters
+    from .execution.executor import RunnerCounters
     from .execution.run import Run
     from .execution.runner import Runner
-    from .execution.texture_pool import Lease
+    from .execution.texture_pool import TextureLease
     from .frame_renderer import FrameRenderer
     from .opening import open_device
     from .pinned_device import open_pinned
     from .viewing.display import Display, Drawable
-    from .viewing.look import Look, fit_zoom, to_panel, to_picture
-    from .viewing.probe import Nonfinite, Probe, find_first_nonfinite
+    from .viewing.look import Look, find_panel_point, find_picture_point, fit_zoom
+    from .viewing.probe import NonfinitePixel, PixelProbe, find_first_nonfinite
 
 __all__ = [
     "DEFAULT_BUDGET",
-    "Counters",
     "Device",
     "DeviceTexture",
     "Display",
     "Drawable",
     "FrameRenderer",
-    "Lease",
     "Look",
-    "Nonfinite",
-    "Probe",
+    "NonfinitePixel",
+    "PixelProbe",
     "RenderRequest",
     "Renderer",
     "Run",
     "Runner",
+    "RunnerCounters",
+    "TextureLease",
     "find_first_nonfinite",
+    "find_panel_point",
+    "find_picture_point",
     "fit_zoom",
     "open_device",
     "open_pinned",
-    "to_panel",
-    "to_picture",
 ]
 
 _HOMES = MappingProxyType(
     {
-        "Counters": "execution.executor",
+        "RunnerCounters": "execution.executor",
         "DEFAULT_BUDGET": "engine",
         "Device": "device",
         "DeviceTexture": "device",
         "Display": "viewing.display",
         "Drawable": "viewing.display",
-        "Lease": "execution.texture_pool",
+        "TextureLease": "execution.texture_pool",
         "Look": "viewing.look",
-        "Nonfinite": "viewing.probe",
-        "Probe": "viewing.probe",
+        "NonfinitePixel": "viewing.probe",
+        "PixelProbe": "viewing.probe",
         "FrameRenderer": "frame_renderer",
         "Renderer": "engine",
         "Run": "execution.run",
@@ -68,8 +68,8 @@ _HOMES = MappingProxyType(
         "fit_zoom": "viewing.look",
         "open_device": "opening",
         "open_pinned": "pinned_device",
-        "to_panel": "viewing.look",
-        "to_picture": "viewing.look",
+        "find_panel_point": "viewing.look",
+        "find_picture_point": "viewing.look",
     }
 )
 

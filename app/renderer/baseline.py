@@ -13,7 +13,7 @@ from ..resources.input_files import read_bytes
 from ..resources.sandbox import Sandbox
 from .bench import Benchmark, identify_passes
 
-JUDGED = 0.02
+MIN_JUDGED_SHARE = 0.02
 """The part of the whole that a pass must take to be judged: what takes less is lost in the noise."""
 
 
@@ -29,11 +29,11 @@ class Ratio:
     functions: tuple[str, ...]
     median: float
     fastest: float
-    then: float
-    now: float
+    before: float
+    current: float
 
     @property
-    def judged(self) -> float:
+    def smaller(self) -> float:
         """The smaller of both."""
         return min(self.median, self.fastest)
 
@@ -43,49 +43,56 @@ class BaselineComparison:
     """A baseline: the whole first, then passes that both have and that matter; `gone` and `new` are passes of one."""
 
     ratios: tuple[Ratio, ...]
-    gone: int
-    new: int
+    missing_passes: int
+    new_passes: int
     device: str
 
-    def slower(self, limit: float) -> tuple[Ratio, ...]:
+    def find_slower(self, limit: float) -> tuple[Ratio, ...]:
         """What took more than so many times as long, the worst first."""
-        return tuple(sorted((one for one in self.ratios if one.judged > limit), key=lambda one: -one.judged))
+        return tuple(sorted((ratio for ratio in self.ratios if ratio.smaller > limit), key=lambda one: -one.smaller))
 
 
 def compare_with_baseline(bench: Benchmark, path: Path, sandbox: Sandbox) -> BaselineComparison:
     """Compare with what `halation bench --json` printed before. Raises UsageError for a file that is none of these."""
-    found = _read_baseline(path, sandbox)
-    size = tuple(found["size"])
+    baseline = _read_baseline(path, sandbox)
+    size = tuple(baseline["size"])
     if size != bench.size:
-        then, now = ("x".join(map(str, sides)) for sides in (size, bench.size))
-        raise UsageError(f"{path}: it was measured at {then} pixels, this is {now}: use the same --size and --scale")
-    before = {(tuple(one["nodes"]), tuple(one["functions"]), one["number"]): one for one in found["passes"]}
-    ratios = [_make_ratio((), (), bench.median, bench.fastest, found)]
-    here = dict(zip(identify_passes(bench.passes), bench.passes, strict=True))
-    for name, one in here.items():
+        then, size_text = ("x".join(map(str, sides)) for sides in (size, bench.size))
+        raise UsageError(
+            f"{path}: it was measured at {then} pixels, this is {size_text}: use the same --size and --scale"
+        )
+    before = {
+        (tuple(timing["nodes"]), tuple(timing["functions"]), timing["number"]): timing for timing in baseline["passes"]
+    }
+    ratios = [_make_ratio((), (), bench.median, bench.fastest, baseline)]
+    timings_by_name = dict(zip(identify_passes(bench.passes), bench.passes, strict=True))
+    for name, one in timings_by_name.items():
         then = before.get(name)
-        if then and max(one.median / bench.median, then["median"] / found["median"]) >= JUDGED:
+        if then and max(one.median / bench.median, then["median"] / baseline["median"]) >= MIN_JUDGED_SHARE:
             ratios.append(_make_ratio(one.nodes, one.functions, one.median, one.fastest, then))
     return BaselineComparison(
-        tuple(ratios), len(before.keys() - here.keys()), len(here.keys() - before.keys()), found["device"]
+        tuple(ratios),
+        len(before.keys() - timings_by_name.keys()),
+        len(timings_by_name.keys() - before.keys()),
+        baseline["device"],
     )
 
 
 def _make_ratio(
-    nodes: tuple[str, ...], functions: tuple[str, ...], middle: float, fastest: float, then: Mapping[str, Any]
+    nodes: tuple[str, ...], functions: tuple[str, ...], median: float, fastest: float, then: Mapping[str, Any]
 ) -> Ratio:
-    return Ratio(nodes, functions, middle / then["median"], fastest / then["fastest"], then["median"], middle)
+    return Ratio(nodes, functions, median / then["median"], fastest / then["fastest"], then["median"], median)
 
 
 def _read_baseline(path: Path, sandbox: Sandbox) -> dict[str, Any]:
     try:
-        found: Any = json.loads(read_bytes(path, sandbox))
-        whole = [one[key] for one in (found, *found["passes"]) for key in ("median", "fastest")]
-        for one in found["passes"]:
+        baseline: Any = json.loads(read_bytes(path, sandbox))
+        times = [entry[key] for entry in (baseline, *baseline["passes"]) for key in ("median", "fastest")]
+        for one in baseline["passes"]:
             _ = tuple(one["nodes"]), tuple(one["functions"]), int(one["number"])
-        if not all(isinstance(item, int | float) and item > 0.0 for item in whole) or len(found["size"]) != 2:
+        if not all(isinstance(item, int | float) and item > 0.0 for item in times) or len(baseline["size"]) != 2:
             raise ValueError
-        return {**found, "device": str(found["device"])}
+        return {**baseline, "device": str(baseline["device"])}
     except InputError as fault:
         raise UsageError(f"--compare {fault}") from None
     except (ValueError, KeyError, TypeError, RecursionError):

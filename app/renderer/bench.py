@@ -15,11 +15,11 @@ from statistics import median
 from ..compiler import Pass, Plan
 from ..graph import Graph
 from .engine import Renderer, RenderRequest
-from .execution.run import Timings
-from .execution.texture_pool import Lease
+from .execution.run import PassTimings
+from .execution.texture_pool import TextureLease
 from .frame_renderer import FrameRenderer
 
-Name = tuple[tuple[str, ...], tuple[str, ...], int]
+PassName = tuple[tuple[str, ...], tuple[str, ...], int]
 """What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""
 
 
@@ -30,8 +30,8 @@ class PassTiming:
     nodes: tuple[str, ...]
     functions: tuple[str, ...]
     seconds: tuple[float, ...]
-    read: int
-    written: int
+    bytes_read: int
+    bytes_written: int
 
     @property
     def median(self) -> float:
@@ -60,7 +60,7 @@ class Benchmark:
     programs: int
     loading: float
     peak_bytes: int
-    lead: int
+    lead_frames: int
 
     @property
     def median(self) -> float:
@@ -81,18 +81,18 @@ class NodeShare:
     count: int
     median: float
     fastest: float
-    read: int
-    written: int
+    bytes_read: int
+    bytes_written: int
 
 
 def measure_graph(
     renderer: Renderer,
     graph: Graph,
-    wanted: RenderRequest,
+    request: RenderRequest,
     frames: Sequence[int],
     repeats: int,
     warm_up: int,
-    step: Callable[[str], None] = lambda name: None,
+    report_step: Callable[[str], None] = lambda name: None,
 ) -> Benchmark:
     """Measure frames of a graph: each is rendered `warm_up` times unmeasured, then `repeats` times.
 
@@ -100,33 +100,35 @@ def measure_graph(
     """
     compiled = renderer.runner.programs.compiled
     started = time.perf_counter()
-    reels = {frame: FrameRenderer(renderer, graph, wanted) for frame in frames}
-    plans = {frame: reel.plan(frame) for frame, reel in reels.items()}
+    frame_renderers = {frame: FrameRenderer(renderer, graph, request) for frame in frames}
+    plans = {frame: frame_renderer.plan_frame(frame) for frame, frame_renderer in frame_renderers.items()}
     planning, started = time.perf_counter() - started, time.perf_counter()
     with renderer.device.make_current():
         for plan in plans.values():
-            for one in plan.passes:
-                renderer.runner.compile(one)
+            for render_pass in plan.passes:
+                renderer.runner.compile(render_pass)
     compiling = time.perf_counter() - started
-    timings: dict[int, list[Timings]] = {}
+    timings: dict[int, list[PassTimings]] = {}
     loading = 0.0
-    for frame, reel in reels.items():  # one after the other: what one remembers is what the next one makes
+    for frame, reel in frame_renderers.items():  # one after the other: what one remembers is what the next one makes
         started = time.perf_counter()
-        step(f"frame {frame}")
-        given = load_frame_inputs(renderer, reel, frame)
+        report_step(f"frame {frame}")
+        lease = load_frame_inputs(renderer, reel, frame)
         reel.close()
         loading += time.perf_counter() - started
         try:
-            turns = [renderer.runner.measure(plans[frame]) for _ in range(warm_up + repeats)]
+            runs = [renderer.runner.measure(plans[frame]) for _ in range(warm_up + repeats)]
         finally:
-            given.close()
-        timings[frame] = turns[warm_up:]
+            lease.close()
+        timings[frame] = runs[warm_up:]
     first = plans[frames[0]]
     outputs = [first.surfaces[number].size for number in first.outputs.values()]
-    lead = sum(frame - reel.history_start(frame) for frame, reel in reels.items() if plans[frame].memories)
+    lead = sum(
+        frame - reel.find_history_start(frame) for frame, reel in frame_renderers.items() if plans[frame].memories
+    )
     return Benchmark(
         _merge_frames(plans, timings),
-        tuple(_sum_turns(timings)),
+        tuple(_sum_runs(timings)),
         outputs[0] if outputs else (0, 0),
         planning,
         compiling,
@@ -139,70 +141,72 @@ def measure_graph(
 
 def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:
     """The passes by their nodes, what takes longest first."""
-    found: dict[tuple[str, ...], list[PassTiming]] = {}
-    for one in passes:
-        found.setdefault(one.nodes, []).append(one)
-    made = (
+    timings_by_nodes: dict[tuple[str, ...], list[PassTiming]] = {}
+    for timing in passes:
+        timings_by_nodes.setdefault(timing.nodes, []).append(timing)
+    shares = (
         NodeShare(
             nodes,
-            len(several),
-            median(map(sum, zip(*(one.seconds for one in several), strict=True))),
-            min(map(sum, zip(*(one.seconds for one in several), strict=True))),
-            sum(one.read for one in several),
-            sum(one.written for one in several),
+            len(timings),
+            median(map(sum, zip(*(one.seconds for one in timings), strict=True))),
+            min(map(sum, zip(*(one.seconds for one in timings), strict=True))),
+            sum(one.bytes_read for one in timings),
+            sum(one.bytes_written for one in timings),
         )
-        for nodes, several in found.items()
+        for nodes, timings in timings_by_nodes.items()
     )
-    return tuple(sorted(made, key=lambda share: -share.median))
+    return tuple(sorted(shares, key=lambda share: -share.median))
 
 
-def identify_passes(passes: Iterable[Pass | PassTiming]) -> list[Name]:
+def identify_passes(passes: Iterable[Pass | PassTiming]) -> list[PassName]:
     """What to know passes by, in their order."""
-    seen: dict[tuple[tuple[str, ...], tuple[str, ...]], int] = {}
-    found: list[Name] = []
-    for one in passes:
-        key = (one.nodes, one.functions)
-        seen[key] = seen.get(key, -1) + 1
-        found.append((*key, seen[key]))
-    return found
+    counts: dict[tuple[tuple[str, ...], tuple[str, ...]], int] = {}
+    names: list[PassName] = []
+    for render_pass in passes:
+        key = (render_pass.nodes, render_pass.functions)
+        counts[key] = counts.get(key, -1) + 1
+        names.append((*key, counts[key]))
+    return names
 
 
-def load_frame_inputs(renderer: Renderer, reel: FrameRenderer, frame: int) -> Lease:
+def load_frame_inputs(renderer: Renderer, frame_renderer: FrameRenderer, frame: int) -> TextureLease:
     """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
-    plan, runner = reel.plan(frame), renderer.runner
-    lease, kept = runner.lease(), runner.lease()
-    made = {number for one in plan.passes for number in one.targets}
-    given = [number for one in plan.passes for number in one.textures if number not in made]
+    plan, runner = frame_renderer.plan_frame(frame), renderer.runner
+    lease, outputs_lease = runner.create_lease(), runner.create_lease()
+    written = {number for render_pass in plan.passes for number in render_pass.targets}
+    inputs = [number for one in plan.passes for number in one.textures if number not in written]
     uploads = {item.surface for item in plan.uploads}
     try:
-        for run in reel.steps(frame, kept):
+        for run in frame_renderer.start_runs(frame, outputs_lease):
             with run:
                 if run.plan is plan:
-                    for number in set(given) - uploads:
-                        lease.take(plan.surfaces[number].key)
+                    for number in set(inputs) - uploads:
+                        lease.add(plan.surfaces[number].key)
                 for _ in run:
                     pass
-        with runner.steps(plan, lease, uploads & set(given)) as run:
+        with runner.start_run(plan, lease, uploads & set(inputs)) as run:
             for _ in run:
                 pass
     finally:
-        kept.close()
+        outputs_lease.close()
     return lease
 
 
-def _merge_frames(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Timings]]) -> tuple[PassTiming, ...]:
+def _merge_frames(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[PassTimings]]) -> tuple[PassTiming, ...]:
     """The passes of all frames; the same pass of several is one, with the times of all."""
-    found: dict[Name, PassTiming] = {}
+    merged: dict[PassName, PassTiming] = {}
     for frame, turns in timings.items():
         plan = plans[frame]
-        for taken in turns:
-            for name, (one, seconds) in zip(identify_passes(one for one, _ in taken), taken, strict=True):
-                before = found[name].seconds if name in found else ()
-                read = sum(plan.surfaces[number].nbytes for number in one.textures)
-                written = sum(plan.surfaces[number].nbytes for number in one.targets)
-                found[name] = PassTiming(one.nodes, one.functions, (*before, seconds), read, written)
-    return tuple(found.values())
+        for run_timings in turns:
+            for name, (render_pass, seconds) in zip(
+                identify_passes(one for one, _ in run_timings), run_timings, strict=True
+            ):
+                before = merged[name].seconds if name in merged else ()
+                read = sum(plan.surfaces[number].nbytes for number in render_pass.textures)
+                written = sum(plan.surfaces[number].nbytes for number in render_pass.targets)
+                merged[name] = PassTiming(render_pass.nodes, render_pass.functions, (*before, seconds), read, written)
+    return tuple(merged.values())
 
 
-def _sum_turns(timings: Mapping[int, Sequence[Timings]]) -> list[float]:
-    return [sum(seconds for _, seconds in taken) for turns in timings.values() for taken in turns]
+def _sum_runs(timings: Mapping[int, Sequence[PassTimings]]) -> list[float]:
+    return [sum(seconds for _, seconds in run_timings) for turns in timings.values() for run_timings in turns]

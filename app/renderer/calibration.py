@@ -28,7 +28,7 @@ from .execution.runner import Runner
 
 SIZE = (1024, 1024)
 TURNS = 5
-ENOUGH = 0.1
+ENOUGH_SECONDS = 0.1
 """Seconds of passes after which no further turn is taken: what is slow can be told apart sooner."""
 
 VERSION = 1
@@ -40,21 +40,21 @@ def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sand
 
     `folder` is by default that of the user.
     """
-    path = (folder or _folder()) / f"{_digest(device)}.json"
+    path = (folder or _find_folder()) / f"{_hash_device(device)}.json"
     if sandbox.fault(path):
         return None
-    if (known := _read(path, sandbox=sandbox)) is not None:
-        return known
+    if (stored := _read_timings(path, sandbox=sandbox)) is not None:
+        return stored
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        found = measure_forms(device)
-        known = _read(path, sandbox=sandbox)  # another process may have been quicker
-        if known is None:
-            said = {"renderer": device.target.renderer, "driver": device.driver, **asdict(found)}
-            write_text_atomically(path, json.dumps(said, indent=1) + "\n", sandbox=sandbox)
+        measured = measure_forms(device)
+        stored = _read_timings(path, sandbox=sandbox)  # another process may have been quicker
+        if stored is None:
+            record = {"renderer": device.target.renderer, "driver": device.driver, **asdict(measured)}
+            write_text_atomically(path, json.dumps(record, indent=1) + "\n", sandbox=sandbox)
     except (OSError, HalationError):
         return None
-    return known or found
+    return stored or measured
 
 
 def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> FormTimings:
@@ -75,14 +75,14 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
             for form, runner in list(runners.items()):
                 plan = compile_graph(graph, request, pictures, target=runner.device.target)
                 try:
-                    seconds = sum(taken for _, taken in runner.measure(plan))
+                    seconds = sum(pass_seconds for _, pass_seconds in runner.measure(plan))
                 except HalationError:  # the driver refuses these passes: the others are left
                     fastest[form] = math.inf
                     runners.pop(form).close()
                     continue
                 if turn:
                     fastest[form], spent = min(fastest[form], seconds), spent + seconds
-            if spent > ENOUGH:
+            if spent > ENOUGH_SECONDS:
                 break
     finally:
         for runner in runners.values():
@@ -90,20 +90,20 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
     return FormTimings(**fastest)
 
 
-def _folder() -> Path:
+def _find_folder() -> Path:
     import platformdirs
 
     return platformdirs.user_cache_path("halation", appauthor=False) / "passes"
 
 
-def _digest(device: Device) -> str:
-    known = f"{VERSION}\0{device.target.renderer}\0{device.driver}"
-    return blake2b(known.encode(), digest_size=12).hexdigest()
+def _hash_device(device: Device) -> str:
+    identity = f"{VERSION}\0{device.target.renderer}\0{device.driver}"
+    return blake2b(identity.encode(), digest_size=12).hexdigest()
 
 
-def _read(path: Path, sandbox: Sandbox) -> FormTimings | None:
+def _read_timings(path: Path, sandbox: Sandbox) -> FormTimings | None:
     try:
-        found = json.loads(read_text(path, sandbox=sandbox))
-        return FormTimings(float(found["compute"]), float(found["fragment"]))
+        record = json.loads(read_text(path, sandbox=sandbox))
+        return FormTimings(float(record["compute"]), float(record["fragment"]))
     except (HalationError, ValueError, KeyError, TypeError):  # it is not there, or nobody can read it: measure again
         return None

@@ -48,10 +48,10 @@ class RenderRequest(Struct, frozen=True):
     region: Region | None = None
     """The part of every output that is computed, in pixels of it: a surface's `window` says what came of that."""
     by_rows: frozenset[str] = frozenset()
-    """Those that are taken by rows, from the top down, where they are made by tiles: see `Run.rows`."""
+    """Those that are taken by rows, from the top down, where they are made by tiles: see `Run.receive_rows`."""
 
     @property
-    def bound(self) -> dict[str, Binding]:
+    def bound_inputs(self) -> dict[str, Binding]:
         """What the inputs are at this frame."""
         return {name: item(self.frame) if callable(item) else item for name, item in self.inputs.items()}
 
@@ -73,14 +73,14 @@ class Renderer:
         budget: int = DEFAULT_BUDGET,
         library: Library | None = None,
         fusion: bool = True,
-        ahead: Prefetcher | None = None,
+        prefetcher: Prefetcher | None = None,
         trial_process: TrialProcess | None = None,
         sandbox: Sandbox,
     ) -> None:
         self.sandbox = sandbox
         self._owns_device = device is None
         self.device = device or open_device(sandbox=sandbox)
-        self.pictures = MediaProvider(prefetcher=ahead, sandbox=sandbox)
+        self.pictures = MediaProvider(prefetcher=prefetcher, sandbox=sandbox)
         self._trial_process = trial_process or TrialProcess()
         self.runner = Runner(self.device, self.pictures.load_pixels, budget, Trials(self._trial_process))
         self.library = library
@@ -90,7 +90,7 @@ class Renderer:
 
     def compile(self, graph: Graph, request: RenderRequest = _ALL, *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
-        bindings = self.pictures.bind(graph, request.bound)
+        bindings = self.pictures.bind(graph, request.bound_inputs)
         plan_request = Request(
             request.targets,
             bindings,
@@ -113,10 +113,10 @@ class Renderer:
             cached_keys=self.runner.textures,
         )
 
-    def frames(self, graph: Graph, request: RenderRequest = _ALL) -> tuple[int, int]:
+    def find_frames(self, graph: Graph, request: RenderRequest = _ALL) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
-        named = {name: item for name, item in request.inputs.items() if not callable(item)}
-        return self.pictures.find_frames(graph, self.pictures.bind(graph, named))
+        fixed_inputs = {name: item for name, item in request.inputs.items() if not callable(item)}
+        return self.pictures.find_frames(graph, self.pictures.bind(graph, fixed_inputs))
 
     def render(self, graph: Graph, request: RenderRequest = _ALL) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.

@@ -10,12 +10,12 @@ from ..compiler import Memory, Plan
 from ..graph import Graph, Port
 from .engine import Renderer, RenderRequest
 from .execution.decoding import Array
-from .execution.run import Run, Timings, find_shared_surfaces
-from .execution.texture_pool import Lease
+from .execution.run import PassTimings, Run, find_shared_surfaces
+from .execution.texture_pool import TextureLease
 
 MAX_PLANS = 16
 
-CARRIED_BYTES = 2**29
+MAX_CARRIED_BYTES = 2**29
 """What may be kept of one frame for the next, beyond what nodes remember."""
 
 Memories = Mapping[Port, Memory]
@@ -31,34 +31,34 @@ class FrameRenderer:
 
     def __init__(self, renderer: Renderer, graph: Graph, request: RenderRequest) -> None:
         self.renderer, self.graph, self.request = renderer, graph, request
-        self.frames = renderer.frames(graph, request)
+        self.frames = renderer.find_frames(graph, request)
         """The first and last frame of the range."""
         self._memories: dict[tuple[int, int], Memories] = {}
         """By the frame where history begins, and the frame that remembers."""
         self._plans: dict[tuple[int, int], Plan] = {}
-        self._held: Lease = renderer.runner.lease()
+        self._carried: TextureLease = renderer.runner.create_lease()
 
-    def history_start(self, frame: int) -> int:
+    def find_history_start(self, frame: int) -> int:
         """The frame at which the history of another one begins."""
         first, preroll = self.frames[0], self.graph.settings.preroll
         if frame <= first:
             return frame
         return first if preroll is None else max(first, frame - preroll)
 
-    def plan(self, frame: int) -> Plan:
+    def plan_frame(self, frame: int) -> Plan:
         """How a frame is made, of what was remembered before it. Raises the errors of `app.errors`."""
-        return self._plan(self.history_start(frame), frame)
+        return self._plan_from(self.find_history_start(frame), frame)
 
-    def lead_frames(self, frame: int) -> range:
+    def find_lead_frames(self, frame: int) -> range:
         """The frames that must be gone through, for what they remember, before a frame can be made.
 
         None where that is on the device, or the frame itself is.
         """
-        begin, textures = self.history_start(frame), self.renderer.runner.textures
-        if self._is_there(self._plan(begin, frame)):
+        begin, textures = self.find_history_start(frame), self.renderer.runner.textures
+        if self._is_on_device(self._plan_from(begin, frame)):
             return range(frame, frame)
         start = frame
-        while start > begin and any(item.key not in textures for item in self._memories_before(begin, start).values()):
+        while start > begin and any(item.key not in textures for item in self._find_memories(begin, start).values()):
             start -= 1
         return range(start, frame)
 
@@ -67,71 +67,73 @@ class FrameRenderer:
 
         `plan` compiles all at once, which takes long far from where the history begins.
         """
-        begin, at = self.history_start(frame), frame - 1
+        begin, at = self.find_history_start(frame), frame - 1
         while at >= begin and (begin, at) not in self._memories:
             at -= 1
         if frame > begin and at + 1 < frame and self._memories.get((begin, at), True):
-            self._plan(begin, at + 1)
+            self._plan_from(begin, at + 1)
         elif (begin, frame) not in self._plans:
-            self._plan(begin, frame)
+            self._plan_from(begin, frame)
         else:
             return None
         return at + 2 - begin, frame + 1 - begin
 
-    def steps(
-        self, frame: int, kept: Lease, timings: Timings | None = None, following: int | None = None
+    def start_runs(
+        self, frame: int, outputs_lease: TextureLease, timings: PassTimings | None = None, following: int | None = None
     ) -> Iterator[Run]:
         """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`.
 
         What the frame `following` would make again stays on the device until that has been made.
         """
-        runner, begin = self.renderer.runner, self.history_start(frame)
-        for at in self.lead_frames(frame):
-            plan, lease = self._plan(begin, at), runner.lease()
-            yield runner.steps(plan, lease, (*plan.remembered, *_find_carried(plan, self._plan(begin, at + 1))))
-            self._hold(lease)
-        plan, lease = self.plan(frame), runner.lease()
+        runner, begin = self.renderer.runner, self.find_history_start(frame)
+        for at in self.find_lead_frames(frame):
+            plan, lease = self._plan_from(begin, at), runner.create_lease()
+            yield runner.start_run(
+                plan, lease, (*plan.remembered, *_find_carried_surfaces(plan, self._plan_from(begin, at + 1)))
+            )
+            self._carry(lease)
+        plan, lease = self.plan_frame(frame), runner.create_lease()
         # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
-        remembered = () if self._is_there(plan) else plan.remembered
-        on = () if following is None else _find_carried(plan, self.plan(following))
-        yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered, *on), timings=timings)
-        for number in (*plan.remembered, *on):
+        remembered = () if self._is_on_device(plan) else plan.remembered
+        carried = () if following is None else _find_carried_surfaces(plan, self.plan_frame(following))
+        yield runner.start_run(plan, outputs_lease, (*plan.outputs.values(), *remembered, *carried), timings=timings)
+        for number in (*plan.remembered, *carried):
             if plan.surfaces[number].key in runner.textures:
-                lease.take(plan.surfaces[number].key)
-        self._hold(lease)
+                lease.add(plan.surfaces[number].key)
+        self._carry(lease)
 
-    def render(self, frame: int) -> dict[str, Array]:
+    def render_frame(self, frame: int) -> dict[str, Array]:
         """Every output by name as [height, width, channels]. Raises the errors of `app.errors`."""
-        kept = self.renderer.runner.lease()
+        lease = self.renderer.runner.create_lease()
         try:
-            for run in self.steps(frame, kept):
+            for run in self.start_runs(frame, lease):
                 with run:
                     for _ in run:
                         pass
-            return self.renderer.runner.download(self.plan(frame))
+            return self.renderer.runner.download(self.plan_frame(frame))
         finally:
-            kept.close()
+            lease.close()
 
     def close(self) -> None:
         """Let go of what was remembered."""
-        self._held.close()
+        self._carried.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _is_there(self, plan: Plan) -> bool:
+    def _is_on_device(self, plan: Plan) -> bool:
         """True if the outputs are on the device."""
         textures = self.renderer.runner.textures
         return all(plan.surfaces[number].key in textures for number in plan.outputs.values())
 
-    def _hold(self, lease: Lease) -> None:
+    def _carry(self, lease: TextureLease) -> None:
         """Keep what a frame remembered, and has in common with the next one, until that has been made."""
-        before, self._held = self._held, lease
+        before, self._carried = self._carried, lease
         before.close()
 
-    def _plan(self, begin: int, frame: int) -> Plan:
+    def _plan_from(self, begin: int, frame: int) -> Plan:
         key = (begin, frame)
         if key not in self._plans:
-            before = self._memories_before(begin, frame)
+            before = self._find_memories(begin, frame)
             plan = self.renderer.compile(self.graph, replace(self.request, frame=frame, memories=before))
             self._memories[key] = plan.memories
             self._plans[key] = plan
@@ -139,7 +141,7 @@ class FrameRenderer:
                 self._plans.pop(next(iter(self._plans)))
         return self._plans[key]
 
-    def _memories_before(self, begin: int, frame: int) -> Memories:
+    def _find_memories(self, begin: int, frame: int) -> Memories:
         """What the frame before remembers."""
         if frame <= begin:
             return {}
@@ -148,21 +150,21 @@ class FrameRenderer:
             start -= 1
         for at in range(start, frame):
             if (begin, at) not in self._memories:
-                self._plan(begin, at)
+                self._plan_from(begin, at)
             if not self._memories[begin, at]:
                 return {}
         return self._memories[begin, frame - 1]
 
 
-def _find_carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+def _find_carried_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
     """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
-    found: list[int] = []
-    nbytes, most, memory = 0, CARRIED_BYTES, plan.target.memory
+    carried: list[int] = []
+    nbytes, most, memory = 0, MAX_CARRIED_BYTES, plan.target.memory
     if memory:  # of the frame before there may be as much
         most = min(most, (memory - max(plan.held_bytes, following.held_bytes)) // 2)
     for number in find_shared_surfaces(plan, following):
         nbytes += plan.surfaces[number].nbytes
         if nbytes > most:
             break
-        found.append(number)
-    return tuple(found)
+        carried.append(number)
+    return tuple(carried)

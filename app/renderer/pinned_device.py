@@ -16,13 +16,13 @@ from ..resources.sandbox import Sandbox
 from .device import Device
 from .opening import open_device
 
-_SET = {
+_PINNED_VARIABLES = {
     "LIBGL_ALWAYS_SOFTWARE": "1",
     "GALLIUM_DRIVER": "llvmpipe",
     "GALLIUM_OVERRIDE_CPU_CAPS": "sse4.1",
     "LP_NATIVE_VECTOR_WIDTH": "128",
 }
-_UNSET = (
+_REMOVED_VARIABLES = (
     "MESA_LOADER_DRIVER_OVERRIDE",
     "MESA_GL_VERSION_OVERRIDE",
     "MESA_GLSL_VERSION_OVERRIDE",
@@ -45,11 +45,11 @@ def pin_driver() -> Iterator[None]:
     The variables of the environment that say so are as before afterwards. A process that has opened a context already
     keeps the instructions that it chose then.
     """
-    wanted = {**_SET, **({"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {})}
-    before = {name: os.environ.get(name) for name in (*wanted, *_UNSET)}
-    for name in _UNSET:
+    pinned = {**_PINNED_VARIABLES, **({"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {})}
+    before = {name: os.environ.get(name) for name in (*pinned, *_REMOVED_VARIABLES)}
+    for name in _REMOVED_VARIABLES:
         os.environ.pop(name, None)
-    os.environ.update(wanted)
+    os.environ.update(pinned)
     try:
         yield
     finally:

@@ -147,12 +147,12 @@ class _OutdatedCheck:
     def __init__(self, is_outdated: Callable[[], bool]) -> None:
         self._is_outdated = is_outdated
 
-    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
         """A pass is through."""
         if self._is_outdated():
             raise _Outdated
 
-    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
         """A finished frame is no reason to stop."""
 
 

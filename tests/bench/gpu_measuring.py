@@ -86,11 +86,15 @@ def take(
         one.error = str(fault)
         return
     known: dict[str, Any] = {
-        "moved": sum(timed.read + timed.written for timed in passes),
+        "moved": sum(timed.bytes_read + timed.bytes_written for timed in passes),
         "passes": len(passes),
         "floor": least_bytes(renderer.compile(graph, wanted)),
         "each": [
-            {"functions": list(timed.functions), "median": timed.median, "moved": timed.read + timed.written}
+            {
+                "functions": list(timed.functions),
+                "median": timed.median,
+                "moved": timed.bytes_read + timed.bytes_written,
+            }
             for timed in passes
         ],
     }
@@ -100,12 +104,12 @@ def take(
 def frames(renderer: Renderer, graph: Graph, wanted: RenderRequest, repeat: int) -> list[float]:
     """Seconds of whole frames by the clock, from the first pass that is submitted to the last that is done."""
     reel = FrameRenderer(renderer, graph, wanted)
-    plan, given, seconds = reel.plan(wanted.frame), load_frame_inputs(renderer, reel, wanted.frame), list[float]()
+    plan, given, seconds = reel.plan_frame(wanted.frame), load_frame_inputs(renderer, reel, wanted.frame), list[float]()
     for _ in range(repeat + 1):
-        kept = renderer.runner.lease()
+        kept = renderer.runner.create_lease()
         finish(renderer.device)
         started = time.perf_counter()
-        with renderer.runner.steps(plan, kept) as steps:
+        with renderer.runner.start_run(plan, kept) as steps:
             for _ in steps:
                 pass
         finish(renderer.device)

@@ -30,7 +30,7 @@ def render(renderer: Renderer, names: Sequence[str], precision: Precision, scale
         graph = document.load(graphs[name], sandbox=UNRESTRICTED)
         reel = FrameRenderer(renderer, graph, RenderRequest(scale=scale, precision=precision))
         try:
-            yield name, reel.render(sum(reel.frames) // 2)[next(iter(graph.outputs))]
+            yield name, reel.render_frame(sum(reel.frames) // 2)[next(iter(graph.outputs))]
         finally:
             reel.close()
 

@@ -58,7 +58,7 @@ def judge(engine: Renderer, graph: Graph, size: int, frames: int) -> tuple[str, 
     light = make_picture(size)
     bindings = {name: light if number == 0 else light[::-1, ::-1].copy() for number, name in enumerate(graph.inputs)}
     frame_renderer = FrameRenderer(engine, graph, RenderRequest(bindings, precision="float"))
-    pictures = [frame_renderer.render(frame)["out"] for frame in range(1, frames + 1)]
+    pictures = [frame_renderer.render_frame(frame)["out"] for frame in range(1, frames + 1)]
     frame_renderer.close()
     if not all(np.isfinite(one).all() for one in pictures):
         return "not finite", pictures[-1]

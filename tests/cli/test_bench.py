@@ -119,7 +119,7 @@ def test_one_slow_moment_fails_nothing():
         return Ratio(("blur",), ("gaussian",), median, fastest, 1.0, median)
 
     found = BaselineComparison((ratio(3.0, 1.01), ratio(1.0, 5.0), ratio(1.4, 1.3), ratio(2.0, 2.0)), 0, 0, "")
-    assert [one.judged for one in found.slower(1.2)] == [2.0, 1.3]
+    assert [one.smaller for one in found.find_slower(1.2)] == [2.0, 1.3]
 
 
 @pytest.mark.parametrize(

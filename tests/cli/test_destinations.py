@@ -23,7 +23,7 @@ def no_pass(monkeypatch):
     def refuse(*_):
         raise AssertionError("rendered for nothing")
 
-    monkeypatch.setattr(renderer.Runner, "steps", refuse)
+    monkeypatch.setattr(renderer.Runner, "start_run", refuse)
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,7 @@ def test_what_a_shader_is_told_of_time(renderer: Renderer) -> None:
     if (gl_FragCoord.x > 1.0) gl_FragColor = vec4(DATE.xyz / 1000.0, 1.0);
     if (gl_FragCoord.x > 2.0) gl_FragColor = vec4(DATE.w, float(PASSINDEX), 0.0, 1.0);"""
     reel = FrameRenderer(renderer, graph_of_node(node(body), (3, 1), (5, 90), 20.0), RenderRequest(precision="float"))
-    first, later = reel.render(5)["out"][0], reel.render(15)["out"][0]
+    first, later = reel.render_frame(5)["out"][0], reel.render_frame(15)["out"][0]
     assert close(first[0, :3], 0.0) and close(later[0, :3], [0.5, 0.05, 10.0])
     assert close(later[1, :3], [2.0, 0.001, 0.001]) and close(later[2, :3], [0.5, 0.0, 0.0])
 

@@ -27,7 +27,7 @@ def test_a_persistent_buffer_adds_up(renderer: Renderer, floating: bool) -> None
     buffer = {"TARGET": "sum", "PERSISTENT": True, **({"FLOAT": "true"} if floating else {})}
     item = node(GROW, STEP, PASSES=[buffer, {}])
     assert isinstance(item, Temporal)
-    made = [float(reel(renderer, item).render(frame)["out"][1, 2, 0]) for frame in range(1, 7)]
+    made = [float(reel(renderer, item).render_frame(frame)["out"][1, 2, 0]) for frame in range(1, 7)]
     wanted = [0.3 * frame if floating else min(1.0, 0.3 * frame) for frame in range(1, 7)]
     assert np.allclose(made, wanted, atol=1e-6)
 
@@ -36,12 +36,12 @@ def test_runs_split_over_frames_make_the_same_pictures(renderer: Renderer) -> No
     """In order, backwards, and one frame alone: whoever starts late is led up to the frame."""
     item = node(GROW, STEP, PASSES=[{"TARGET": "sum", "PERSISTENT": 1, "FLOAT": 1}, {}])
     whole = reel(renderer, item)
-    inorder = {frame: whole.render(frame)["out"] for frame in range(1, 6)}
+    inorder = {frame: whole.render_frame(frame)["out"] for frame in range(1, 6)}
     back = reel(renderer, item)
     for frame in (5, 2, 4, 1, 3):
-        assert np.array_equal(back.render(frame)["out"], inorder[frame])
+        assert np.array_equal(back.render_frame(frame)["out"], inorder[frame])
         renderer.runner.textures.release_idle()
-        assert np.array_equal(reel(renderer, item).render(frame)["out"], inorder[frame])
+        assert np.array_equal(reel(renderer, item).render_frame(frame)["out"], inorder[frame])
 
 
 def test_two_memories_are_told_apart(renderer: Renderer) -> None:
@@ -55,7 +55,7 @@ def test_two_memories_are_told_apart(renderer: Renderer) -> None:
     slow = fast = 0.0
     for frame in range(1, 7):
         slow, fast = 0.5 * (slow + fast), fast + 1.0
-        assert np.allclose(one.render(frame)["out"][0, 0, :2], [fast, slow], atol=1e-6)
+        assert np.allclose(one.render_frame(frame)["out"][0, 0, :2], [fast, slow], atol=1e-6)
 
 
 def test_later_passes_read_earlier_ones(run: Run) -> None:
@@ -94,7 +94,7 @@ def test_buffers_of_version_1(renderer: Renderer) -> None:
     for old in (["sum"], {"sum": {"FLOAT": True, "WIDTH": "2"}}):
         item = node(GROW, STEP, PASSES=[{"TARGET": "sum"}, {}], PERSISTENT_BUFFERS=old)
         one = reel(renderer, item)
-        assert np.allclose([one.render(frame)["out"][0, 0, 0] for frame in (1, 2)], [0.3, 0.6], atol=1e-6)
+        assert np.allclose([one.render_frame(frame)["out"][0, 0, 0] for frame in (1, 2)], [0.3, 0.6], atol=1e-6)
 
 
 def test_bytes_hold_0_to_1_and_the_picture_more(run: Run) -> None:

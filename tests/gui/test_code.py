@@ -31,7 +31,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def red(ui) -> float:
-    return ui.ask(lambda: float(ui.editor.probe.pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
+    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
 
 
 def begin(ui, text: str = GAIN) -> None:

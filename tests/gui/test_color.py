@@ -41,7 +41,7 @@ def middle(ui) -> np.ndarray:
     """The pixel in the middle of the picture that is seen."""
     shown = ui.editor.preview.shown("A")
     assert shown is not None
-    return ui.ask(lambda: np.array(ui.editor.probe.pixel(shown.texture, 32, 18)))[:3]
+    return ui.ask(lambda: np.array(ui.editor.probe.read_pixel(shown.texture, 32, 18)))[:3]
 
 
 def test_config_and_working_space(gui, file, tmp_path) -> None:

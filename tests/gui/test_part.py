@@ -163,7 +163,7 @@ def test_numbers_of_the_whole_picture_wait_for_it(gui, tmp_path, resting):
         ui.until(lambda: ui.editor.dialogs.browse is not None)
         ui.editor.dialogs.close()
         ui.settled()
-        numbers = ui.ask(lambda: ui.editor.probe.pixel(preview.shown("A").texture, *pixel))
+        numbers = ui.ask(lambda: ui.editor.probe.read_pixel(preview.shown("A").texture, *pixel))
         assert [float(part) for part in copied.split(": ")[1].split()] == pytest.approx(numbers, abs=0.0)
         # How data is shown depends on all of it.
         ui.editor.viewer.meaning = "field"

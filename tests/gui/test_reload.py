@@ -36,7 +36,7 @@ graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
 document.save(graph, path, sandbox=UNRESTRICTED)
 
 def brightness(ui):
-    return ui.ask(lambda: float(ui.editor.probe.pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
+    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
 
 def problems(ui):
     return [one.sentence for one in list_problems(ui.window._contexts.problems)]

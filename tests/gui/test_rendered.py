@@ -62,7 +62,7 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
         ui.settled()
         shown = ui.editor.preview.shown("A")
         size = shown.texture.size
-        seen = ui.ask(lambda: ui.editor.probe.region(shown.texture, (0, 0, *size)))[..., :3]
+        seen = ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, *size)))[..., :3]
         expected = to_display(seen, "none")
         small = read(picture)[..., :3]
         assert abs(float(np.mean(expected) / 255.0) - float(small.mean())) < 0.02, "it is the picture again"

@@ -48,7 +48,7 @@ def pixels(ui) -> np.ndarray:
     """What the viewer shows, from the graphics card."""
     shown = ui.editor.preview.shown("A")
     width, height = shown.texture.size
-    return ui.ask(lambda: ui.editor.probe.region(shown.texture, (0, 0, width, height)))
+    return ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, width, height)))
 
 
 def test_a_render_that_is_dropped_works_at_once(gui) -> None:

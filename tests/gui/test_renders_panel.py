@@ -250,7 +250,7 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
         for frame in (8, 1):
             book.session.seek(frame)
             ui.settled()
-            seen = ui.ask(lambda: ui.editor.probe.small(ui.editor.preview.shown("A").texture, 480))
+            seen = ui.ask(lambda: ui.editor.probe.read_small(ui.editor.preview.shown("A").texture, 480))
             there = read_layer(
                 str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED
             ).array

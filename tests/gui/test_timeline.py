@@ -56,7 +56,7 @@ def start(ui, graph: Graph) -> None:
 def seen(ui) -> np.ndarray:
     shown = ui.editor.preview.shown("A")
     width, height = shown.texture.size
-    return ui.ask(lambda: ui.editor.probe.region(shown.texture, (0, 0, width, height)))
+    return ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, width, height)))
 
 
 def test_scrubbing_shows_other_frames(gui, tmp_path) -> None:
@@ -303,7 +303,7 @@ def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_pa
         def rendered(frame: int) -> np.ndarray:
             reel = FrameRenderer(ui.editor.preview.renderer, graph, wanted)
             try:
-                return reel.render(frame)["A"].copy()
+                return reel.render_frame(frame)["A"].copy()
             finally:
                 reel.close()
 

@@ -53,7 +53,7 @@ def smooth(renderer, scene: Scene, node: TemporalAa) -> np.ndarray:
         renderer, scene_graph(scene, node), RenderRequest({}, {"out": Port("outputs", "out")}, precision="float")
     )
     try:
-        return reel.render(LAST)["out"]
+        return reel.render_frame(LAST)["out"]
     finally:
         reel.close()
 

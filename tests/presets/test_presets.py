@@ -91,7 +91,7 @@ def rendered(renderer: Renderer, graph: Graph, wanted: RenderRequest = PLAIN, pa
     """The output at such a frame, with the history that it has by then."""
     reel = FrameRenderer(renderer, graph, wanted)
     try:
-        return reel.render(moment(graph, part))["image"]
+        return reel.render_frame(moment(graph, part))["image"]
     finally:
         reel.close()
 

@@ -10,7 +10,7 @@ from conftest import graph_of
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest
-from halation.renderer.execution.costs import Costs
+from halation.renderer.execution.costs import PassCosts
 from halation.resources.sandbox import UNRESTRICTED
 
 
@@ -20,22 +20,22 @@ def planned(renderer: Renderer, node, side: int = 32):
 
 
 def test_what_was_measured_holds_for_every_size(renderer):
-    costs, light = Costs(True), Exposure(stops=1.0)
+    costs, light = PassCosts(True), Exposure(stops=1.0)
     small, large = planned(renderer, light), planned(renderer, light, 64)
     for seconds in (0.5, 0.001):  # a program is finished when it first runs
-        costs.learn(small, small.passes[0], seconds)
+        costs.record_time(small, small.passes[0], seconds)
     assert costs.estimate(small, small.passes[0]) == pytest.approx(0.001)
     assert costs.estimate(large, large.passes[0]) == pytest.approx(0.004)
-    costs.learn(large, large.passes[0], 0.008)
+    costs.record_time(large, large.passes[0], 0.008)
     assert costs.estimate(small, small.passes[0]) == pytest.approx(0.002)
 
 
 def test_before_that_it_is_estimated_by_what_is_read(renderer):
-    costs = Costs(True)
+    costs = PassCosts(True)
     point, blur = planned(renderer, Exposure(stops=1.0)), planned(renderer, GaussianBlur(sigma=3.0))
     cheap, dear = (max(costs.estimate(plan, one) for one in plan.passes) for plan in (point, blur))
     assert 0.0 < cheap < dear
-    costs.learn(point, point.passes[0], 0.5)
+    costs.record_time(point, point.passes[0], 0.5)
     assert costs.estimate(point, point.passes[0]) == cheap
 
 
@@ -51,6 +51,6 @@ def test_a_file_costs_what_it_took_to_decode(renderer):
     plan = planned(engine, Exposure(stops=0.7))
     engine.runner.run(plan)
     numbers = plan.uploads[0].surface, plan.outputs["out"]
-    picture, result = (engine.runner.texture(plan.surfaces[number].key) for number in numbers)
+    picture, result = (engine.runner.find_texture(plan.surfaces[number].key) for number in numbers)
     assert picture.cost >= 0.05 and result.cost > 0.0
     engine.close()

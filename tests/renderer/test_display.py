@@ -11,7 +11,7 @@ import pytest
 from device_textures import read_texture, upload_texture
 from halation.color.display import list_displays, list_views, to_display
 from halation.errors import UsageError
-from halation.renderer import DeviceTexture, Display, Look, Renderer, fit_zoom, to_panel, to_picture
+from halation.renderer import DeviceTexture, Display, Look, Renderer, find_panel_point, find_picture_point, fit_zoom
 from halation.renderer.opengl.device import OpenGLDevice
 
 NUMBERS = itertools.count()
@@ -194,15 +194,15 @@ def test_an_enlarged_picture_shows_the_same_colors(result, shown, pan):
     look = {"exposure": 0.5, "gamma": 1.2, "checker": False, "background": (0.2, 0.4, 0.6)}
     whole = shown(result(pixels), (64, 48), **look).repeat(4, 0).repeat(4, 1)
     panel = shown(result(pixels), (100, 60), zoom=4.0, pan=pan, **look)
-    left, top = (int(part) for part in to_picture(Look(pan=pan), (100, 60), (256, 192), (0.0, 0.0)))
+    left, top = (int(part) for part in find_picture_point(Look(pan=pan), (100, 60), (256, 192), (0.0, 0.0)))
     np.testing.assert_allclose(panel, whole[top : top + 60, left : left + 100], atol=1e-6)
 
 
 def test_points_of_panel_and_picture():
     look, panel, picture = Look(zoom=2.5, pan=(7.0, -3.0)), (101, 67), (30, 20)
-    there = to_picture(look, panel, picture, (40.0, 20.0))
-    assert to_panel(look, panel, picture, there) == pytest.approx((40.0, 20.0))
-    assert to_picture(Look(), (10, 8), (10, 8), (3.0, 2.0)) == (3.0, 2.0)
+    there = find_picture_point(look, panel, picture, (40.0, 20.0))
+    assert find_panel_point(look, panel, picture, there) == pytest.approx((40.0, 20.0))
+    assert find_picture_point(Look(), (10, 8), (10, 8), (3.0, 2.0)) == (3.0, 2.0)
     assert fit_zoom((100, 80), (50, 20)) == 2.0
 
 
@@ -212,7 +212,7 @@ def test_the_pixel_under_a_point_is_the_one_that_is_named(result, shown):
     look = {"zoom": 2.5, "pan": (7.0, -3.0)}
     got = shown(result(pixels), (101, 67), **look, **RAW)
     found = {
-        tuple(int(part) for part in to_picture(Look(**look), (101, 67), (30, 20), (column + 0.5, row + 0.5)))
+        tuple(int(part) for part in find_picture_point(Look(**look), (101, 67), (30, 20), (column + 0.5, row + 0.5)))
         for row, column in np.argwhere(got[..., 0] == 1.0)
     }
     assert found == {(22, 13)}
@@ -363,7 +363,7 @@ def test_what_was_bound_stays_bound(result, display, renderer):
         mine = context.framebuffer([context.texture((3, 3), 4)])
         mine.use()
     display.draw("one", (8, 8), result(np.ones((4, 4, 4))), None, Look(view="none"))
-    display.drop("one")
+    display.release_slot("one")
     with renderer.device.make_current():
         assert context.fbo is mine and context.viewport == (0, 0, 3, 3)
         renderer.device._idle.use()

@@ -62,7 +62,7 @@ def reel(engine: Renderer, graph: Graph, **wanted) -> FrameRenderer:
 
 
 def rendered(one: FrameRenderer, frames: Iterable[int]) -> list[float]:
-    return [float(one.render(number)["out"][2, 3, 0]) for number in frames]
+    return [float(one.render_frame(number)["out"][2, 3, 0]) for number in frames]
 
 
 def closed_form(keep: float, begin: int, number: int) -> float:
@@ -139,7 +139,7 @@ def test_looking_at_another_frame_of_a_memory_is_refused(engine):
     graph = graph.connect(Port("trail", "out"), Port("offset", "image"))
     graph = graph.connect(Port("offset", "out"), Port("outputs", "out"))
     with pytest.raises(GraphError, match="'trail' makes every frame of the one before"):
-        reel(engine, graph).render(3)
+        reel(engine, graph).render_frame(3)
 
 
 def test_a_picture_that_is_there_needs_no_history(engine):
@@ -148,11 +148,11 @@ def test_a_picture_that_is_there_needs_no_history(engine):
     graph = graph.connect(Port("trail", "out"), Port("light", "image"))
     graph = graph.connect(Port("light", "out"), Port("outputs", "out"))
     one = reel(engine, graph)
-    made, shown = engine.runner.lease(), engine.runner.lease()
-    for run in one.steps(6, made):
+    made, shown = engine.runner.create_lease(), engine.runner.create_lease()
+    for run in one.start_runs(6, made):
         list(run)
-    plan = one.plan(6)
-    shown.take(plan.surfaces[plan.outputs["out"]].key)
+    plan = one.plan_frame(6)
+    shown.add(plan.surfaces[plan.outputs["out"]].key)
     made.close()
     one.close()
     engine.runner.textures.release_idle()

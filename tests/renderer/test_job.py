@@ -17,7 +17,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.array_pool import ArrayPool
-from halation.renderer.execution.decoding import LOOKAHEAD, LOOKAHEAD_BYTES, limit_lookahead
+from halation.renderer.execution.decoding import MAX_LOOKAHEAD, MAX_LOOKAHEAD_BYTES, limit_lookahead
 from halation.renderer.jobs.job import OutputSettings, run_job
 from halation.renderer.jobs.write_queue import MAX_WAITING, MAX_WAITING_BYTES, WriteQueue
 from halation.resources.sandbox import UNRESTRICTED
@@ -59,7 +59,7 @@ def values(folder: Path, frames=FRAMES) -> list[float]:
 def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, monkeypatch):
     """The first write waits until the third frame has been decoded; one after the other, it would wait in vain."""
     decoded, waited = threading.Event(), []
-    load, write = engine.pictures.load, media.write_picture
+    load, write = engine.pictures.load_pixels, media.write_picture
 
     def loading(picture):
         pixels = load(picture)
@@ -81,7 +81,7 @@ def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, m
 def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
     """A slow disk holds the rendering up; a fast one would not be read far ahead either."""
     loaded, written, most_read, most_waiting = [], [], [], []
-    load, write = engine.pictures.load, media.write_picture
+    load, write = engine.pictures.load_pixels, media.write_picture
 
     def loading(picture):
         loaded.append(picture.path)
@@ -103,7 +103,7 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
     engine.runner._load = loading
     monkeypatch.setattr(media, "write_picture", counted)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES), progress=Ends())
-    assert max(most_read + most_waiting) <= LOOKAHEAD + MAX_WAITING + 2 and len(written) == len(FRAMES)
+    assert max(most_read + most_waiting) <= MAX_LOOKAHEAD + MAX_WAITING + 2 and len(written) == len(FRAMES)
     assert engine.runner.textures.allocated <= engine.runner.textures.budget
 
 
@@ -135,7 +135,7 @@ def test_the_report_says_what_became_of_every_frame(engine, graph, shot):
     assert [item.frame for item in report.frames] == [3, 1, 2] and all(item.passes == 1 for item in report.frames)
     assert [path.name for path in report.written] == ["out.03.exr", "out.01.exr", "out.02.exr"]
     again = run_job(engine, graph, RenderRequest(), writing(shot), (1, 2, 4), resume=True)
-    assert [item.kept for item in again.frames] == [True, True, False] and again.passes == 1
+    assert [item.is_kept for item in again.frames] == [True, True, False] and again.passes == 1
 
 
 def over_a_still(graph: Graph, shot: Path) -> Graph:
@@ -173,7 +173,7 @@ def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
     run_job(engine, whole, RenderRequest(), writing(shot), tuple(FRAMES), progress=seen)
     assert passes.passes == alone + alone + len(FRAMES) - 1 and passes.uploads == 2 + 1 + len(FRAMES)
     assert max(seen.results) <= 2 and engine.runner.textures.peak <= single + 2 * 8 * 8 * 16
-    assert not engine.runner.textures._leases and not engine.runner.textures._results and not engine.runner._begun
+    assert not engine.runner.textures._leases and not engine.runner.textures._results and not engine.runner._leftovers
     engine.close()
     fresh = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, sandbox=UNRESTRICTED)
     for frame in (1, 7, 12):
@@ -250,9 +250,9 @@ def test_frames_wait_by_number_and_by_bytes(nbytes, most):
         behind.close()
 
 
-@pytest.mark.parametrize(("side", "most"), [(64, LOOKAHEAD), (4096, 1), (3000, 1), (2500, 2)])
+@pytest.mark.parametrize(("side", "most"), [(64, MAX_LOOKAHEAD), (4096, 1), (3000, 1), (2500, 2)])
 def test_pictures_are_read_ahead_by_number_and_by_bytes(side, most):
     surface = Surface("", "", (side, side), 4, "f4", 0, 0, 1)
     wanted = [(number, surface) for number in range(9)]
     assert [number for number, _ in limit_lookahead(wanted)] == list(range(most))
-    assert most == 1 or most * surface.nbytes <= LOOKAHEAD_BYTES
+    assert most == 1 or most * surface.nbytes <= MAX_LOOKAHEAD_BYTES

@@ -16,7 +16,7 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.execution.decoding import LOOKAHEAD
+from halation.renderer.execution.decoding import MAX_LOOKAHEAD
 from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
@@ -93,8 +93,8 @@ def test_two_plans_made_before_either_runs_keep_their_pictures(engine):
 @pytest.mark.parametrize("first", [1, 2, 3])
 def test_two_runs_of_a_plan_may_take_turns(renderer, forgetful, first):
     plan = forgetful.compile(chain(), wanted())
-    kept = [forgetful.runner.lease(), forgetful.runner.lease()]
-    one, other = (forgetful.runner.steps(plan, lease) for lease in kept)
+    kept = [forgetful.runner.create_lease(), forgetful.runner.create_lease()]
+    one, other = (forgetful.runner.start_run(plan, lease) for lease in kept)
     for _ in range(first):
         next(one)
     for _ in zip_longest(other, one):
@@ -108,8 +108,8 @@ def test_two_runs_of_a_plan_may_take_turns(renderer, forgetful, first):
 
 
 def test_dropping_a_run_does_not_disturb_the_next(renderer, forgetful):
-    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.lease()
-    old, new = forgetful.runner.steps(plan, forgetful.runner.lease()), forgetful.runner.steps(plan, kept)
+    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.create_lease()
+    old, new = forgetful.runner.start_run(plan, forgetful.runner.create_lease()), forgetful.runner.start_run(plan, kept)
     next(old), next(old), next(new)
     old.close()
     for _ in new:
@@ -120,27 +120,27 @@ def test_dropping_a_run_does_not_disturb_the_next(renderer, forgetful):
 
 
 def test_outputs_stay_on_the_device_as_long_as_they_are_leased(forgetful):
-    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.lease()
+    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.create_lease()
     key = plan.surfaces[plan.outputs["image"]].key
-    for _ in forgetful.runner.steps(plan, kept):
+    for _ in forgetful.runner.start_run(plan, kept):
         pass
-    texture = forgetful.runner.texture(key)
+    texture = forgetful.runner.find_texture(key)
     assert texture is not None and texture.handle.size == (37, 23)
     for stops in (2.0, 3.0):
         forgetful.render(chain(stops), wanted())
-    assert forgetful.runner.texture(key) is texture
+    assert forgetful.runner.find_texture(key) is texture
     np.testing.assert_array_equal(
         forgetful.runner.download(plan)["image"], forgetful.render(chain(), wanted())["image"]
     )
     kept.close()
-    assert forgetful.runner.texture(key) is None
+    assert forgetful.runner.find_texture(key) is None
 
 
 def test_passes_are_timed_on_request(forgetful):
     plan, timings = forgetful.compile(chain(), wanted()), []
-    with forgetful.runner.steps(plan, forgetful.runner.lease(), timings=timings) as steps:
+    with forgetful.runner.start_run(plan, forgetful.runner.create_lease(), timings=timings) as steps:
         passes = list(steps)
-        assert (steps.done, steps.total) == (len(passes), len(plan.passes))
+        assert (steps.passes_done, steps.total) == (len(passes), len(plan.passes))
     assert [one for one, _ in timings] == passes == list(plan.passes)
     assert all(seconds > 0.0 for _, seconds in timings)
 
@@ -154,13 +154,13 @@ def test_a_run_says_whether_it_would_wait_for_a_file(forgetful):
 
     forgetful.runner._load = slow
     plan = forgetful.compile(chain(), wanted())
-    with forgetful.runner.steps(plan, forgetful.runner.lease()) as steps:
-        assert not steps.ready
+    with forgetful.runner.start_run(plan, forgetful.runner.create_lease()) as steps:
+        assert not steps.is_ready
         gate.set()
         next(steps)
-        assert steps.ready
+        assert steps.is_ready
         assert len(list(steps)) == len(plan.passes) - 1
-        assert steps.ready
+        assert steps.is_ready
 
 
 def test_two_devices_may_take_turns(renderer):
@@ -170,7 +170,7 @@ def test_two_devices_may_take_turns(renderer):
     ]
     plans = [engine.compile(chain(sigma=9.0), wanted()) for engine in engines]
     pairs = list(zip(engines, plans, strict=True))
-    for _ in zip_longest(*(engine.runner.steps(plan, engine.runner.lease()) for engine, plan in pairs)):
+    for _ in zip_longest(*(engine.runner.start_run(plan, engine.runner.create_lease()) for engine, plan in pairs)):
         pass
     expected = renderer.render(chain(sigma=9.0), wanted())["image"]
     for engine, plan in pairs:
@@ -263,7 +263,7 @@ def test_results_make_room_before_an_allocation_fails(engine, monkeypatch):
 
 
 def test_only_a_few_pictures_are_decoded_ahead(forgetful):
-    count, loaded = 8 + 2 * LOOKAHEAD, []
+    count, loaded = 8 + 2 * MAX_LOOKAHEAD, []
     load = forgetful.runner._load
 
     def watched(picture):
@@ -273,12 +273,12 @@ def test_only_a_few_pictures_are_decoded_ahead(forgetful):
     forgetful.runner._load = watched
     pictures = {f"i{number:02}": PICTURE * (number + 1) for number in range(count)}
     plan = forgetful.compile(merged(count), RenderRequest(pictures, precision="float"))
-    kept = forgetful.runner.lease()
-    steps = forgetful.runner.steps(plan, kept)
+    kept = forgetful.runner.create_lease()
+    steps = forgetful.runner.start_run(plan, kept)
     next(steps)
     taken = len(plan.passes[0].textures)
     time.sleep(0.1)
-    assert len(loaded) <= taken + LOOKAHEAD < count
+    assert len(loaded) <= taken + MAX_LOOKAHEAD < count
     for _ in steps:
         pass
     assert sorted(loaded) == sorted(pictures)
@@ -315,13 +315,13 @@ def test_a_picture_that_was_begun_for_a_dropped_run_is_not_decoded_again(forgetf
 
     forgetful.runner._load = slow
     for stops in (1.0, 2.0, 3.0):
-        dropped = forgetful.runner.steps(forgetful.compile(chain(stops), wanted()), forgetful.runner.lease())
+        dropped = forgetful.runner.start_run(forgetful.compile(chain(stops), wanted()), forgetful.runner.create_lease())
         while not loaded:
             time.sleep(0.001)
         dropped.close()
     gate.set()
     forgetful.render(chain(4.0), wanted())
-    assert loaded == ["image"] and not forgetful.runner._begun
+    assert loaded == ["image"] and not forgetful.runner._leftovers
 
 
 def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
@@ -349,8 +349,8 @@ def test_closing_gives_everything_back():
 
 def test_a_closed_renderer_says_so():
     engine = Renderer(sandbox=UNRESTRICTED)
-    kept = engine.runner.lease()
-    steps = engine.runner.steps(engine.compile(chain(), wanted()), kept)
+    kept = engine.runner.create_lease()
+    steps = engine.runner.start_run(engine.compile(chain(), wanted()), kept)
     next(steps)
     engine.close()
     steps.close()

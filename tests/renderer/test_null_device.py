@@ -50,9 +50,9 @@ def needed_later(plan: Plan, done: int) -> set[str]:
 @pytest.mark.parametrize("name", PRESETS)
 def test_every_preset_runs_as_it_was_planned(renderer: Renderer, device: NullDevice, name: str):
     graph = document.load(PRESETS[name], sandbox=UNRESTRICTED)
-    plan = renderer.compile(graph, replace(SMALL, frame=renderer.frames(graph)[0]))
-    lease = renderer.runner.lease()
-    with renderer.runner.steps(plan, lease) as run:
+    plan = renderer.compile(graph, replace(SMALL, frame=renderer.find_frames(graph)[0]))
+    lease = renderer.runner.create_lease()
+    with renderer.runner.start_run(plan, lease) as run:
         for done, render_pass in enumerate(run, 1):
             assert render_pass == plan.passes[done - 1]
             assert needed_later(plan, done) <= leased(renderer)
@@ -88,9 +88,9 @@ def test_frames_in_order_run_each_plan_once(renderer: Renderer, device: NullDevi
     first = frames.frames[0]
     for frame in range(first, first + 3):
         before = len(device.commands)
-        assert not frames.lead_frames(frame), "what the frame before remembered is on the device"
-        frames.render(frame)
-        assert len(device.commands) - before <= len(frames.plan(frame).passes)
+        assert not frames.find_lead_frames(frame), "what the frame before remembered is on the device"
+        frames.render_frame(frame)
+        assert len(device.commands) - before <= len(frames.plan_frame(frame).passes)
     frames.close()
     assert not leased(renderer)
 
@@ -99,9 +99,9 @@ def test_a_frame_alone_is_led_up_to(renderer: Renderer, device: NullDevice):
     graph = document.load(PRESETS["light_painting"], sandbox=UNRESTRICTED)
     frames = FrameRenderer(renderer, graph, SMALL)
     first = frames.frames[0]
-    assert list(frames.lead_frames(first + 3)) == [first, first + 1, first + 2]
-    frames.render(first + 3)
-    assert len(device.reads) == len(frames.plan(first + 3).outputs), "frames on the way are not read back"
+    assert list(frames.find_lead_frames(first + 3)) == [first, first + 1, first + 2]
+    frames.render_frame(first + 3)
+    assert len(device.reads) == len(frames.plan_frame(first + 3).outputs), "frames on the way are not read back"
     frames.close()
     assert not leased(renderer)
 
@@ -124,10 +124,10 @@ def test_tiles_stay_within_their_memory(device: NullDevice, name: str):
     plan = tiled(graph, device)
     assert plan.tiling is not None
     engine = Renderer(device, budget=0, sandbox=UNRESTRICTED)
-    lease = engine.runner.lease()
-    with engine.runner.steps(plan, lease) as run:
+    lease = engine.runner.create_lease()
+    with engine.runner.start_run(plan, lease) as run:
         passes = sum(1 for _ in run)
-        assert passes == run.done <= run.total
+        assert passes == run.passes_done <= run.total
     pixels = engine.runner.download(plan)
     sizes = {name: plan.surfaces[number].size for name, number in plan.outputs.items()}
     assert {name: array.shape[1::-1] for name, array in pixels.items()} == sizes

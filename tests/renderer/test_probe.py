@@ -12,7 +12,7 @@ from halation.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Nonfinite, Probe, Renderer, RenderRequest, find_first_nonfinite, open_device
+from halation.renderer import NonfinitePixel, PixelProbe, Renderer, RenderRequest, find_first_nonfinite, open_device
 from halation.resources.sandbox import UNRESTRICTED
 
 NODES = catalogue()
@@ -22,7 +22,7 @@ RNG = np.random.default_rng(7)
 
 @pytest.fixture
 def probe(renderer):
-    made = Probe(renderer.device)
+    made = PixelProbe(renderer.device)
     yield made
     made.close()
 
@@ -47,29 +47,29 @@ def texture(renderer):
 def test_pixels_and_regions(probe, texture, channels, dtype):
     pixels = RNG.normal(0.0, 100.0, (11, 13, channels)).astype(dtype)
     made = texture(pixels)
-    assert probe.pixel(made, 12, 0) == tuple(pixels[0, 12].astype(float))
-    assert probe.pixel(made, 3, 10) == tuple(pixels[10, 3].astype(float))
-    np.testing.assert_array_equal(probe.region(made, (2, 3, 7, 5)), pixels[3:8, 2:9].astype(np.float32))
+    assert probe.read_pixel(made, 12, 0) == tuple(pixels[0, 12].astype(float))
+    assert probe.read_pixel(made, 3, 10) == tuple(pixels[10, 3].astype(float))
+    np.testing.assert_array_equal(probe.read_region(made, (2, 3, 7, 5)), pixels[3:8, 2:9].astype(np.float32))
 
 
 @pytest.mark.parametrize("rect", [(-1, 0, 2, 2), (0, 0, 14, 1), (13, 0, 1, 1), (0, 10, 1, 2), (0, 0, 0, 1)])
 def test_outside_of_a_picture_there_is_nothing(probe, texture, rect):
     with pytest.raises(UsageError, match="not inside a picture of 13x11"):
-        probe.region(texture(np.zeros((11, 13, 4), np.float32)), rect)
+        probe.read_region(texture(np.zeros((11, 13, 4), np.float32)), rect)
 
 
 @pytest.mark.parametrize("channels", [1, 2, 4])
 def test_a_small_copy_holds_pixels_of_the_large_one(probe, texture, channels):
     pixels = RNG.normal(0.0, 1.0, (30, 60, channels)).astype(np.float32)
-    small = probe.small(texture(pixels), 20)
+    small = probe.read_small(texture(pixels), 20)
     np.testing.assert_array_equal(small, pixels[1::3, 1::3])
-    np.testing.assert_array_equal(probe.small(texture(pixels), 999), pixels)
+    np.testing.assert_array_equal(probe.read_small(texture(pixels), 999), pixels)
 
 
 def test_broken_numbers_come_back_as_they_are(probe, texture):
     pixels = np.ones((2, 2, 4), np.float32)
     pixels[1, 0] = (np.nan, np.inf, -np.inf, -0.5)
-    np.testing.assert_array_equal(probe.region(texture(pixels), (0, 0, 2, 2)), pixels)
+    np.testing.assert_array_equal(probe.read_region(texture(pixels), (0, 0, 2, 2)), pixels)
 
 
 # --- the first that is not finite ------------------------------------------------------------------------------------
@@ -89,7 +89,7 @@ def divided() -> Graph:
     return graph.connect(Port("after", "out"), Port("outputs", "image"))
 
 
-def search(renderer, graph, pictures, port=IMAGE) -> tuple[list[None], Nonfinite | None]:
+def search(renderer, graph, pictures, port=IMAGE) -> tuple[list[None], NonfinitePixel | None]:
     *steps, last = find_first_nonfinite(renderer, graph, RenderRequest(pictures, precision="float"), port)
     return steps, last
 

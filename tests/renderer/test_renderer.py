@@ -150,7 +150,7 @@ def test_an_unknown_input_is_named_with_those_there_are(engine):
 
 def test_stopping_between_passes_leaves_nothing_behind(engine):
     plan = engine.compile(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))
-    steps = engine.runner.steps(plan, engine.runner.lease())
+    steps = engine.runner.start_run(plan, engine.runner.create_lease())
     next(steps)
     steps.close()
     result = engine.render(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))["image"]

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from halation.compiler import Surface
-from halation.renderer.execution.texture_pool import Lease, TexturePool
+from halation.renderer.execution.texture_pool import TextureLease, TexturePool
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -37,9 +37,9 @@ def pool(results: float) -> TexturePool:
 
 def use(textures: TexturePool, key: str, cost: float, side: int = SIDE) -> bool:
     """Read a result, after making it at this cost where it is gone; True if it was there."""
-    lease, there = Lease(textures), key in textures
+    lease, there = TextureLease(textures), key in textures
     if there:
-        lease.take(key)
+        lease.add(key)
     else:
         lease.create(Surface(key, key, (side, side), 4, "f4", 0, 0, 1)).cost = cost
     lease.close()
@@ -107,7 +107,7 @@ def test_small_results_do_not_stay_for_ever():
 
 def test_what_somebody_leases_stays_whatever_it_costs():
     textures = pool(1)
-    lease = Lease(textures)
+    lease = TextureLease(textures)
     lease.create(Surface("a", "a", (SIDE, SIDE), 4, "f4", 0, 0, 1)).cost = 0.0
     for key in "bcd":
         use(textures, key, 1.0)

@@ -257,11 +257,11 @@ def through(reel: FrameRenderer, frames: int) -> list[dict[str, np.ndarray]]:
     """Frames one after the other; what each has in common with the next stays for that."""
     made: list[dict[str, np.ndarray]] = []
     for frame in range(1, frames + 1):
-        kept = reel.renderer.runner.lease()
-        for run in reel.steps(frame, kept, following=frame + 1):
+        kept = reel.renderer.runner.create_lease()
+        for run in reel.start_runs(frame, kept, following=frame + 1):
             with run:
                 list(run)
-        made.append(reel.renderer.runner.download(reel.plan(frame)))
+        made.append(reel.renderer.runner.download(reel.plan_frame(frame)))
         kept.close()
     return made
 
@@ -270,7 +270,7 @@ def test_what_a_frame_remembers_is_counted_twice(fitting):
     """Before a frame is done, what was remembered of the one before is still there."""
     graph, wanted = chain(NODES["light_trails"]()), RenderRequest({"image": noise(100, 50)}, precision="float")
     free = FrameRenderer(fitting, graph, wanted)
-    memory = free.plan(2).held_bytes
+    memory = free.plan_frame(2).held_bytes
     tight = limited(memory=memory)
     for one, other in zip(through(FrameRenderer(tight, graph, wanted), 4), through(free, 4), strict=True):
         same_bits(one, other)
@@ -278,7 +278,7 @@ def test_what_a_frame_remembers_is_counted_twice(fitting):
     tight.close()
     tighter = limited(memory=memory - 1)
     with pytest.raises(DeviceError, match="node 'n0': what it remembers of a frame"):
-        FrameRenderer(tighter, graph, wanted).plan(1)
+        FrameRenderer(tighter, graph, wanted).plan_frame(1)
     tighter.close()
 
 
@@ -286,7 +286,7 @@ def test_nothing_is_carried_on_that_there_is_no_room_for(fitting):
     """A still under noise that moves is made once where there is room, else in every frame."""
     graph = chain(NODES["median"](), NODES["film_grain"](), *[NODES["gaussian_blur"](sigma=2.0)] * 2)
     wanted = RenderRequest({"image": noise(300, 200)}, precision="float")
-    plan = FrameRenderer(fitting, graph, wanted).plan(1)
+    plan = FrameRenderer(fitting, graph, wanted).plan_frame(1)
     peaks: list[int] = []
     for memory in (4 * plan.held_bytes, plan.held_bytes):
         tight = limited(memory=memory)
@@ -299,9 +299,9 @@ def test_nothing_is_carried_on_that_there_is_no_room_for(fitting):
 def test_outputs_in_memory_go_with_their_lease(fitting, in_pieces):
     """Whether they were downloaded or not."""
     plan = fitting.compile(chain(NODES["exposure"](stops=1.0)), RenderRequest({"image": noise(60, 40)}))
-    kept, other = fitting.runner.lease(), fitting.runner.lease()
+    kept, other = fitting.runner.create_lease(), fitting.runner.create_lease()
     for lease in (kept, other):
-        with fitting.runner.steps(plan, lease) as run:
+        with fitting.runner.start_run(plan, lease) as run:
             list(run)
     kept.close()
     alone = weakref.ref(fitting.runner.download(plan)["image"])

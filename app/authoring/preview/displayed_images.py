@@ -9,7 +9,7 @@ from halation.nodes import Kind, Size
 
 from ...compiler import Plan, scale_size
 from ...graph import Port
-from ...renderer import DeviceTexture, Lease, Runner
+from ...renderer import DeviceTexture, Runner, TextureLease
 from .frame_cache import FrameImage
 from .request import PreviewRequest, pixel_kind
 from .visible_region import PictureRegion
@@ -53,7 +53,7 @@ class _LeasedImage:
     """What a panel shows, and the lease that keeps it."""
 
     shown: DisplayedImage
-    lease: Lease
+    lease: TextureLease
 
 
 class DisplayedImages:
@@ -97,9 +97,9 @@ class DisplayedImages:
     ) -> _LeasedImage:
         surface = face.surface
         same = before is not None and before.shown.key == surface.key
-        lease = self._runner.lease()
-        lease.take(surface.key)
-        texture = self._runner.texture(surface.key)
+        lease = self._runner.create_lease()
+        lease.add(surface.key)
+        texture = self._runner.find_texture(surface.key)
         assert texture is not None
         self._revision += not same
         return _LeasedImage(

@@ -10,7 +10,7 @@ from halation.nodes import Size
 
 from ...compiler import Surface
 from ...graph import Port
-from ...renderer import FrameRenderer, Lease, Renderer
+from ...renderer import FrameRenderer, Renderer, TextureLease
 
 SHARE = 0.5
 """The part of the memory budget that frames may take which were shown."""
@@ -43,7 +43,7 @@ class FrameCache:
 
     def __init__(self) -> None:
         self._images_by_frame: dict[int, FrameImages] = {}
-        self._leases: dict[int, Lease] = {}
+        self._leases: dict[int, TextureLease] = {}
         self._last_lookup: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
         """For whom it was looked up which frames are there, when, and which."""
         self._frame_renderers: dict[tuple[tuple[str, Port], ...], FrameRenderer] = {}
@@ -61,10 +61,10 @@ class FrameCache:
         faces = {**self._images_by_frame.get(frame, {}), **faces}
         self._release_frame(frame)
         self._images_by_frame[frame] = faces
-        lease = renderer.runner.lease()
+        lease = renderer.runner.create_lease()
         for face in faces.values():
             if face.surface.key in renderer.runner.textures:
-                lease.take(face.surface.key)
+                lease.add(face.surface.key)
         self._leases[frame] = lease
         self._make_room(int(renderer.runner.textures.budget * SHARE), current_frame)
         while len(self._images_by_frame) > MOST_FRAMES:

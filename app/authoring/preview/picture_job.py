@@ -44,7 +44,7 @@ class PictureJob:
         """Frames of the history that have been run, and all that must be."""
         self.planned_frames = (0, 0)
         """The same for plans."""
-        self.lease = renderer.runner.lease()
+        self.lease = renderer.runner.create_lease()
         self._runs: Iterator[Run] | None = None
         self._frame_renderer: FrameRenderer | None = None
         try:
@@ -57,7 +57,7 @@ class PictureJob:
                         ports, FrameRenderer(renderer, wish.graph, wish.render_request(ports, frame))
                     )
                 else:
-                    self.plan, self.run = plan, renderer.runner.steps(plan, self.lease, timings=self.timings)
+                    self.plan, self.run = plan, renderer.runner.start_run(plan, self.lease, timings=self.timings)
         except BaseException:
             self.lease.close()
             raise
@@ -65,7 +65,7 @@ class PictureJob:
     @property
     def is_ready(self) -> bool:
         """False while the next step would wait for a file."""
-        return self.run is None or self.run.ready
+        return self.run is None or self.run.is_ready
 
     @property
     def preroll_progress(self) -> tuple[str, int, int] | None:
@@ -98,9 +98,9 @@ class PictureJob:
         if planned := self._frame_renderer.plan_next(self.frame):
             self.planned_frames = planned
             return
-        self.plan = _check_displayable(self._frame_renderer.plan(self.frame))
-        self.preroll = (-1, len(self._frame_renderer.lead_frames(self.frame)))
-        self._runs = self._frame_renderer.steps(self.frame, self.lease, self.timings)
+        self.plan = _check_displayable(self._frame_renderer.plan_frame(self.frame))
+        self.preroll = (-1, len(self._frame_renderer.find_lead_frames(self.frame)))
+        self._runs = self._frame_renderer.start_runs(self.frame, self.lease, self.timings)
         self._start_next_run()
 
     def _start_next_run(self) -> bool:

@@ -208,7 +208,7 @@ class Preview:
         if job is None or job.run is None or job.ahead:
             return before, before
         before += job.finished_passes
-        return before + job.run.done, before + job.run.total
+        return before + job.run.passes_done, before + job.run.total
 
     @property
     def lead(self) -> tuple[str, int, int] | None:

@@ -10,7 +10,7 @@ from halation.nodes import ColorSettings, Kind
 from ...color.management import get_default_color_manager
 from ...compiler import Plan, scale_size
 from ...media.comparison.data_range import are_normals, balance_range, find_data_range
-from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
+from ...renderer import DeviceTexture, Display, Look, PixelProbe, Renderer
 from .color_fallback import ColorFallback
 from .request import PreviewRequest, canvas_path, pixel_kind
 
@@ -67,7 +67,7 @@ class Thumbnails:
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self._renderer, self._display = renderer, display
-        self._probe = Probe(renderer.device)
+        self._probe = PixelProbe(renderer.device)
         self._thumbnails: dict[str, _Thumbnail] = {}
         self._waiting: dict[str, ThumbnailSource] = {}
         self._coloring, self._manager = ColorFallback(renderer.sandbox), get_default_color_manager()
@@ -93,7 +93,7 @@ class Thumbnails:
     def draw_next(self) -> None:
         """Draw one, unless its result had to make room for others."""
         subject = self._waiting.pop(next(iter(self._waiting)))
-        texture = self._renderer.runner.texture(subject.key)
+        texture = self._renderer.runner.find_texture(subject.key)
         if texture is None:
             return
         source = _DisplaySource(texture.handle, texture.handle.size, subject.channels, subject.key)
@@ -114,7 +114,7 @@ class Thumbnails:
     def clear(self) -> None:
         """Forget all of them."""
         for path in self._thumbnails:
-            self._display.drop(f"thumbnail {path}")
+            self._display.release_slot(f"thumbnail {path}")
         self._thumbnails.clear()
         self._waiting.clear()
         self.paths = frozenset()
@@ -127,7 +127,7 @@ class Thumbnails:
     def _look(self, subject: ThumbnailSource, texture: DeviceTexture, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
             return Look(zoom=zoom, view="none", manager=self._manager)
-        pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
+        pixels = self._probe.read_small(texture, RANGE_WIDTH)[..., : subject.channels]
         if are_normals(pixels):
             return Look(zoom=zoom, meaning="normal")
         low, high = find_data_range(pixels)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.preview.color_fallback import ColorFallback
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
-    from ...renderer.viewing.probe import Probe
+    from ...renderer.viewing.probe import PixelProbe
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, PlayState, ReportedFault, SystemText
@@ -30,7 +30,7 @@ class ViewerContext(PanelContext):
     viewer: ViewerState
     preview: Preview
     display: Display
-    probe: Probe
+    probe: PixelProbe
     store: PreferenceStore
     actions: Actions
     dialogs: Dialogs

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...graph import Port
-from ...renderer import Nonfinite, RenderRequest, find_first_nonfinite
+from ...renderer import NonfinitePixel, RenderRequest, find_first_nonfinite
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -21,7 +21,7 @@ class InvalidPixelSearch:
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
-        self._steps: Iterator[Nonfinite | None] | None = None
+        self._steps: Iterator[NonfinitePixel | None] | None = None
         self._of: object = None
 
     def step(self) -> None:
@@ -65,13 +65,13 @@ class InvalidPixelSearch:
             steps.close()  # type: ignore[attr-defined]
 
 
-def _search(context: ViewerContext, port: Port) -> Iterator[Nonfinite | None]:
+def _search(context: ViewerContext, port: Port) -> Iterator[NonfinitePixel | None]:
     viewer = context.viewer
     wanted = RenderRequest(context.session.bindings, {"A": port}, scale=viewer.proxy)
     return find_first_nonfinite(context.preview.renderer, context.session.root, wanted, port)
 
 
-def _show(context: ViewerContext, found: Nonfinite) -> None:
+def _show(context: ViewerContext, found: NonfinitePixel) -> None:
     """Go to the node that was found, and mark the pixel."""
     x, y = found.pixel
     context.log.add(

@@ -50,11 +50,11 @@ class Sight:
     def pixel(self, at: Point) -> Point:
         """The picture position (pixels at full size, fractions kept) under a screen point."""
         x, y = ((at[i] - self.origin[i]) * self.density for i in (0, 1))
-        return look.to_picture(self.look, self.panel, self.picture, (x, y))
+        return look.find_picture_point(self.look, self.panel, self.picture, (x, y))
 
     def screen(self, pixel: Point) -> Point:
         """The screen point of a picture position."""
-        point = look.to_panel(self.look, self.panel, self.picture, pixel)
+        point = look.find_panel_point(self.look, self.panel, self.picture, pixel)
         x, y = (self.origin[i] + point[i] / self.density for i in (0, 1))
         return x, y
 

@@ -12,7 +12,7 @@ from .measuring import Array, Statistics, statistics
 
 if TYPE_CHECKING:
     from ...authoring.preview import DisplayedImage
-    from ...renderer.viewing.probe import Probe
+    from ...renderer.viewing.probe import PixelProbe
 
 T = TypeVar("T")
 
@@ -29,29 +29,33 @@ class ValueReader:
     def __init__(self) -> None:
         self._known: dict[object, tuple[object, Any]] = {}
 
-    def small(self, probe: Probe, shown: DisplayedImage) -> Array:
+    def small(self, probe: PixelProbe, shown: DisplayedImage) -> Array:
         """The picture [h, w, channels] with most pixels left out."""
         return self._kept(
-            "small", _mark(shown), lambda: probe.small(shown.texture, SMALL)[..., : shown.channels].astype(np.float32)
+            "small",
+            _mark(shown),
+            lambda: probe.read_small(shown.texture, SMALL)[..., : shown.channels].astype(np.float32),
         )
 
-    def pixel(self, probe: Probe, name: str, shown: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
+    def pixel(self, probe: PixelProbe, name: str, shown: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
         """The numbers of one pixel, given at full size; `name` says what for. None where there are none as yet."""
         (x, y), (left, top) = texel(pixel, shown.full_size, shown.size), shown.start
         x, y = x - left, y - top
         if not (0 <= x < shown.texture.size[0] and 0 <= y < shown.texture.size[1]):
             return ()
         return self._kept(
-            ("pixel", name), (_mark(shown), x, y), lambda: tuple(probe.pixel(shown.texture, x, y)[: shown.channels])
+            ("pixel", name),
+            (_mark(shown), x, y),
+            lambda: tuple(probe.read_pixel(shown.texture, x, y)[: shown.channels]),
         )
 
-    def measured(self, probe: Probe, name: str, shown: DisplayedImage, box: Box) -> Statistics:
+    def measured(self, probe: PixelProbe, name: str, shown: DisplayedImage, box: Box) -> Statistics:
         """Statistics of a box of fractions."""
         part = texels(box, shown.texture.size)
         return self._kept(
             ("box", name),
             (_mark(shown), part),
-            lambda: statistics(probe.region(shown.texture, part)[..., : shown.channels]),
+            lambda: statistics(probe.read_region(shown.texture, part)[..., : shown.channels]),
         )
 
     def _kept(self, key: object, mark: object, read: Callable[[], T]) -> T:
@@ -70,7 +74,7 @@ class Scan:
         self.wrong = 0
         """Pixels found so far."""
 
-    def step(self, probe: Probe, shown: DisplayedImage | None) -> None:
+    def step(self, probe: PixelProbe, shown: DisplayedImage | None) -> None:
         """Go on, from the start where the picture is another one."""
         if shown is None:
             self._mark, self._steps, self.wrong = None, None, 0
@@ -84,11 +88,11 @@ class Scan:
             else:
                 self.wrong += found
 
-    def _look_through(self, probe: Probe, shown: DisplayedImage) -> Iterator[int]:
+    def _look_through(self, probe: PixelProbe, shown: DisplayedImage) -> Iterator[int]:
         width, height = shown.texture.size
         rows = max(BAND // max(width, 1), 1)
         for top in range(0, height, rows):
-            part = probe.region(shown.texture, (0, top, width, min(rows, height - top)))[..., : shown.channels]
+            part = probe.read_region(shown.texture, (0, top, width, min(rows, height - top)))[..., : shown.channels]
             yield int((~np.isfinite(part).all(axis=2)).sum())
 
 

@@ -24,9 +24,9 @@ def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | N
     width, height = a.full_size
     texture = context.display.draw("saved", (width, height), a, b, picture_only(look))
     try:
-        pixels = context.probe.region(texture, (0, 0, width, height))[..., :3]
+        pixels = context.probe.read_region(texture, (0, 0, width, height))[..., :3]
     finally:
-        context.display.drop("saved")
+        context.display.release_slot("saved")
     name = f"{context.session.name}.{a.port.node.rpartition('/')[2]}.png"
     context.dialogs.browse = Browse(
         "Save what is seen",

@@ -9,7 +9,7 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...renderer.viewing.plates import Plate
+from ...renderer.viewing.plates import PlateTexture
 from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet_button, tool, width_of_buttons
@@ -40,7 +40,7 @@ class ScopesPanel:
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
         self._reader = ValueReader()
-        self._plates: dict[str, Plate] = {}
+        self._plates: dict[str, PlateTexture] = {}
         self._textures: dict[str, int] = {}
         self._mark: object = None
         self._rgb = np.zeros((1, 1, 3), np.float32)
@@ -135,7 +135,9 @@ class ScopesPanel:
         self._waiting = list(names)
 
     def _make(self, name: str) -> None:
-        plate = self._plates.get(name) or self._plates.setdefault(name, Plate(self._context.preview.renderer.device))
+        plate = self._plates.get(name) or self._plates.setdefault(
+            name, PlateTexture(self._context.preview.renderer.device)
+        )
         pixels = self._image(
             name, self._rgb, self._context.viewer.scopes_logarithmic, graticules.is_dark(self._context.palette)
         )

@@ -187,7 +187,7 @@ class Viewer:
             for name, left in ((A, x), (B, corner[0])):
                 label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)
         else:
-            self._context.display.drop("viewer beside")
+            self._context.display.release_slot("viewer beside")
         if now.a is not None:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(self._context, sight)

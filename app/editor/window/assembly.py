@@ -19,7 +19,7 @@ from ...graph import Graph
 from ...inputs.provider import MediaProvider
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
-from ...renderer.viewing.probe import Probe
+from ...renderer.viewing.probe import PixelProbe
 from ...resources.sandbox import Sandbox
 from ..actions import table
 from ..shared.action import Actions
@@ -55,7 +55,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         RecoveryFile(folder, store.current.autosave),
         SystemClipboard(),
         display,
-        Probe(device),
+        PixelProbe(device),
         Interface(store),
         RenderQueue(sandbox),
         renders,

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
-    from ...renderer.viewing.probe import Probe
+    from ...renderer.viewing.probe import PixelProbe
     from ..shared.action import Actions, Scope
     from ..shared.protocols import SystemText
 
@@ -45,7 +45,7 @@ class Editor:
     recovery: RecoveryFile
     clipboard: SystemText
     display: Display
-    probe: Probe
+    probe: PixelProbe
     interface: Interface
     exports: RenderQueue
     renders: RenderOverviews

@@ -9,7 +9,7 @@ import numpy as np
 
 from .decoding import Array
 
-SPARE = 3
+MAX_SPARE_ARRAYS = 3
 """Arrays that wait to be used again: one is filled while two are written."""
 
 
@@ -17,7 +17,7 @@ class ArrayPool:
     """Lends arrays, and lends them again once they were given back. Any thread may give."""
 
     def __init__(self) -> None:
-        self._spare: deque[Array] = deque(maxlen=SPARE)
+        self._spare: deque[Array] = deque(maxlen=MAX_SPARE_ARRAYS)
 
     def take(self, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
         """An array of any numbers."""

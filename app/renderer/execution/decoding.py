@@ -13,13 +13,13 @@ from ...compiler import Surface, Upload
 from ...resources.picture import Picture
 
 Array = np.ndarray
-Loader = Callable[[Picture], Array]
+PictureLoader = Callable[[Picture], Array]
 """Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
 
-LOOKAHEAD = 4
+MAX_LOOKAHEAD = 4
 """Pictures decoded before their turn: enough to keep the threads busy, few enough to fit into memory."""
 
-LOOKAHEAD_BYTES = 2**28
+MAX_LOOKAHEAD_BYTES = 2**28
 """What they may take together; one picture may be larger."""
 
 DecodeRequest = tuple[Upload, Surface]
@@ -33,19 +33,19 @@ class DecodedPicture(Struct, frozen=True):
     seconds: float
 
 
-def decode(load: Loader, picture: Picture) -> DecodedPicture:
+def decode_picture(load: PictureLoader, picture: Picture) -> DecodedPicture:
     """Load a picture and say how long that took."""
     started = time.perf_counter()
     pixels = load(picture)
     return DecodedPicture(pixels, time.perf_counter() - started)
 
 
-def limit_lookahead(wanted: Iterable[DecodeRequest]) -> Iterator[DecodeRequest]:
+def limit_lookahead(requests: Iterable[DecodeRequest]) -> Iterator[DecodeRequest]:
     """As many of the first ones as may be decoded before their turn."""
     nbytes = 0
-    for number, (upload, surface) in enumerate(wanted):
+    for number, (upload, surface) in enumerate(requests):
         nbytes += surface.nbytes
-        if number and (number >= LOOKAHEAD or nbytes > LOOKAHEAD_BYTES):
+        if number and (number >= MAX_LOOKAHEAD or nbytes > MAX_LOOKAHEAD_BYTES):
             return
         yield upload, surface
 
@@ -57,60 +57,64 @@ class DecodeQueue:
     """
 
     def __init__(
-        self, threads: Executor, load: Loader, wanted: Iterable[DecodeRequest], begun: dict[str, Future[DecodedPicture]]
+        self,
+        threads: Executor,
+        load: PictureLoader,
+        requests: Iterable[DecodeRequest],
+        leftovers: dict[str, Future[DecodedPicture]],
     ) -> None:
-        self._threads, self._load, self._begun = threads, load, begun
-        self._uploads = {upload.surface: (upload, surface) for upload, surface in wanted}
-        self._started: dict[int, Future[DecodedPicture]] = {}
+        self._threads, self._load, self._leftovers = threads, load, leftovers
+        self._requests = {upload.surface: (upload, surface) for upload, surface in requests}
+        self._futures: dict[int, Future[DecodedPicture]] = {}
         self._start_next()
 
     def __contains__(self, surface: int) -> bool:
-        return surface in self._uploads
+        return surface in self._requests
 
-    def upload(self, surface: int) -> Upload:
+    def find_upload(self, surface: int) -> Upload:
         """What is decoded for a surface."""
-        return self._uploads[surface][0]
+        return self._requests[surface][0]
 
-    def ready(self, surface: int) -> bool:
+    def is_ready(self, surface: int) -> bool:
         """True if `take` would not wait."""
         return self._start(surface).done()
 
     def take(self, surface: int) -> DecodedPicture:
         """The pixels for a surface, once. Raises what the loader raised."""
         future = self._start(surface)
-        del self._uploads[surface], self._started[surface]
-        found = future.result()
+        del self._requests[surface], self._futures[surface]
+        decoded = future.result()
         self._start_next()
-        return found
+        return decoded
 
     def skip(self, surface: int) -> None:
         """These pixels have come from elsewhere."""
-        del self._uploads[surface]
-        future = self._started.pop(surface, None)
+        del self._requests[surface]
+        future = self._futures.pop(surface, None)
         if future is not None:
             future.cancel()
         self._start_next()
 
     def cancel(self) -> None:
         """Nothing more is wanted."""
-        left = {
-            self._uploads[surface][1].key: future
-            for surface, future in self._started.items()
+        unfinished = {
+            self._requests[surface][1].key: future
+            for surface, future in self._futures.items()
             if not future.cancel() and not (future.done() and future.exception())
         }
-        self._begun.update(left)
-        while len(self._begun) > LOOKAHEAD:
-            self._begun.pop(next(iter(self._begun))).cancel()
-        self._uploads.clear()
-        self._started.clear()
+        self._leftovers.update(unfinished)
+        while len(self._leftovers) > MAX_LOOKAHEAD:
+            self._leftovers.pop(next(iter(self._leftovers))).cancel()
+        self._requests.clear()
+        self._futures.clear()
 
     def _start(self, number: int) -> Future[DecodedPicture]:
-        if number not in self._started:
-            upload, surface = self._uploads[number]
-            begun = self._begun.pop(surface.key, None)
-            self._started[number] = begun or self._threads.submit(decode, self._load, upload.picture)
-        return self._started[number]
+        if number not in self._futures:
+            upload, surface = self._requests[number]
+            leftover = self._leftovers.pop(surface.key, None)
+            self._futures[number] = leftover or self._threads.submit(decode_picture, self._load, upload.picture)
+        return self._futures[number]
 
     def _start_next(self) -> None:
-        for upload, _ in limit_lookahead(self._uploads.values()):
+        for upload, _ in limit_lookahead(self._requests.values()):
             self._start(upload.surface)

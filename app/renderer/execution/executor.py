@@ -17,12 +17,12 @@ from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
 from .array_pool import ArrayPool
-from .costs import Costs
+from .costs import PassCosts
 from .decoding import Array, DecodedPicture
 from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
-from .texture_pool import Lease, PooledTexture, TexturePool
+from .texture_pool import PooledTexture, TextureLease, TexturePool
 from .trials import Trials
 
 MAX_TABLES = 64
@@ -36,7 +36,7 @@ BAND_PIXELS = 2**21
 of 1920x1080 is still one piece."""
 
 
-class Counters(Struct):
+class RunnerCounters(Struct):
     """What a runner has done since it was made."""
 
     passes: int = 0
@@ -51,9 +51,9 @@ class Executor:
         self.device, self._trials = device, trials
         self.programs = ProgramCache(device)
         self.textures = TexturePool(device, budget)
-        self.counters = Counters()
+        self.counters = RunnerCounters()
         self.closed = False
-        self._costs = Costs(device.target.software)
+        self._costs = PassCosts(device.target.software)
         self._tables = ResourceCache[LookupTable, DeviceResource](MAX_TABLES)
         self._meshes = ResourceCache[Mesh, DeviceResource](MAX_MESHES)
         self._weights = ResourceCache[tuple[float, ...], DeviceResource](MAX_WEIGHT_BUFFERS)
@@ -65,7 +65,7 @@ class Executor:
         for resources in (self.textures, self.programs, self._tables, self._meshes, self._weights):
             resources.clear()
 
-    def upload(self, plan: Plan, upload: Upload, decoded: DecodedPicture, lease: Lease) -> None:
+    def upload(self, plan: Plan, upload: Upload, decoded: DecodedPicture, lease: TextureLease) -> None:
         """Write decoded pixels, or the part of them that the plan reads, into their surface.
 
         Raises InputError if their size is not the one that was planned for.
@@ -86,16 +86,16 @@ class Executor:
             texture.handle.write(_convert(pixels, surface.components, surface.depth))
             texture.cost = decoded.seconds + time.perf_counter() - started
         except BaseException:
-            lease.spoil(surface.key)
+            lease.discard(surface.key)
             raise
         self.counters.uploads += 1
 
-    def measure(self, plan: Plan, render_pass: Pass, lease: Lease) -> float:
+    def measure(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> float:
         """Execute a pass and wait for it; the seconds that it took on the device."""
         self._await_trial(plan, render_pass)
         self.compile(render_pass)
         seconds = self.device.time(partial(self.execute, plan, render_pass, lease))
-        self._costs.learn(plan, render_pass, seconds)
+        self._costs.record_time(plan, render_pass, seconds)
         return seconds
 
     def compile(self, render_pass: Pass) -> None:
@@ -103,7 +103,7 @@ class Executor:
         with self._watch(render_pass):
             self.programs.get(render_pass)
 
-    def execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
+    def execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
         self._await_trial(plan, render_pass)
         with self._watch(render_pass):
@@ -128,7 +128,7 @@ class Executor:
     @contextmanager
     def _watch(self, render_pass: Pass) -> Iterator[None]:
         """Announce code of users to a process that watches, for as long as the device works on it."""
-        if not (render_pass.writers and self._beacon.watched):
+        if not (render_pass.writers and self._beacon.is_watched):
             yield
             return
         self.device.finish()
@@ -136,27 +136,27 @@ class Executor:
             yield
             self.device.finish()
 
-    def _execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
+    def _execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
         surfaces = [plan.surfaces[number] for number in render_pass.targets]
         missing = [surface for surface in surfaces if surface.key not in self.textures]
         for surface in surfaces:
             if surface not in missing:
-                lease.take(surface.key)
+                lease.add(surface.key)
         if not missing:  # another run was quicker
             self.counters.skipped += 1
             return
         program = self.programs.get(render_pass)
-        textures = [self.resident(plan, number).handle for number in render_pass.textures]
+        textures = [self.find_texture(plan, number).handle for number in render_pass.textures]
         try:
             for surface in missing:
                 lease.create(surface)
-            targets = [self.resident(plan, number) for number in render_pass.targets]
+            targets = [self.find_texture(plan, number) for number in render_pass.targets]
             for name, number in render_pass.uniforms:
                 program.set(name, number)
             started = time.perf_counter()
-            self._run(plan, render_pass, program, textures, [target.handle for target in targets])
+            self._run_pass(plan, render_pass, program, textures, [target.handle for target in targets])
             if render_pass.shader.form == "compute" and self.device.target.software:  # which returns when it is done
-                self._costs.learn(plan, render_pass, time.perf_counter() - started)
+                self._costs.record_time(plan, render_pass, time.perf_counter() - started)
             if error := self.device.take_error():
                 raise RenderError(
                     f"node '{', '.join(render_pass.nodes)}': {self.device.target.renderer} reports {error}",
@@ -164,14 +164,14 @@ class Executor:
                 )
         except BaseException:
             for surface in missing:
-                lease.spoil(surface.key)
+                lease.discard(surface.key)
             raise
         cost = self._costs.estimate(plan, render_pass)
         for target in targets:
             target.cost = cost
         self.counters.passes += 1
 
-    def _run(
+    def _run_pass(
         self,
         plan: Plan,
         render_pass: Pass,
@@ -210,7 +210,7 @@ class Executor:
         numbers[: len(weights)] = weights
         return self.device.create_buffer(numbers)
 
-    def resident(self, plan: Plan, number: int) -> PooledTexture:
+    def find_texture(self, plan: Plan, number: int) -> PooledTexture:
         """The texture of a surface that has a lease."""
         texture = self.textures.find(plan.surfaces[number].key)
         assert texture is not None, f"surface {number} is gone before its last reader"
@@ -224,7 +224,7 @@ class Executor:
             self.device.finish()
         shape = (height, width, surface.components)
         pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
-        self.resident(plan, number).handle.read_into(pixels)
+        self.find_texture(plan, number).handle.read_into(pixels)
         return pixels[..., : surface.channels]
 
 

@@ -23,7 +23,7 @@ class ProgressBeacon:
         self._count = 0
 
     @property
-    def watched(self) -> bool:
+    def is_watched(self) -> bool:
         """True if a process watches the file."""
         return bool(self._path)
 

@@ -8,18 +8,17 @@ from types import TracebackType
 
 from ...compiler import Pass, Plan
 from ...errors import HalationError
-from .decoding import Array, DecodeQueue
-from .decoding import DecodeRequest as Awaited
+from .decoding import Array, DecodeQueue, DecodeRequest
 from .executor import Executor
-from .texture_pool import Lease
+from .texture_pool import TextureLease
 
-Timings = list[tuple[Pass, float]]
+PassTimings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""
 
-Rows = Callable[[str, int, Array], None]
+RowsReceiver = Callable[[str, int, Array], None]
 """Takes rows of an output: its name, the first row, and [rows, width, channels], which is used again afterwards."""
 
-Decode = Callable[[Iterable[Awaited]], DecodeQueue]
+QueueStarter = Callable[[Iterable[DecodeRequest]], DecodeQueue]
 
 
 class Run(ABC):
@@ -27,10 +26,10 @@ class Run(ABC):
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
-        self.done = 0
+        self.passes_done = 0
         """Passes executed."""
-        self.ended = False
-        self.rows: Rows | None = None
+        self.has_ended = False
+        self.receive_rows: RowsReceiver | None = None
         """Takes the outputs that the plan makes by rows; without it they are put together as all others are."""
 
     @property
@@ -41,7 +40,7 @@ class Run(ABC):
 
     @property
     @abstractmethod
-    def ready(self) -> bool:
+    def is_ready(self) -> bool:
         """False while the next step would wait for a file to be decoded, or for the trial of a program."""
         ...
 
@@ -77,48 +76,48 @@ class WholeRun(Run):
         self,
         executor: Executor,
         plan: Plan,
-        kept: Lease,
-        decode: Decode,
-        wanted: Iterable[int],
-        timings: Timings | None,
+        outputs_lease: TextureLease,
+        start_decoding: QueueStarter,
+        requested: Iterable[int],
+        timings: PassTimings | None,
     ) -> None:
         super().__init__(plan)
-        self._executor, self._kept, self._timings = executor, kept, timings
+        self._executor, self._outputs_lease, self._timings = executor, outputs_lease, timings
         textures = executor.textures
-        self._wanted = tuple(dict.fromkeys(wanted))
-        self._needed = find_needed_passes(plan, self._wanted, textures)
-        executor.counters.skipped += len(plan.passes) - len(self._needed)
-        self._readers = _count_readers(plan, self._needed, self._wanted)
-        self._decoding = decode(find_needed_uploads(plan, self._needed, self._wanted, textures))
-        self._lease = Lease(textures)
-        for index in self._needed:
+        self._requested = tuple(dict.fromkeys(requested))
+        self._needed_passes = find_needed_passes(plan, self._requested, textures)
+        executor.counters.skipped += len(plan.passes) - len(self._needed_passes)
+        self._readers = _count_readers(plan, self._needed_passes, self._requested)
+        self._decode_queue = start_decoding(find_needed_uploads(plan, self._needed_passes, self._requested, textures))
+        self._lease = TextureLease(textures)
+        for index in self._needed_passes:
             executor.begin_trial(plan, plan.passes[index])
         for key in self._readers:
             if key in textures:
-                self._lease.take(key)
+                self._lease.add(key)
 
     @property
     def total(self) -> int:
         """Passes that this run executes, of those of the plan."""
-        return len(self._needed)
+        return len(self._needed_passes)
 
     @property
-    def ready(self) -> bool:
-        if self.ended:
+    def is_ready(self) -> bool:
+        if self.has_ended:
             return True
-        ends = self.done == self.total
-        if not ends and not self._executor.is_tried(self.plan, self.plan.passes[self._needed[self.done]]):
+        ends = self.passes_done == self.total
+        if not ends and not self._executor.is_tried(self.plan, self.plan.passes[self._needed_passes[self.passes_done]]):
             return False
-        numbers = self._wanted if ends else self.plan.passes[self._needed[self.done]].textures
-        return all(self._is_here(number) or self._decoding.ready(number) for number in numbers)
+        numbers = self._requested if ends else self.plan.passes[self._needed_passes[self.passes_done]].textures
+        return all(self._is_uploaded(number) or self._decode_queue.is_ready(number) for number in numbers)
 
     def __next__(self) -> Pass:
-        if self.ended:
+        if self.has_ended:
             raise StopIteration
         try:
             with self._executor.device.make_current():
-                if self.done < self.total:
-                    return self._step()
+                if self.passes_done < self.total:
+                    return self._execute_next()
                 self._finish()
         except BaseException:
             self.close()
@@ -127,10 +126,10 @@ class WholeRun(Run):
         raise StopIteration
 
     def close(self) -> None:
-        if self.ended:
+        if self.has_ended:
             return
-        self.ended = True
-        self._decoding.cancel()
+        self.has_ended = True
+        self._decode_queue.cancel()
         if not self._executor.closed:
             self._lease.close()
             with self._executor.device.make_current():
@@ -138,88 +137,90 @@ class WholeRun(Run):
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _step(self) -> Pass:
-        one = self.plan.passes[self._needed[self.done]]
-        self._upload(one.textures)
+    def _execute_next(self) -> Pass:
+        render_pass = self.plan.passes[self._needed_passes[self.passes_done]]
+        self._upload(render_pass.textures)
         if self._timings is None:
-            self._executor.execute(self.plan, one, self._lease)
+            self._executor.execute(self.plan, render_pass, self._lease)
         else:
-            self._timings.append((one, self._executor.measure(self.plan, one, self._lease)))
-        for number in one.textures:
+            self._timings.append((render_pass, self._executor.measure(self.plan, render_pass, self._lease)))
+        for number in render_pass.textures:
             key = self.plan.surfaces[number].key
             self._readers[key] -= 1
             if self._readers[key] == 0:
-                self._lease.give(key)
-        self.done += 1
-        return one
+                self._lease.release(key)
+        self.passes_done += 1
+        return render_pass
 
     def _finish(self) -> None:
-        self._upload(self._wanted)
-        for number in self._wanted:
-            self._kept.take(self.plan.surfaces[number].key)
+        self._upload(self._requested)
+        for number in self._requested:
+            self._outputs_lease.add(self.plan.surfaces[number].key)
 
-    def _is_here(self, number: int) -> bool:
-        return number not in self._decoding or self.plan.surfaces[number].key in self._executor.textures
+    def _is_uploaded(self, number: int) -> bool:
+        return number not in self._decode_queue or self.plan.surfaces[number].key in self._executor.textures
 
     def _upload(self, numbers: tuple[int, ...]) -> None:
         for number in numbers:
-            if number not in self._decoding:
+            if number not in self._decode_queue:
                 continue
-            if self._is_here(number):  # another run was quicker
-                self._decoding.skip(number)
-                self._lease.take(self.plan.surfaces[number].key)
+            if self._is_uploaded(number):  # another run was quicker
+                self._decode_queue.skip(number)
+                self._lease.add(self.plan.surfaces[number].key)
                 continue
-            upload = self._decoding.upload(number)
+            upload = self._decode_queue.find_upload(number)
             try:
-                self._executor.upload(self.plan, upload, self._decoding.take(number), self._lease)
+                self._executor.upload(self.plan, upload, self._decode_queue.take(number), self._lease)
             except HalationError as error:
                 error.node = error.node or upload.node
                 raise
 
 
-def find_needed_passes(plan: Plan, wanted: Iterable[int], given: Container[str]) -> list[int]:
+def find_needed_passes(plan: Plan, requested: Iterable[int], available: Container[str]) -> list[int]:
     """The passes that must run for the surfaces `wanted`, since these keys are not `given`; in order."""
-    makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
+    makers = {number: index for index, render_pass in enumerate(plan.passes) for number in render_pass.targets}
     passes: set[int] = set()
-    todo = list(wanted)
+    todo = list(requested)
     while todo:
         number = todo.pop()
         index = makers.get(number)
-        if index is None or index in passes or plan.surfaces[number].key in given:
+        if index is None or index in passes or plan.surfaces[number].key in available:
             continue
         passes.add(index)
         todo.extend(plan.passes[index].textures)
     return sorted(passes)
 
 
-def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[str, int]:
+def _count_readers(plan: Plan, needed: list[int], requested: tuple[int, ...]) -> dict[str, int]:
     """How often each surface will be read; outputs are read once more, at the end."""
-    found: dict[str, int] = {}
-    for number in (*(number for index in needed for number in plan.passes[index].textures), *wanted):
+    counts: dict[str, int] = {}
+    for number in (*(number for index in needed for number in plan.passes[index].textures), *requested):
         key = plan.surfaces[number].key
-        found[key] = found.get(key, 0) + 1
-    return found
+        counts[key] = counts.get(key, 0) + 1
+    return counts
 
 
-def find_needed_uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], given: Container[str]) -> list[Awaited]:
+def find_needed_uploads(
+    plan: Plan, needed: list[int], requested: tuple[int, ...], available: Container[str]
+) -> list[DecodeRequest]:
     """What must be decoded, in the order in which passes want it, since these keys are not `given`."""
     uploads = {upload.surface: (upload, plan.surfaces[upload.surface]) for upload in plan.uploads}
     return [
         uploads[number]
-        for number in _collect_reads(plan, needed, wanted)
-        if number in uploads and uploads[number][1].key not in given
+        for number in _collect_reads(plan, needed, requested)
+        if number in uploads and uploads[number][1].key not in available
     ]
 
 
 def find_shared_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
     """The surfaces of a plan that the next one would read, so that it need not make them again, or has as outputs."""
-    known = {surface.key: number for number, surface in enumerate(plan.surfaces)}
-    wanted = tuple(dict.fromkeys((*following.outputs.values(), *following.remembered)))
-    needed = find_needed_passes(following, wanted, known)
-    keys = (following.surfaces[number].key for number in _collect_reads(following, needed, wanted))
-    return tuple(known[key] for key in keys if key in known)
+    numbers_by_key = {surface.key: number for number, surface in enumerate(plan.surfaces)}
+    requested = tuple(dict.fromkeys((*following.outputs.values(), *following.remembered)))
+    needed = find_needed_passes(following, requested, numbers_by_key)
+    keys = (following.surfaces[number].key for number in _collect_reads(following, needed, requested))
+    return tuple(numbers_by_key[key] for key in keys if key in numbers_by_key)
 
 
-def _collect_reads(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[int, None]:
+def _collect_reads(plan: Plan, needed: list[int], requested: tuple[int, ...]) -> dict[int, None]:
     """The surfaces that passes read, and those that are `wanted`."""
-    return dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))
+    return dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *requested))

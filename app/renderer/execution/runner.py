@@ -13,11 +13,10 @@ from ...compiler import Pass, Plan
 from ...errors import DeviceError, UsageError
 from ..device import Device
 from .array_pool import ArrayPool
-from .decoding import Array, DecodedPicture, DecodeQueue, Loader, decode, limit_lookahead
-from .decoding import DecodeRequest as Awaited
+from .decoding import Array, DecodedPicture, DecodeQueue, DecodeRequest, PictureLoader, decode_picture, limit_lookahead
 from .executor import Executor
-from .run import Run, Timings, WholeRun, find_needed_passes, find_needed_uploads
-from .texture_pool import Lease, PooledTexture
+from .run import PassTimings, Run, WholeRun, find_needed_passes, find_needed_uploads
+from .texture_pool import PooledTexture, TextureLease
 from .tiles import TiledRun
 from .trials import Trials
 
@@ -31,29 +30,34 @@ class TiledOutputs(Struct, frozen=True, eq=False, weakref=True):
 class Runner:
     """Executes plans on one device, keeping programs, textures and results between them."""
 
-    def __init__(self, device: Device, load: Loader, budget: int, trials: Trials | None = None) -> None:
+    def __init__(self, device: Device, load: PictureLoader, budget: int, trials: Trials | None = None) -> None:
         self.device, self._load = device, load
         self._executor = Executor(device, budget, trials)
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
-        self._begun: dict[str, Future[DecodedPicture]] = {}
-        self._whole: WeakValueDictionary[tuple[str, ...], TiledOutputs] = WeakValueDictionary()
+        self._leftovers: dict[str, Future[DecodedPicture]] = {}
+        self._tiled_outputs: WeakValueDictionary[tuple[str, ...], TiledOutputs] = WeakValueDictionary()
         """What was made tile by tile, by the keys of the outputs, as long as somebody leases it."""
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
         """Run to the end; the outputs as [height, width, channels]."""
-        kept = self.lease()
+        lease = self.create_lease()
         try:
-            with self.steps(plan, kept) as steps:
-                for _ in steps:
+            with self.start_run(plan, lease) as run:
+                for _ in run:
                     pass
             return self.download(plan)
         finally:
-            kept.close()
+            lease.close()
 
-    def steps(
-        self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None, *, timings: Timings | None = None
+    def start_run(
+        self,
+        plan: Plan,
+        outputs_lease: TextureLease,
+        requested: Iterable[int] | None = None,
+        *,
+        timings: PassTimings | None = None,
     ) -> Run:
         """Run one pass per step, so that a caller can stop in between.
 
@@ -66,36 +70,36 @@ class Runner:
         if plan.tiling is not None:
             if timings is not None:
                 raise DeviceError(f"{plan.tiling.why}; render smaller with --scale or --size")
-            return TiledRun(self, self._load, plan, partial(self._keep, plan, kept))
-        surfaces = plan.outputs.values() if wanted is None else wanted
+            return TiledRun(self, self._load, plan, partial(self._keep_outputs, plan, outputs_lease))
+        surfaces = plan.outputs.values() if requested is None else requested
         with self.device.make_current():
-            return WholeRun(self._executor, plan, kept, self._decode, surfaces, timings)
+            return WholeRun(self._executor, plan, outputs_lease, self._create_queue, surfaces, timings)
 
-    def measure(self, plan: Plan) -> Timings:
+    def measure(self, plan: Plan) -> PassTimings:
         """Run to the end, waiting for every pass, and say what each took. The pixels are not kept."""
-        kept, taken = self.lease(), Timings()
+        lease, timings = self.create_lease(), PassTimings()
         try:
-            with self.steps(plan, kept, timings=taken) as run:
+            with self.start_run(plan, lease, timings=timings) as run:
                 for _ in run:
                     pass
         finally:
-            kept.close()
-        return taken
+            lease.close()
+        return timings
 
     def compile(self, render_pass: Pass) -> None:
         """Have the program of a pass at hand. Raises ShaderError."""
         self._executor.compile(render_pass)
 
-    def prepare(self, plan: Plan, given: Container[str] = ()) -> None:
+    def start_decoding(self, plan: Plan, coming: Container[str] = ()) -> None:
         """Begin to decode what a plan will want soon; `given` are the keys of what will be there by then."""
         if plan.tiling is not None:
             return
-        there = {one.key for one in plan.surfaces if one.key in self.textures or one.key in given}
+        available = {surface.key for surface in plan.surfaces if surface.key in self.textures or surface.key in coming}
         surfaces = tuple(plan.outputs.values())
-        passes = find_needed_passes(plan, surfaces, there)
-        for upload, surface in limit_lookahead(find_needed_uploads(plan, passes, surfaces, there)):
-            if surface.key not in self._begun:
-                self._begun[surface.key] = self._threads.submit(decode, self._load, upload.picture)
+        passes = find_needed_passes(plan, surfaces, available)
+        for upload, surface in limit_lookahead(find_needed_uploads(plan, passes, surfaces, available)):
+            if surface.key not in self._leftovers:
+                self._leftovers[surface.key] = self._threads.submit(decode_picture, self._load, upload.picture)
 
     def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
         """The outputs of a plan that has run, while they are leased, as [height, width, channels].
@@ -103,21 +107,21 @@ class Runner:
         They are float16 where the plan keeps halves. `arrays` lend what they are written to, to be given back.
         """
         if plan.tiling is not None:
-            return dict(self._whole[_list_output_keys(plan)].pixels)
+            return dict(self._tiled_outputs[_list_output_keys(plan)].pixels)
         arrays = arrays or ArrayPool()
         with self.device.make_current():
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
-    def lease(self) -> Lease:
+    def create_lease(self) -> TextureLease:
         """Keeps pixels on the device, none as yet."""
-        return Lease(self.textures)
+        return TextureLease(self.textures)
 
     def release_idle(self) -> None:
         """Give back to the driver what nobody leases."""
         with self.device.make_current():
             self.textures.release_idle()
 
-    def texture(self, key: str) -> PooledTexture | None:
+    def find_texture(self, key: str) -> PooledTexture | None:
         """The texture that holds these pixels, if any does."""
         return self.textures.find(key)
 
@@ -129,13 +133,13 @@ class Runner:
         with self.device.make_current():
             self._executor.close()
 
-    def _keep(self, plan: Plan, kept: Lease, pixels: dict[str, Array]) -> None:
+    def _keep_outputs(self, plan: Plan, outputs_lease: TextureLease, pixels: dict[str, Array]) -> None:
         """Have a lease hold what was made tile by tile."""
-        outputs = self._whole[_list_output_keys(plan)] = TiledOutputs(pixels)
-        kept.hold(outputs)
+        outputs = self._tiled_outputs[_list_output_keys(plan)] = TiledOutputs(pixels)
+        outputs_lease.hold(outputs)
 
-    def _decode(self, wanted: Iterable[Awaited]) -> DecodeQueue:
-        return DecodeQueue(self._threads, self._load, wanted, self._begun)
+    def _create_queue(self, requests: Iterable[DecodeRequest]) -> DecodeQueue:
+        return DecodeQueue(self._threads, self._load, requests, self._leftovers)
 
 
 def _list_output_keys(plan: Plan) -> tuple[str, ...]:

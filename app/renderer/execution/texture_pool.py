@@ -21,7 +21,7 @@ TextureKind = tuple[int, int, int, Depth]
 """Width, height, components, depth."""
 
 
-_SMALLEST = 2**16
+_MIN_RANKED_BYTES = 2**16
 """The bytes that a texture counts for at least when results are ranked. By its own 16 bytes a single pixel would
 outrank every picture, and thousands of them would stay for ever. Chosen, not measured: it stands for what the driver
 keeps beside the pixels."""
@@ -57,7 +57,7 @@ class TexturePool:
         self._leases: Counter[str] = Counter()
         self._idle: dict[str, float] = {}
         """Results without a lease, least recently used first, and their ranks."""
-        self._floor = 0.0
+        self._evicted_rank = 0.0
         """The rank of the result that was evicted last."""
         self._idle_bytes = 0
         self._free: dict[TextureKind, list[PooledTexture]] = {}
@@ -88,7 +88,7 @@ class TexturePool:
     def release_idle(self) -> None:
         """Release everything that has no lease."""
         for key in list(self._idle):
-            self.drop(key)
+            self.forget(key)
         self._release_free()
 
     def next_round(self) -> None:
@@ -126,14 +126,14 @@ class TexturePool:
             return
         del self._leases[key]
         texture = self._results[key]
-        self._idle[key] = self._floor + texture.cost / max(texture.nbytes, _SMALLEST)
+        self._idle[key] = self._evicted_rank + texture.cost / max(texture.nbytes, _MIN_RANKED_BYTES)
         self._idle_bytes += texture.nbytes
         while self._idle_bytes > self.budget:
             lowest = min(self._idle, key=self._idle.__getitem__)
-            self._floor = self._idle[lowest]
-            self.drop(lowest)
+            self._evicted_rank = self._idle[lowest]
+            self.forget(lowest)
 
-    def drop(self, key: str) -> None:
+    def forget(self, key: str) -> None:
         """Forget these pixels: there is no room for them, or they were not finished."""
         self._remove_from_idle(key)
         self._leases.pop(key, None)
@@ -160,9 +160,9 @@ class TexturePool:
 
     def _allocate(self, kind: TextureKind, surface: Surface) -> PooledTexture:
         handle = self._try_create(kind)
-        for make_room in (self._release_free, self.release_idle):
+        for free_memory in (self._release_free, self.release_idle):
             if handle is None:
-                make_room()
+                free_memory()
                 handle = self._try_create(kind)
         if handle is None:
             raise DeviceError(
@@ -182,7 +182,7 @@ class TexturePool:
             return None
 
 
-class Lease:
+class TextureLease:
     """Keeps the pixels that a run, a panel or a history still needs, until it gives them back."""
 
     def __init__(self, textures: TexturePool) -> None:
@@ -196,7 +196,7 @@ class Lease:
         self._keys.add(surface.key)
         return texture
 
-    def take(self, key: str) -> None:
+    def add(self, key: str) -> None:
         """Keep these pixels."""
         if key not in self._keys:
             self._textures.lease(key)
@@ -206,20 +206,20 @@ class Lease:
         """Keep pixels that are not on the device as well."""
         self._arrays.append(pixels)
 
-    def give(self, key: str) -> None:
+    def release(self, key: str) -> None:
         """These pixels are not needed any more."""
         if key in self._keys:
             self._keys.discard(key)
             self._textures.end_lease(key)
 
-    def spoil(self, key: str) -> None:
+    def discard(self, key: str) -> None:
         """These pixels could not be made."""
         if key in self._keys:
             self._keys.discard(key)
-            self._textures.drop(key)
+            self._textures.forget(key)
 
     def close(self) -> None:
         """Give everything back."""
         self._arrays.clear()
         for key in list(self._keys):
-            self.give(key)
+            self.release(key)

@@ -17,9 +17,9 @@ from ...errors import DeviceError, HalationError
 from ...resources.machine import machine_memory
 from ...resources.picture import Picture
 from .array_pool import ArrayPool
-from .decoding import Array, Loader
+from .decoding import Array, PictureLoader
 from .run import Run, find_shared_surfaces
-from .texture_pool import Lease
+from .texture_pool import TextureLease
 
 
 class PlanRunner(Protocol):
@@ -29,7 +29,7 @@ class PlanRunner(Protocol):
         """Give back textures that nobody leases."""
         ...
 
-    def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run:
+    def start_run(self, plan: Plan, outputs_lease: TextureLease, requested: Iterable[int] | None = None) -> Run:
         """Begin to run a plan."""
         ...
 
@@ -37,7 +37,7 @@ class PlanRunner(Protocol):
         """The outputs of a plan that has run, in `arrays` that are lent."""
         ...
 
-    def lease(self) -> Lease:
+    def create_lease(self) -> TextureLease:
         """Keeps pixels on the device."""
         ...
 
@@ -49,132 +49,136 @@ class TiledRun(Run):
     """
 
     def __init__(
-        self, runner: PlanRunner, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]
+        self, runner: PlanRunner, load: PictureLoader, plan: Plan, keep_outputs: Callable[[dict[str, Array]], None]
     ) -> None:
         assert plan.tiling is not None
         super().__init__(plan)
         self._tiling = plan.tiling
-        self._runner, self._finished = runner, finished
+        self._runner, self._keep_outputs = runner, keep_outputs
         self._pictures, self._arrays = _PictureCache(load, by_rows=plan.tiling.target.memory > 0), ArrayPool()
         self._tile: Run | None = None
-        self._passes = self._run()
+        self._passes = self._run_stages()
 
     @property
     def total(self) -> int:
         return self._tiling.total
 
     @property
-    def ready(self) -> bool:
-        """False while the next pass of a tile would wait for the trial of a program; pictures are read when wanted."""
-        return self._tile is None or self._tile.ready
+    def is_ready(self) -> bool:
+        """False while the next pass of a tile would wait for the trial of a program; pictures are read when requested."""
+        return self._tile is None or self._tile.is_ready
 
     def __next__(self) -> Pass:
         try:
-            one = next(self._passes)
+            render_pass = next(self._passes)
         except BaseException:
-            self.ended = True
+            self.has_ended = True
             raise
-        self.done += 1
-        return one
+        self.passes_done += 1
+        return render_pass
 
     def close(self) -> None:
-        self.ended = True
+        self.has_ended = True
         self._passes.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _run(self) -> Generator[Pass, None, None]:
+    def _run_stages(self) -> Generator[Pass, None, None]:
         tiling = self._tiling
-        taken = tiling.by_rows if self.rows else frozenset[str]()
-        _check_memory(tiling.program, taken)
-        made: dict[int, StoredResult] = {}
+        row_outputs = tiling.by_rows if self.receive_rows else frozenset[str]()
+        _check_memory(tiling.program, row_outputs)
+        stored: dict[int, StoredResult] = {}
         for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
-            arrays = yield from self._run_stage(stage, made)
-            made |= self._hold_outputs(stage, arrays)
-            self._drop_unread(made, tiling.stages[number + 1 :])
+            arrays = yield from self._run_stage(stage, stored)
+            stored |= self._store_outputs(stage, arrays)
+            self._drop_unread(stored, tiling.stages[number + 1 :])
         outputs = {
-            name: _get_pixels(made[ref.op], ref.output)
+            name: _get_pixels(stored[ref.op], ref.output)
             for name, ref in tiling.program.outputs.items()
-            if ref.op in made
+            if ref.op in stored
         }
         for number, stage in enumerate(tiling.last, len(tiling.before)):
-            outputs |= yield from self._run_stage(stage, made)
-            self._drop_unread(made, tiling.stages[number + 1 :])
-        self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
+            outputs |= yield from self._run_stage(stage, stored)
+            self._drop_unread(stored, tiling.stages[number + 1 :])
+        self._keep_outputs({name: outputs[name] for name in tiling.program.outputs if name not in row_outputs})
 
-    def _run_stage(self, stage: TileStage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
+    def _run_stage(
+        self, stage: TileStage, stored: Mapping[int, StoredResult]
+    ) -> Generator[Pass, None, dict[str, Array]]:
         """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
         size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
-        taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
-        whole: dict[str, Array] = {}
-        before, plan = self._runner.lease(), plan_tile(self._tiling, stage, 0, made)
+        row_outputs = self._tiling.by_rows.intersection(stage.outputs) if self.receive_rows else frozenset[str]()
+        pictures: dict[str, Array] = {}
+        before, plan = self._runner.create_lease(), plan_tile(self._tiling, stage, 0, stored)
         try:
             for number, tile in enumerate(stage.tiles):
                 # Each tile keeps what the next one would make again.
                 last = number + 1 == len(stage.tiles)
-                following = None if last else plan_tile(self._tiling, stage, number + 1, made)
+                following = None if last else plan_tile(self._tiling, stage, number + 1, stored)
                 shared = find_shared_surfaces(plan, following) if following else ()
-                kept = self._runner.lease()
+                tile_lease = self._runner.create_lease()
                 try:
-                    there = self._load_pictures(plan)
-                    with self._runner.steps(there, kept, (*plan.outputs.values(), *shared)) as run:
+                    loaded_plan = self._load_pictures(plan)
+                    with self._runner.start_run(loaded_plan, tile_lease, (*plan.outputs.values(), *shared)) as run:
                         before.close()
                         self._tile = run
                         yield from run
-                    del there
-                    made_here = self._runner.download(plan, self._arrays)
-                    for name, pixels in made_here.items():
-                        first = tile.y if name in taken else 0
-                        if name not in whole:
-                            height = tile.height if name in taken else size[1]
-                            whole[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
+                    del loaded_plan
+                    tile_outputs = self._runner.download(plan, self._arrays)
+                    for name, pixels in tile_outputs.items():
+                        first = tile.y if name in row_outputs else 0
+                        if name not in pictures:
+                            height = tile.height if name in row_outputs else size[1]
+                            pictures[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
                         # Others may read more of an output than the tile.
                         window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
-                        own = Region(tile.x - window.x, tile.y - window.y, *tile.size)
-                        whole[name][_to_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[_to_slices(own)]
-                        if name in taken and self.rows and tile.across[1] == size[0]:
-                            self.rows(name, first, whole.pop(name))
-                    self._arrays.give(made_here.values())
+                        tile_part = Region(tile.x - window.x, tile.y - window.y, *tile.size)
+                        pictures[name][_to_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[
+                            _to_slices(tile_part)
+                        ]
+                        if name in row_outputs and self.receive_rows and tile.across[1] == size[0]:
+                            self.receive_rows(name, first, pictures.pop(name))
+                    self._arrays.give(tile_outputs.values())
                     for surface in plan.outputs.values():
                         if surface not in shared:
-                            kept.give(plan.surfaces[surface].key)
+                            tile_lease.release(plan.surfaces[surface].key)
                 finally:
                     if following and _collect_texture_kinds(following) != _collect_texture_kinds(plan):
                         self._runner.release_idle()  # else textures of other sizes would wait for their next use
-                    before, plan = kept, following or plan
+                    before, plan = tile_lease, following or plan
         finally:
             before.close()
-        return whole
+        return pictures
 
     def _load_pictures(self, plan: Plan) -> Plan:
         """The same plan with the pixels that it reads."""
-        found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
-        return replace(plan, uploads=found)
+        uploads = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
+        return replace(plan, uploads=uploads)
 
-    def _hold_outputs(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
+    def _store_outputs(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
         """What a stage made, in place of the operations that would make it again."""
         program, keys = self._tiling.program, self._tiling.keys
-        found: dict[int, StoredResult] = {}
+        stored: dict[int, StoredResult] = {}
         for index in dict.fromkeys(ref.op for ref in stage.outputs.values()):
             op = program.ops[index]
             refs = [Ref(index, output) for output in range(len(op.shapes))]
             names = {ref: name for name, ref in stage.outputs.items()}
             pixels = [arrays[names[ref]] if ref in names else None for ref in refs]
-            found[index] = StoredResult(
+            stored[index] = StoredResult(
                 op.shapes,
                 op.owner,
                 tuple(None if array is None else _wrap_pixels(op.owner, array) for array in pixels),
                 tuple(array is not None and array.dtype == np.float16 for array in pixels),
                 tuple(keys.get(ref, "") for ref in refs),
             )
-        return found
+        return stored
 
-    def _drop_unread(self, made: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
+    def _drop_unread(self, stored: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
         """Let go of what no later stage reads."""
         read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
         read |= {ref.op for ref in self._tiling.program.outputs.values()}
-        for index in made.keys() - read:
-            del made[index]
+        for index in stored.keys() - read:
+            del stored[index]
         ops = (self._tiling.program.ops[index] for index in read)
         self._pictures.keep({picture for op in ops if (picture := op.find_upload(0))})
 
@@ -182,7 +186,7 @@ class TiledRun(Run):
 class _PictureCache:
     """The pixels of files, each decoded once; or `by_rows`, the last rows that were read of those that can be."""
 
-    def __init__(self, load: Loader, *, by_rows: bool) -> None:
+    def __init__(self, load: PictureLoader, *, by_rows: bool) -> None:
         self._load, self._by_rows = load, by_rows
         self._decoded: dict[Picture, tuple[Span, Array]] = {}
 
@@ -215,13 +219,13 @@ class _PictureCache:
             del self._decoded[picture]
 
 
-def _check_memory(program: LoweredProgram, taken: Set[str]) -> None:
+def _check_memory(program: LoweredProgram, row_outputs: Set[str]) -> None:
     """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
-    shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in taken]
+    shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in row_outputs]
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
-    if nbytes > (most := machine_memory()):
+    if nbytes > (available := machine_memory()):
         raise DeviceError(
-            f"the outputs take {format_bytes(nbytes)} of memory, and this machine has {format_bytes(int(most))}; "
+            f"the outputs take {format_bytes(nbytes)} of memory, and this machine has {format_bytes(int(available))}; "
             "render smaller with --scale or --size"
         )
 
@@ -230,8 +234,8 @@ def _wrap_pixels(owner: str, pixels: Array) -> Picture:
     return Picture(owner, "", Kind.VECTOR, pixels.shape[2], in_memory=True, pixels=pixels)
 
 
-def _get_pixels(held: StoredResult, output: int) -> Array:
-    picture = held.pictures[output]
+def _get_pixels(stored: StoredResult, output: int) -> Array:
+    picture = stored.pictures[output]
     assert picture is not None and isinstance(picture.pixels, np.ndarray)
     return picture.pixels
 

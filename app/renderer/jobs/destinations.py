@@ -60,13 +60,13 @@ class Destination(Struct, frozen=True):
 
 
 def plan_destinations(
-    graph: Graph, wanted: RenderRequest, writing: OutputSettings, frames: Sequence[int], sandbox: Sandbox
+    graph: Graph, request: RenderRequest, settings: OutputSettings, frames: Sequence[int], sandbox: Sandbox
 ) -> dict[int, tuple[Destination, ...]]:
     """The files of every frame; an EXR may be named for several outputs.
 
     Raises UsageError, also where several frames would go into one file.
     """
-    files = _group_outputs(graph, wanted, writing, sandbox)
+    files = _group_outputs(graph, request, settings, sandbox)
     for file in files:
         check_numbered(str(file.path), frames)
     return {frame: tuple(replace(file, path=_name_at_frame(file.path, frame)) for file in files) for frame in frames}
@@ -79,85 +79,89 @@ def _name_at_frame(path: Path, frame: int) -> Path:
 
 
 def _group_outputs(
-    graph: Graph, wanted: RenderRequest, writing: OutputSettings, sandbox: Sandbox
+    graph: Graph, request: RenderRequest, settings: OutputSettings, sandbox: Sandbox
 ) -> tuple[Destination, ...]:
     """What is to be written, by the names that were given."""
-    names = tuple(wanted.targets or graph.outputs)
+    names = tuple(request.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
-    known: dict[str, Path] = {}
-    for name, path in writing.files:
+    spellings: dict[str, Path] = {}
+    for name, path in settings.files:
         if name and name not in names:
             hint = did_you_mean(name, names) or "; there is none at all"
             raise UsageError(f"-o {name}={path}: there is no output '{name}'{hint}")
-        layered = path.suffix.casefold() == ".exr"
-        if not name and len(names) > 1 and not layered:
+        has_layers = path.suffix.casefold() == ".exr"
+        if not name and len(names) > 1 and not has_layers:
             raise UsageError(
                 f"{path}: {path.suffix or 'such a file'} holds one picture, but the graph has the outputs "
                 f"{', '.join(names)}; choose one with -o {names[0]}={path}"
             )
-        same = known.setdefault(os.path.realpath(path), path)
-        if same in files and not (layered and name and name not in files[same]):
+        path_as_given = spellings.setdefault(os.path.realpath(path), path)
+        if path_as_given in files and not (has_layers and name and name not in files[path_as_given]):
             raise UsageError(f"-o {path}: this file is given twice; give every output a file of its own")
-        files[same] = (*files.get(same, ()), *((name,) if name else names))
-    return tuple(_describe_destination(graph, wanted, writing, path, files[path], sandbox) for path in files)
+        files[path_as_given] = (*files.get(path_as_given, ()), *((name,) if name else names))
+    return tuple(_describe_destination(graph, request, settings, path, files[path], sandbox) for path in files)
 
 
 def check_destinations(
-    found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: OutputSettings, sandbox: Sandbox
+    destinations: Sequence[Destination],
+    plan: Plan,
+    sources: Mapping[str, Picture],
+    settings: OutputSettings,
+    sandbox: Sandbox,
 ) -> None:
     """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
 
     `sources` are pictures by the input or node that reads them.
     """
-    reading = {os.path.realpath(picture.path): node for node, picture in sources.items()}
-    for file in found:
-        if node := reading.get(os.path.realpath(file.path)):
+    readers = {os.path.realpath(picture.path): node for node, picture in sources.items()}
+    for file in destinations:
+        if node := readers.get(os.path.realpath(file.path)):
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
         sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
         if is_video(str(file.path)):
             media.check_video(
-                file.path, file.kinds, sizes, codec=writing.codec, encoding=file.encoding, sandbox=sandbox
+                file.path, file.kinds, sizes, codec=settings.codec, encoding=file.encoding, sandbox=sandbox
             )
             continue
         media.check_destination(
-            file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding, sandbox=sandbox
+            file.path, file.kinds, sizes, compression=settings.compression, encoding=file.encoding, sandbox=sandbox
         )
 
 
-def select_half_outputs(files: Sequence[Destination], writing: OutputSettings) -> frozenset[str]:
+def select_half_outputs(files: Sequence[Destination], settings: OutputSettings) -> frozenset[str]:
     """The outputs of which only half floats are kept, as they are: no file wants more of them."""
-    found, rest = set[str](), set[str]()
+    half_outputs, other_outputs = set[str](), set[str]()
     for file in files:
         for layer, name in file.layers.items():
             rounds = media.stores_halves(
-                file.path, file.kinds[layer], precision=writing.precision, encoding=file.encoding
+                file.path, file.kinds[layer], precision=settings.precision, encoding=file.encoding
             )
-            (found if rounds else rest).add(name)
-    return frozenset(found - rest)
+            (half_outputs if rounds else other_outputs).add(name)
+    return frozenset(half_outputs - other_outputs)
 
 
 def _describe_destination(
-    graph: Graph, wanted: RenderRequest, writing: OutputSettings, path: Path, names: Sequence[str], sandbox: Sandbox
+    graph: Graph, request: RenderRequest, settings: OutputSettings, path: Path, names: Sequence[str], sandbox: Sandbox
 ) -> Destination:
     layers: dict[str, str] = {}
     kinds: dict[str, Kind] = {}
     for name in names:
-        layer = name if name in wanted.targets else graph.outputs[name].layer or name
+        layer = name if name in request.targets else graph.outputs[name].layer or name
         if layer in layers:
             raise UsageError(
                 f"{path}: the outputs '{layers[layer]}' and '{name}' have the same layer '{layer}'; write them to "
                 "several files"
             )
-        layers[layer], kinds[layer] = name, _find_kind(graph, _find_port(wanted, name))
-    first = _find_port(wanted, names[0]) if names else Port("", "")
-    asked = graph.outputs[first.socket].view if first.node == OUTPUTS and not writing.space else ""
+        layers[layer], kinds[layer] = name, _find_kind(graph, _find_port(request, name))
+    first = _find_port(request, names[0]) if names else Port("", "")
+    own_view = graph.outputs[first.socket].view if first.node == OUTPUTS and not settings.space else ""
     manager = get_color_manager(color_settings(graph), sandbox)
-    encoding = Encoding(writing.view or asked, writing.display, writing.look, writing.space, manager)
+    encoding = Encoding(settings.view or own_view, settings.display, settings.look, settings.space, manager)
     return Destination(path, layers, kinds, encoding)
 
 
-def _find_port(wanted: RenderRequest, name: str) -> Port:
-    return wanted.targets.get(name, Port(OUTPUTS, name))
+def _find_port(request: RenderRequest, name: str) -> Port:
+    return request.targets.get(name, Port(OUTPUTS, name))
 
 
 def _find_kind(graph: Graph, port: Port) -> Kind:

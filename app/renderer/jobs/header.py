@@ -33,9 +33,9 @@ def dump_whole_graph(graph: Graph) -> str:
 def make_header(
     graph: str,
     target: Target,
-    wanted: RenderRequest,
+    request: RenderRequest,
     frames: tuple[int, int],
-    writing: OutputSettings,
+    settings: OutputSettings,
     file: Destination,
     plan: Plan,
     sources: Sequence[SourceFile],
@@ -45,49 +45,49 @@ def make_header(
 
     The graph is the text of `whole`.
     """
-    found: dict[str, Any] = {}
+    metadata: dict[str, Any] = {}
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):
-        found = media.read_metadata(path, sandbox=hashes.sandbox) | found
-    found = {name: item for name, item in found.items() if not name.startswith(PREFIX)}
-    found["halation:graph"] = graph
-    found["halation:version"] = VERSION
-    found["halation:renderer"] = target.renderer
-    found["halation:settings"] = format_settings(wanted, target, writing, file, frames if plan.memories else None)
+        metadata = media.read_metadata(path, sandbox=hashes.sandbox) | metadata
+    metadata = {name: item for name, item in metadata.items() if not name.startswith(PREFIX)}
+    metadata["halation:graph"] = graph
+    metadata["halation:version"] = VERSION
+    metadata["halation:renderer"] = target.renderer
+    metadata["halation:settings"] = format_settings(request, target, settings, file, frames if plan.memories else None)
     if color := file.encoding.manager.digest:
-        found["halation:color"] = color
+        metadata["halation:color"] = color
     for source in sources:
-        found |= describe_source(source, hashes)
-    found[_KEY] = compute_frame_key(graph, wanted, plan, file, writing, sources, hashes)
-    return found
+        metadata |= describe_source(source, hashes)
+    metadata[_KEY] = compute_frame_key(graph, request, plan, file, settings, sources, hashes)
+    return metadata
 
 
 def format_settings(
-    wanted: RenderRequest, target: Target, writing: OutputSettings, file: Destination, frames: tuple[int, int] | None
+    request: RenderRequest, target: Target, settings: OutputSettings, file: Destination, frames: tuple[int, int] | None
 ) -> str:
     """How a file was rendered and written, as `name=value` words that a shell would take apart.
 
     `frames` are the first and last of the graph, where history matters.
     """
-    parts = [("scale", wanted.scale), ("frame", wanted.frame)]
+    parts = [("scale", request.scale), ("frame", request.frame)]
     words = [f"{name}={value}" for name, value in parts]
     if frames:
         words.append(f"frames={frames[0]}..{frames[1]}")
-    if wanted.size:
-        words.append(f"size={wanted.size[0]}x{wanted.size[1]}")
-    words += [f"node={name}" for name in wanted.targets]
-    words += [f"output={name}" for name in file.layers.values() if name not in wanted.targets]
-    words += [f"precision={writing.precision}", f"intermediates={wanted.precision or target.precision}"]
-    words += [f"form={target.form}", f"view={file.view}", f"display={writing.display}", f"look={writing.look}"]
-    words += [f"colorspace={writing.space}", f"compression={writing.compression}"]
+    if request.size:
+        words.append(f"size={request.size[0]}x{request.size[1]}")
+    words += [f"node={name}" for name in request.targets]
+    words += [f"output={name}" for name in file.layers.values() if name not in request.targets]
+    words += [f"precision={settings.precision}", f"intermediates={request.precision or target.precision}"]
+    words += [f"form={target.form}", f"view={file.view}", f"display={settings.display}", f"look={settings.look}"]
+    words += [f"colorspace={settings.space}", f"compression={settings.compression}"]
     return " ".join(shlex.quote(word) for word in words if not word.endswith("="))
 
 
 def compute_frame_key(
     graph: str,
-    wanted: RenderRequest,
+    request: RenderRequest,
     plan: Plan,
     file: Destination,
-    writing: OutputSettings,
+    settings: OutputSettings,
     sources: Sequence[SourceFile],
     hashes: FileHashes,
 ) -> str:
@@ -98,15 +98,15 @@ def compute_frame_key(
     contents = {
         item.picture.path: hashes.hash_file(item.picture.path) for item in plan.uploads if not item.picture.in_memory
     }
-    before = ""
+    history = ""
     if plan.memories:
-        led = [(item.owner, hashes.hash_files(item.files.values())) for item in sources if item.files]
-        before = _hash_parts(graph, led, wanted.scale, wanted.size, plan.target.form)
-    keys = _compute_content_keys(plan, contents, before)
+        history_files = [(item.owner, hashes.hash_files(item.files.values())) for item in sources if item.files]
+        history = _hash_parts(graph, history_files, request.scale, request.size, plan.target.form)
+    keys = _compute_content_keys(plan, contents, history)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
-    seen = (file.view, writing.display, writing.look, writing.space, file.encoding.manager.digest)
-    how = (file.path.suffix, *seen, writing.compression, writing.precision)
-    return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
+    view_settings = (file.view, settings.display, settings.look, settings.space, file.encoding.manager.digest)
+    encoding_settings = (file.path.suffix, *view_settings, settings.compression, settings.precision)
+    return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), encoding_settings)
 
 
 def has_key(file: Destination, sandbox: Sandbox) -> bool:
@@ -126,7 +126,7 @@ def _read_key(file: Destination, sandbox: Sandbox) -> object:
         return None
 
 
-def _compute_content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[int, str]:
+def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str) -> dict[int, str]:
     """Keys of surfaces as a plan has them, but of what is in files instead of where these are and how old.
 
     What was remembered of the frame before is known by `before`.
@@ -145,17 +145,19 @@ def _compute_content_keys(plan: Plan, contents: Mapping[str, str], before: str) 
             surface.texel,
             surface.size,
         )
-    for one in plan.passes:
-        made = _hash_parts(*_describe_work(one), [keys.get(number, before) for number in one.textures])
-        for place, number in enumerate(one.targets):
+    for render_pass in plan.passes:
+        pass_key = _hash_parts(
+            *_describe_pass(render_pass), [keys.get(number, history) for number in render_pass.textures]
+        )
+        for place, number in enumerate(render_pass.targets):
             surface = plan.surfaces[number]
-            keys[number] = f"{made}.{place}.{surface.size}.{surface.texel}"
-    return {number: keys.get(number, before) for number in range(len(plan.surfaces))}
+            keys[number] = f"{pass_key}.{place}.{surface.size}.{surface.texel}"
+    return {number: keys.get(number, history) for number in range(len(plan.surfaces))}
 
 
-def _describe_work(one: Pass) -> tuple[object, ...]:
-    mesh = one.mesh.digest if one.mesh is not None else ""
-    return one.shader.source, one.shader.vertex, one.uniforms, one.weights, mesh
+def _describe_pass(render_pass: Pass) -> tuple[object, ...]:
+    mesh = render_pass.mesh.digest if render_pass.mesh is not None else ""
+    return render_pass.shader.source, render_pass.shader.vertex, render_pass.uniforms, render_pass.weights, mesh
 
 
 def _hash_parts(*parts: object) -> str:

@@ -22,7 +22,7 @@ from ...graph import Graph
 from ...resources.atomic_write import remove_abandoned_files
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
-from ..execution.texture_pool import Lease
+from ..execution.texture_pool import TextureLease
 from ..frame_renderer import FrameRenderer
 from .destinations import Destination, OutputSettings, check_destinations, plan_destinations, select_half_outputs
 from .header import compute_frame_key, dump_whole_graph, has_key, make_header, matches_key
@@ -47,17 +47,17 @@ class FrameReport(Struct, frozen=True):
     frame: int
     written: tuple[Path, ...]
     passes: int
-    kept: bool = False
+    is_kept: bool = False
 
 
 class JobProgress(Protocol):
     """Hears how far a job is."""
 
-    def report_pass(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+    def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
         """A pass of a frame, or of one that leads up to it, is done; it computed these nodes."""
         ...
 
-    def report_frame(self, report: FrameReport, done: int, total: int) -> None:
+    def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
         """The files of a frame are there; so many of all frames are done."""
         ...
 
@@ -83,8 +83,8 @@ class JobReport(Struct, frozen=True):
 def run_job(
     renderer: Renderer,
     graph: Graph,
-    wanted: RenderRequest,
-    writing: OutputSettings,
+    request: RenderRequest,
+    settings: OutputSettings,
     frames: Sequence[int] | None = None,
     *,
     resume: bool = False,
@@ -97,7 +97,7 @@ def run_job(
     finished stay, no partial file and no video is left behind.
     """
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
-    job = _Job(renderer, graph, wanted, writing, resume, progress, tuple(frames or (wanted.frame,)))
+    job = _Job(renderer, graph, request, settings, resume, progress, tuple(frames or (request.frame,)))
     try:
         reports = job.run()
     finally:
@@ -128,33 +128,33 @@ class _Job:
         self,
         renderer: Renderer,
         graph: Graph,
-        wanted: RenderRequest,
-        writing: OutputSettings,
+        request: RenderRequest,
+        settings: OutputSettings,
         resume: bool,
         progress: JobProgress | None,
         frames: tuple[int, ...],
     ) -> None:
-        self._files = plan_destinations(graph, wanted, writing, frames, renderer.sandbox)
+        self._files = plan_destinations(graph, request, settings, frames, renderer.sandbox)
         first = self._files[frames[0]]
         by_rows = select_row_outputs(first) if renderer.device.target.memory else frozenset[str]()
-        wanted = replace(wanted, halves=select_half_outputs(first, writing), by_rows=by_rows)
-        self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
+        request = replace(request, halves=select_half_outputs(first, settings), by_rows=by_rows)
+        self._renderer, self._graph, self._request, self._settings = renderer, graph, request, settings
         self._resume, self._progress, self._frames = resume, progress, frames
-        self._reel = FrameRenderer(renderer, graph, wanted)
+        self._frame_renderer = FrameRenderer(renderer, graph, request)
         self._hashes = FileHashes(sandbox=self._renderer.sandbox)
-        self._sources = SourceFinder(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
-        self._behind = WriteQueue[FrameReport]()
+        self._sources = SourceFinder(renderer.pictures, graph, renderer.pictures.bind(graph, request.bound_inputs))
+        self._write_queue = WriteQueue[FrameReport]()
         self._fault: HalationError | None = None
         self._reports: list[FrameReport] = []
-        self._films = VideoWriters(writing, self._rate, renderer.sandbox)
-        self._strips: ScanlineWriters | None = None
+        self._video_writers = VideoWriters(settings, self._find_rate, renderer.sandbox)
+        self._row_writers: ScanlineWriters | None = None
         self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
     def run(self) -> list[FrameReport]:
-        if self._resume and self._writing.videos:
+        if self._resume and self._settings.videos:
             raise UsageError(
-                f"{self._writing.videos[0]}: a video is written anew as a whole: leave out --resume, or render "
+                f"{self._settings.videos[0]}: a video is written anew as a whole: leave out --resume, or render "
                 "numbered pictures, which can be kept"
             )
         if self._resume:
@@ -163,33 +163,33 @@ class _Job:
         todo = deque(self._frames)
         task = self._plan_next(todo)
         if task is not None:
-            self._renderer.runner.prepare(task.plan)
+            self._renderer.runner.start_decoding(task.plan)
         following = self._plan_next(todo)
         while task is not None:
-            kept, passes = self._render_frame(task, following)
-            later = self._plan_next(todo)  # while the device is busy
-            self._write(task, self._download(task, kept), passes)
-            task, following = following, later
-        for report in self._behind.collect_all():
+            lease, passes = self._render_frame(task, following)
+            task_after = self._plan_next(todo)  # while the device is busy
+            self._write_frame(task, self._download(task, lease), passes)
+            task, following = following, task_after
+        for report in self._write_queue.collect_all():
             self._report_frame(report)
         if self._fault is not None:
             raise self._fault
         started = time.perf_counter()
-        self.videos = self._films.finish()
+        self.videos = self._video_writers.finish()
         self.seconds["write"] += time.perf_counter() - started
         return sorted(self._reports, key=lambda report: self._frames.index(report.frame))
 
     def close(self) -> None:
         """Let what is being written come to its end."""
-        self._behind.close()
-        self._films.abort()
-        if self._strips is not None:
-            self._strips.abort()
+        self._write_queue.close()
+        self._video_writers.abort()
+        if self._row_writers is not None:
+            self._row_writers.abort()
         self._hashes.close()
-        self._reel.close()
+        self._frame_renderer.close()
 
     @cached_property
-    def _text(self) -> str:
+    def _graph_text(self) -> str:
         """The graph as files say it."""
         return dump_whole_graph(self._graph)
 
@@ -207,13 +207,18 @@ class _Job:
     def _find_unfinished(self, todo: deque[int]) -> _Task | None:
         while todo:
             frame, started = todo.popleft(), time.perf_counter()
-            plan, files = self._reel.plan(frame), self._files[frame]
-            reading = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            check_destinations(files, plan, reading, self._writing, sandbox=self._renderer.sandbox)
-            task = _Task(frame, files, plan, self._sources.find(plan, frame, self._reel.history_start(frame)))
+            plan, files = self._frame_renderer.plan_frame(frame), self._files[frame]
+            sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
+            check_destinations(files, plan, sources, self._settings, sandbox=self._renderer.sandbox)
+            task = _Task(
+                frame,
+                files,
+                plan,
+                self._sources.find_sources(plan, frame, self._frame_renderer.find_history_start(frame)),
+            )
             self.seconds["compile"] += time.perf_counter() - started
             if self._resume and self._is_done(task):
-                self._report_frame(FrameReport(frame, tuple(file.path for file in files), 0, kept=True))
+                self._report_frame(FrameReport(frame, tuple(file.path for file in files), 0, is_kept=True))
                 continue
             return task
         return None
@@ -222,93 +227,95 @@ class _Job:
         """True if the files of a frame are there and would come out the same."""
         if not all(has_key(file, self._renderer.sandbox) for file in task.files):
             return False
-        wanted = replace(self._wanted, frame=task.frame)
+        request = replace(self._request, frame=task.frame)
         keys = (
-            compute_frame_key(self._text, wanted, task.plan, file, self._writing, task.sources, self._hashes)
+            compute_frame_key(self._graph_text, request, task.plan, file, self._settings, task.sources, self._hashes)
             for file in task.files
         )
         return all(matches_key(file, key, self._renderer.sandbox) for file, key in zip(task.files, keys, strict=True))
 
-    def _render_frame(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
+    def _render_frame(self, task: _Task, following: _Task | None) -> tuple[TextureLease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
         started, passes = time.perf_counter(), 0
-        self._hashes.begin(task.sources)
-        kept = self._renderer.runner.lease()
-        self._strips = ScanlineWriters(
-            task.plan, task.files, self._writing, lambda file: self._make_header(task, file), self._renderer.sandbox
+        self._hashes.start(task.sources)
+        lease = self._renderer.runner.create_lease()
+        self._row_writers = ScanlineWriters(
+            task.plan, task.files, self._settings, lambda file: self._make_header(task, file), self._renderer.sandbox
         )
-        for run in self._reel.steps(task.frame, kept, following=following.frame if following else None):
-            run.rows = self._strips.take
+        for run in self._frame_renderer.start_runs(task.frame, lease, following=following.frame if following else None):
+            run.receive_rows = self._row_writers.write_rows
             with run:
                 if following is not None:
-                    self._renderer.runner.prepare(following.plan, {surface.key for surface in task.plan.surfaces})
-                for done, one in enumerate(run, 1):
+                    self._renderer.runner.start_decoding(
+                        following.plan, {surface.key for surface in task.plan.surfaces}
+                    )
+                for passes_done, render_pass in enumerate(run, 1):
                     passes += 1
                     if self._progress is not None:
-                        self._progress.report_pass(task.frame, done, run.total, one.nodes)
+                        self._progress.report_pass(task.frame, passes_done, run.total, render_pass.nodes)
         self.seconds["render"] += time.perf_counter() - started
-        return kept, passes
+        return lease, passes
 
-    def _download(self, task: _Task, kept: Lease) -> dict[str, Array]:
+    def _download(self, task: _Task, lease: TextureLease) -> dict[str, Array]:
         """Wait for the outputs of a frame."""
         started = time.perf_counter()
-        outputs = self._renderer.runner.download(task.plan, self._behind.arrays)
-        kept.close()
+        outputs = self._renderer.runner.download(task.plan, self._write_queue.arrays)
+        lease.close()
         self.seconds["render"] += time.perf_counter() - started
         return outputs
 
     def _make_header(self, task: _Task, file: Destination) -> dict[str, Any]:
         """What a file says of itself."""
-        wanted, device = replace(self._wanted, frame=task.frame), self._renderer.device
-        said = make_header(
-            self._text,
+        request, device = replace(self._request, frame=task.frame), self._renderer.device
+        metadata = make_header(
+            self._graph_text,
             device.target,
-            wanted,
-            self._reel.frames,
-            self._writing,
+            request,
+            self._frame_renderer.frames,
+            self._settings,
             file,
             task.plan,
             task.sources,
             self._hashes,
         )
-        said["halation:driver"] = device.driver
-        return said
+        metadata["halation:driver"] = device.driver
+        return metadata
 
-    def _write(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
-        finished = self._strips.finish() if self._strips else frozenset[Path]()
+    def _write_frame(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
+        files_by_rows = self._row_writers.finish() if self._row_writers else frozenset[Path]()
 
         def write(outputs: Mapping[str, Array]) -> FrameReport:
             started = time.perf_counter()
             for file in task.files:
-                if file.path in finished:
+                if file.path in files_by_rows:
                     continue
                 said = self._make_header(task, file)
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
-                if file.path in self._writing.videos:
-                    self._films.add(file, layers, said)
+                if file.path in self._settings.videos:
+                    self._video_writers.add_frame(file, layers, said)
                     continue
                 media.write_picture(
                     file.path,
                     layers,
                     kinds=file.kinds,
-                    precision=self._writing.precision,
-                    compression=self._writing.compression,
+                    precision=self._settings.precision,
+                    compression=self._settings.compression,
                     metadata=said,
                     encoding=file.encoding,
                     sandbox=self._renderer.sandbox,
                 )
             self.seconds["write"] += time.perf_counter() - started
-            pictures = (file.path for file in task.files if file.path not in self._writing.videos)
+            pictures = (file.path for file in task.files if file.path not in self._settings.videos)
             return FrameReport(task.frame, tuple(pictures), passes)
 
-        self._behind.submit(write, outputs)
-        for report in self._behind.collect_finished():
+        self._write_queue.submit(write, outputs)
+        for report in self._write_queue.collect_finished():
             self._report_frame(report)
 
-    def _rate(self) -> float | Fraction:
+    def _find_rate(self) -> float | Fraction:
         """Frames per second of what is written."""
         pictures = self._renderer.pictures
-        return pictures.find_rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
+        return pictures.find_rate(self._graph, pictures.bind(self._graph, self._request.bound_inputs))
 
     def _report_frame(self, report: FrameReport) -> None:
         self._reports.append(report)

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 def select_row_outputs(files: Sequence[Destination]) -> frozenset[str]:
     """The outputs that every file can take by rows: those of EXRs of one layer."""
-    found, rest = set[str](), set[str]()
+    row_outputs, other_outputs = set[str](), set[str]()
     for file in files:
-        alone = len(file.layers) == 1 and file.path.suffix.casefold() == ".exr"
-        (found if alone else rest).update(file.layers.values())
-    return frozenset(found - rest)
+        has_one_layer = len(file.layers) == 1 and file.path.suffix.casefold() == ".exr"
+        (row_outputs if has_one_layer else other_outputs).update(file.layers.values())
+    return frozenset(row_outputs - other_outputs)
 
 
 class ScanlineWriters:
@@ -32,16 +32,16 @@ class ScanlineWriters:
         self,
         plan: Plan,
         files: Sequence[Destination],
-        writing: OutputSettings,
-        said: Callable[[Destination], Mapping[str, Any]],
+        settings: OutputSettings,
+        make_metadata: Callable[[Destination], Mapping[str, Any]],
         sandbox: Sandbox,
     ) -> None:
         names = plan.tiling.by_rows if plan.tiling else frozenset[str]()
-        self._plan, self._writing, self._said, self._sandbox = plan, writing, said, sandbox
+        self._plan, self._settings, self._make_metadata, self._sandbox = plan, settings, make_metadata, sandbox
         self._files = [file for file in files if names.issuperset(file.layers.values())]
         self._open: dict[Path, ScanlineWriter] = {}
 
-    def take(self, name: str, row: int, pixels: Array) -> None:
+    def write_rows(self, name: str, row: int, pixels: Array) -> None:
         """Write rows of an output. Raises OutputError."""
         from ...media.pictures.row_writer import ScanlineWriter
 
@@ -56,21 +56,21 @@ class ScanlineWriters:
                     size,
                     layer,
                     file.kinds[layer],
-                    precision=self._writing.precision,
-                    compression=self._writing.compression,
+                    precision=self._settings.precision,
+                    compression=self._settings.compression,
                     encoding=file.encoding,
-                    metadata=self._said(file),
+                    metadata=self._make_metadata(file),
                     sandbox=self._sandbox,
                 )
             self._open[file.path].add(pixels)
 
     def finish(self) -> frozenset[Path]:
         """Give all of them their names, which are returned. Raises OutputError."""
-        done = frozenset(self._open)
+        paths = frozenset(self._open)
         for file in self._open.values():
             file.close()
         self._open.clear()
-        return done
+        return paths
 
     def abort(self) -> None:
         """Remove what is not finished."""

@@ -50,28 +50,28 @@ class FileHashes:
     def __init__(self, sandbox: Sandbox) -> None:
         self.sandbox = sandbox
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="hash")
-        self._found: dict[tuple[str, str], Future[str]] = {}
+        self._futures: dict[tuple[str, str], Future[str]] = {}
         self._chains: dict[str, tuple[tuple[str, ...], hashlib._Hash]] = {}
         self._lock = Lock()
 
-    def begin(self, sources: Sequence[SourceFile]) -> None:
+    def start(self, sources: Sequence[SourceFile]) -> None:
         """Begin with what will be asked for."""
         for path in {path for item in sources for path in (item.path, *item.files.values())}:
-            self._start(path)
+            self._start_hash(path)
 
     def hash_file(self, path: str) -> str:
         """That of a file, sooner or later."""
-        return self._start(path).result()
+        return self._start_hash(path).result()
 
     def hash_files(self, files: Iterable[str]) -> str:
         """That of the hashes of several files, in their order. A list that goes on takes no longer than what is new."""
         paths = tuple(files)
         with self._lock:
-            known, digest = self._chains.get(paths[0], ((), hashlib.sha256()))
-            if known != paths[: len(known)]:
-                known, digest = (), hashlib.sha256()
+            hashed, digest = self._chains.get(paths[0], ((), hashlib.sha256()))
+            if hashed != paths[: len(hashed)]:
+                hashed, digest = (), hashlib.sha256()
             digest = digest.copy()
-            for path in paths[len(known) :]:
+            for path in paths[len(hashed) :]:
                 digest.update(self.hash_file(path).encode())
             self._chains[paths[0]] = paths, digest
             return digest.hexdigest()
@@ -80,11 +80,11 @@ class FileHashes:
         """Stop."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
-    def _start(self, path: str) -> Future[str]:
+    def _start_hash(self, path: str) -> Future[str]:
         key = (path, fingerprint(path, self.sandbox))
-        if key not in self._found:
-            self._found[key] = self._pool.submit(content_hash, path, self.sandbox)
-        return self._found[key]
+        if key not in self._futures:
+            self._futures[key] = self._pool.submit(content_hash, path, self.sandbox)
+        return self._futures[key]
 
 
 class SourceFinder:
@@ -92,35 +92,39 @@ class SourceFinder:
 
     def __init__(self, pictures: MediaProvider, graph: Graph, bound: Mapping[str, Picture]) -> None:
         self._pictures, self._graph, self._bound = pictures, graph, bound
-        self._led: dict[str, dict[int, str]] = {}
+        self._history_files: dict[str, dict[int, str]] = {}
 
-    def find(self, plan: Plan, frame: int, begin: int) -> tuple[SourceFile, ...]:
+    def find_sources(self, plan: Plan, frame: int, begin: int) -> tuple[SourceFile, ...]:
         """What a frame reads whose history begins at another one."""
-        read: dict[str, list[Picture]] = {}
+        pictures_by_owner: dict[str, list[Picture]] = {}
         for item in plan.uploads:
             if not item.picture.in_memory:
-                read.setdefault(item.node, []).append(item.picture)
-        lead = range(begin, frame) if plan.memories else range(0)
-        found = {owner: self._describe_pictures(owner, pictures, lead) for owner, pictures in read.items()}
+                pictures_by_owner.setdefault(item.node, []).append(item.picture)
+        history = range(begin, frame) if plan.memories else range(0)
+        sources = {
+            owner: self._describe_pictures(owner, pictures, history) for owner, pictures in pictures_by_owner.items()
+        }
         for owner, path in self._other_files.items():
-            if owner.rpartition(".")[0] not in found and (file := self._find_file(path, frame)):
-                found[owner] = SourceFile(owner, file, is_picture=False)
-        return tuple(found.values())
+            if owner.rpartition(".")[0] not in sources and (file := self._find_file(path, frame)):
+                sources[owner] = SourceFile(owner, file, is_picture=False)
+        return tuple(sources.values())
 
-    def _describe_pictures(self, owner: str, pictures: Sequence[Picture], lead: range) -> SourceFile:
+    def _describe_pictures(self, owner: str, pictures: Sequence[Picture], history: range) -> SourceFile:
         layer = pictures[0].layer if owner.startswith(f"{INPUTS}.") else ""
         source = SourceFile(owner, pictures[0].path, layer)
         path, missing = self._picture_paths.get(owner, ("", "error"))
         sequence = media.find_sequence(path, sandbox=self._pictures.sandbox) if path else None
-        if sequence is None or not (lead or len({picture.path for picture in pictures}) > 1):
+        if sequence is None or not (history or len({picture.path for picture in pictures}) > 1):
             return source
-        led = self._led.setdefault(owner, {})
-        for frame in lead:
-            if frame not in led:
-                led[frame] = self._pictures.find_frame_file(path, frame, missing).path
-        files = [*(led[frame] for frame in lead), *(picture.path for picture in pictures)]
-        named = {sequence.pattern.frame(Path(file).name): file for file in files}
-        ordered = {frame: named[frame] for frame in sorted(frame for frame in named if frame is not None)}
+        history_files = self._history_files.setdefault(owner, {})
+        for frame in history:
+            if frame not in history_files:
+                history_files[frame] = self._pictures.find_frame_file(path, frame, missing).path
+        files = [*(history_files[frame] for frame in history), *(picture.path for picture in pictures)]
+        files_by_frame = {sequence.pattern.frame(Path(file).name): file for file in files}
+        ordered = {
+            frame: files_by_frame[frame] for frame in sorted(frame for frame in files_by_frame if frame is not None)
+        }
         return SourceFile(owner, source.path, layer, True, Path(sequence.pattern.text).name, ordered)
 
     def _find_file(self, path: str, frame: int) -> str:
@@ -139,23 +143,23 @@ class SourceFinder:
     @cached_property
     def _other_files(self) -> dict[str, str]:
         """Files of nodes, which may be no pictures, or of which only the header is read, by who names them."""
-        used = self._graph.upstream(OUTPUTS)
-        named = {owner: path for owner, (_, path) in find_path_texts(self._graph).items()}
+        needed_nodes = self._graph.upstream(OUTPUTS)
+        paths = {owner: path for owner, (_, path) in find_path_texts(self._graph).items()}
         return {
             owner: path
-            for owner, path in named.items()
+            for owner, path in paths.items()
             if owner == CONFIG
-            or (not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in used)
+            or (not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in needed_nodes)
         }
 
 
 def describe_source(source: SourceFile, hashes: FileHashes) -> dict[str, str]:
     """What a header says of a source."""
     layer = f":{source.layer}" if source.layer else ""
-    found = {
+    entries = {
         f"halation:input:{source.owner}": f"{Path(source.path).name}{layer} sha256:{hashes.hash_file(source.path)}"
     }
     if source.files:
         frames, digest = format_frames(tuple(source.files)), hashes.hash_files(source.files.values())
-        found[f"halation:frames:{source.owner}"] = f"{source.pattern} {frames} sha256:{digest}"
-    return found
+        entries[f"halation:frames:{source.owner}"] = f"{source.pattern} {frames} sha256:{digest}"
+    return entries

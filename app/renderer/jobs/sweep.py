@@ -22,10 +22,10 @@ from ..frame_renderer import FrameRenderer
 from .destinations import OutputSettings
 from .job import run_job
 
-LETTERS = 16
-MOST_CELLS = 400
+LABEL_SIZE = 16
+MAX_CELLS = 400
 FRAME = "frame"
-_WIDE = 1.7
+_SHEET_ASPECT = 1.7
 """How much wider than high a sheet of one row of values becomes when it wraps, about."""
 
 
@@ -39,7 +39,7 @@ class SweepStep:
 
 
 @dataclass(frozen=True)
-class Axis:
+class SweepAxis:
     """What is swept: `blur.sigma`, a control, or the frame; `label` is what cells call it."""
 
     name: str
@@ -48,10 +48,10 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Cell:
+class SweepCell:
     """A picture: one step of every axis, the graph that they make, and the frame of it."""
 
-    steps: tuple[tuple[Axis, SweepStep], ...]
+    steps: tuple[tuple[SweepAxis, SweepStep], ...]
     graph: Graph
     frame: int
 
@@ -70,12 +70,12 @@ class Cell:
 class SweepRequest:
     """What to render of each graph, and how it is shown. `width` is that of a cell in pixels, 0 for the picture's."""
 
-    wanted: RenderRequest
+    request: RenderRequest
     output: str
     view: str = ""
     width: int = 480
     columns: int = 0
-    written: OutputSettings | None = None
+    output_settings: OutputSettings | None = None
     """How pictures are written alone, their folder as its only file; None if they are not."""
     ending: str = ".png"
     title: str = ""
@@ -86,11 +86,11 @@ class SweepSheet:
     """Light of the display, what is in its cells, and the files that were written beside it."""
 
     light: Array
-    cells: tuple[Cell, ...]
+    cells: tuple[SweepCell, ...]
     files: tuple[Path, ...] = field(default=())
 
 
-def list_cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
+def list_cells(graph: Graph, axes: Sequence[SweepAxis], frame: int) -> tuple[SweepCell, ...]:
     """All combinations, the last axis fastest. Raises UsageError for more than a sheet can show."""
     if not axes:
         raise UsageError("nothing is swept: give several values, such as --set blur.sigma=1,2,4,8, or --frames")
@@ -98,81 +98,81 @@ def list_cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ..
         names = ", ".join(axis.name for axis in axes)
         raise UsageError(f"{names}: a sheet has rows and columns, no more: give all but two of them one value")
     count = int(np.prod([len(axis.steps) for axis in axes]))
-    if count > MOST_CELLS:
-        raise UsageError(f"{count} pictures are more than the {MOST_CELLS} that a sheet can hold: sweep fewer values")
-    return tuple(_combine(graph, axes, frame))
+    if count > MAX_CELLS:
+        raise UsageError(f"{count} pictures are more than the {MAX_CELLS} that a sheet can hold: sweep fewer values")
+    return tuple(_combine_steps(graph, axes, frame))
 
 
-def _combine(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
+def _combine_steps(graph: Graph, axes: Sequence[SweepAxis], frame: int) -> Iterator[SweepCell]:
     for steps in product(*(axis.steps for axis in axes)):
         changed, at = graph, frame
         for step in steps:
             changed, at = step.apply(changed), at if step.frame is None else step.frame
-        yield Cell(tuple(zip(axes, steps, strict=True)), changed, at)
+        yield SweepCell(tuple(zip(axes, steps, strict=True)), changed, at)
 
 
 def render_sweep(
     renderer: Renderer,
     graph: Graph,
-    axes: Sequence[Axis],
-    swept: SweepRequest,
+    axes: Sequence[SweepAxis],
+    sweep: SweepRequest,
     frame: int,
-    step: Callable[[str], None] = lambda name: None,
+    report_step: Callable[[str], None] = lambda name: None,
 ) -> SweepSheet:
     """Render all cells and put them on a sheet; `step` hears the label of what comes next.
 
     What several pictures share is computed once. Raises the errors of `app.errors`.
     """
-    found = list_cells(graph, axes, frame)
+    cells = list_cells(graph, axes, frame)
     pictures: list[Array] = []
     files: list[Path] = []
-    for cell in found:
-        step(cell.label)
-        pictures.append(_shrink(_render_cell(renderer, cell, swept), swept.width))
-        if swept.written is not None:
-            files += _write_cell(renderer, cell, swept)
-    light = _show_cells(graph, pictures, swept)
+    for cell in cells:
+        report_step(cell.label)
+        pictures.append(_shrink(_render_cell(renderer, cell, sweep), sweep.width))
+        if sweep.output_settings is not None:
+            files += _write_cell(renderer, cell, sweep)
+    light = _show_cells(graph, pictures, sweep)
     if len(axes) == 2:
         heads = [[f"{axis.label} {step.text}" for step in axis.steps] for axis in axes]
         across = len(heads[1])
         rows = [light[start : start + across] for start in range(0, len(light), across)]
-        return SweepSheet(make_grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
-    named = dict(zip((cell.label for cell in found), light, strict=True))
-    columns = swept.columns or _choose_columns(len(named), light[0])
-    sheet = make_grouped_sheet({swept.title: named}, columns, swept.width, letters=LETTERS)
-    return SweepSheet(sheet, found, tuple(files))
+        return SweepSheet(make_grid_sheet(rows, *heads, width=sweep.width, title=sweep.title), cells, tuple(files))
+    named = dict(zip((cell.label for cell in cells), light, strict=True))
+    columns = sweep.columns or _choose_columns(len(named), light[0])
+    sheet = make_grouped_sheet({sweep.title: named}, columns, sweep.width, letters=LABEL_SIZE)
+    return SweepSheet(sheet, cells, tuple(files))
 
 
-def _render_cell(renderer: Renderer, cell: Cell, swept: SweepRequest) -> Array:
-    reel = FrameRenderer(renderer, cell.graph, swept.wanted)
+def _render_cell(renderer: Renderer, cell: SweepCell, sweep: SweepRequest) -> Array:
+    frame_renderer = FrameRenderer(renderer, cell.graph, sweep.request)
     try:
-        return reel.render(cell.frame)[swept.output]
+        return frame_renderer.render_frame(cell.frame)[sweep.output]
     finally:
-        reel.close()
+        frame_renderer.close()
 
 
-def _write_cell(renderer: Renderer, cell: Cell, swept: SweepRequest) -> tuple[Path, ...]:
+def _write_cell(renderer: Renderer, cell: SweepCell, sweep: SweepRequest) -> tuple[Path, ...]:
     """Write a picture as `render` would; what was rendered for the sheet is not rendered again."""
-    assert swept.written is not None
-    ((_, folder),) = swept.written.files
-    file = folder / f"{cell.file_stem}{swept.ending}"
-    writing = structs.replace(swept.written, files=((swept.output, file),))
-    return run_job(renderer, cell.graph, swept.wanted, writing, (cell.frame,)).written
+    assert sweep.output_settings is not None
+    ((_, folder),) = sweep.output_settings.files
+    file = folder / f"{cell.file_stem}{sweep.ending}"
+    settings = structs.replace(sweep.output_settings, files=((sweep.output, file),))
+    return run_job(renderer, cell.graph, sweep.request, settings, (cell.frame,)).written
 
 
 def _shrink(array: Array, width: int) -> Array:
     """Every n-th pixel of a picture that is far larger than its cell: sheets are not kept in memory at full size."""
-    every = max(1, array.shape[1] // (4 * width)) if width else 1
-    return np.ascontiguousarray(array[::every, ::every])
+    step = max(1, array.shape[1] // (4 * width)) if width else 1
+    return np.ascontiguousarray(array[::step, ::step])
 
 
-def _show_cells(graph: Graph, pictures: Sequence[Array], swept: SweepRequest) -> list[Array]:
+def _show_cells(graph: Graph, pictures: Sequence[Array], sweep: SweepRequest) -> list[Array]:
     """Pictures as light of the display; data between the smallest and largest number of all of them."""
-    port = swept.wanted.targets.get(swept.output, Port(OUTPUTS, swept.output))
+    port = sweep.request.targets.get(sweep.output, Port(OUTPUTS, sweep.output))
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
     if kind in (Kind.IMAGE, Kind.COLOR):
-        return [show_over_checker(_widen(array), swept.view) for array in pictures]
+        return [show_over_checker(_widen(array), sweep.view) for array in pictures]
     finite = [array[np.isfinite(array)].astype(np.float64) for array in pictures]
     low = min((float(part.min()) for part in finite if part.size), default=0.0)
     high = max((float(part.max()) for part in finite if part.size), default=1.0)
@@ -188,8 +188,8 @@ def _choose_columns(count: int, first: Array) -> int:
     """How many go side by side: few in one row, many in about the shape of a screen."""
     if count <= 4:
         return count
-    wide = min(count, ceil((_WIDE * count * first.shape[0] / first.shape[1]) ** 0.5))
-    return ceil(count / ceil(count / wide))  # rows of about the same length
+    columns = min(count, ceil((_SHEET_ASPECT * count * first.shape[0] / first.shape[1]) ** 0.5))
+    return ceil(count / ceil(count / columns))  # rows of about the same length
 
 
 def _format_step(text: str, is_frame: bool) -> str:
@@ -200,5 +200,6 @@ def _format_step(text: str, is_frame: bool) -> str:
 def choose_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[str, str]:
     """What cells call each name: its own label, the whole name where two labels would be the same."""
     return {
-        name: labels[name] if sum(labels[other] == labels[name] for other in names) == 1 else name for name in names
+        name: labels[name] if sum(labels[other_name] == labels[name] for other_name in names) == 1 else name
+        for name in names
     }

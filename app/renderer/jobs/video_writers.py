@@ -18,22 +18,22 @@ if TYPE_CHECKING:
 class VideoWriters:
     """Opened when their first frame comes; what is not finished leaves nothing behind."""
 
-    def __init__(self, writing: OutputSettings, rate: Callable[[], float | Fraction], sandbox: Sandbox) -> None:
-        self._writing, self._rate, self._sandbox = writing, rate, sandbox
+    def __init__(self, settings: OutputSettings, find_rate: Callable[[], float | Fraction], sandbox: Sandbox) -> None:
+        self._settings, self._find_rate, self._sandbox = settings, find_rate, sandbox
         self._open: dict[Path, media.VideoWriter] = {}
 
-    def add(self, file: Destination, layers: Mapping[str, Array], said: Mapping[str, Any]) -> None:
+    def add_frame(self, file: Destination, layers: Mapping[str, Array], metadata: Mapping[str, Any]) -> None:
         """Write one more frame; what the first one says of itself is said of all. Raises OutputError."""
         if file.path not in self._open:
             height, width = next(iter(layers.values())).shape[:2]
             self._open[file.path] = media.VideoWriter(
                 file.path,
                 (width, height),
-                self._rate(),
-                codec=self._writing.codec,
-                deep=self._writing.precision == "float",
+                self._find_rate(),
+                codec=self._settings.codec,
+                deep=self._settings.precision == "float",
                 encoding=file.encoding,
-                metadata=said,
+                metadata=metadata,
                 sandbox=self._sandbox,
             )
         self._open[file.path].add(layers, file.kinds)
@@ -42,9 +42,9 @@ class VideoWriters:
         """Give all of them their names. Raises OutputError."""
         for video in self._open.values():
             video.close()
-        done = tuple(self._open)
+        paths = tuple(self._open)
         self._open.clear()
-        return done
+        return paths
 
     def abort(self) -> None:
         """Remove what is not finished."""

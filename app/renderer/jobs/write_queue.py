@@ -16,21 +16,21 @@ MAX_WAITING = 2
 MAX_WAITING_BYTES = 2**28
 """What they may take together; one frame may be larger."""
 
-Said = TypeVar("Said")
+WriteResult = TypeVar("WriteResult")
 
 
-class WriteQueue(Generic[Said]):
+class WriteQueue(Generic[WriteResult]):
     """Writes on one other thread, in order. `arrays` lend what results come in."""
 
     def __init__(self) -> None:
         self.arrays = ArrayPool()
         self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
-        self._writes: deque[tuple[Future[Said], int]] = deque()
+        self._writes: deque[tuple[Future[WriteResult], int]] = deque()
 
-    def submit(self, write: Callable[[Mapping[str, Array]], Said], outputs: Mapping[str, Array]) -> None:
+    def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: Mapping[str, Array]) -> None:
         """Have `write` called with outputs that `arrays` lent, which go back to them."""
 
-        def work() -> Said:
+        def work() -> WriteResult:
             try:
                 return write(outputs)
             finally:
@@ -38,12 +38,12 @@ class WriteQueue(Generic[Said]):
 
         self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
 
-    def collect_finished(self) -> Iterator[Said]:
+    def collect_finished(self) -> Iterator[WriteResult]:
         """What was said of writes that are through, after waiting while too many are not. Raises what they raised."""
         while self._writes and (self._writes[0][0].done() or self._is_full()):
             yield self._writes.popleft()[0].result()
 
-    def collect_all(self) -> Iterator[Said]:
+    def collect_all(self) -> Iterator[WriteResult]:
         """The same of all that are left."""
         while self._writes:
             yield self._writes.popleft()[0].result()

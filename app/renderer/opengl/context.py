@@ -9,7 +9,7 @@ import moderngl
 
 from ...errors import DeviceError
 from .device import OLDEST, OpenGLDevice, describe_target
-from .warming import EGL, GL
+from .warming import EGL_LIBRARY, GL
 
 
 def open_standalone() -> OpenGLDevice:
@@ -26,7 +26,7 @@ def open_current() -> OpenGLDevice:
 
 
 def _create_context() -> moderngl.Context:
-    named = {"libegl": EGL, "libgl": GL}  # searching for them would take two processes
+    named = {"libegl": EGL_LIBRARY, "libgl": GL}  # searching for them would take two processes
     ways = ({"backend": "egl", **named}, {"backend": "egl"}, {}) if sys.platform.startswith("linux") else ({},)
     create: Callable[..., moderngl.Context] = moderngl.create_context  # its stub knows nothing of backends
     faults: list[str] = []

@@ -8,7 +8,7 @@ import sys
 from threading import Thread
 from typing import Any
 
-EGL = "libEGL.so.1"
+EGL_LIBRARY = "libEGL.so.1"
 GL = "libGL.so.1"
 _DEVICE = 0x313F
 """EGL_PLATFORM_DEVICE_EXT."""
@@ -26,7 +26,7 @@ def warm() -> None:
 def _load() -> None:
     """What glcontext will do first: choose a device, and begin with it. EGL remembers that, for all threads."""
     try:
-        egl = ctypes.CDLL(EGL)
+        egl = ctypes.CDLL(EGL_LIBRARY)
     except OSError:
         return
     egl.eglGetProcAddress.restype = ctypes.c_void_p

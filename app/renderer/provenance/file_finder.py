@@ -34,7 +34,7 @@ class LocatedFile:
     Of a sequence `path` is its pattern.
     """
 
-    used: RecordedFile
+    recorded: RecordedFile
     state: State
     path: str = ""
     digest: str = ""
@@ -45,98 +45,105 @@ class FileFinder:
     below the folders of `search`, there under other names too.
     """
 
-    def __init__(self, recipe: Recipe, given: Mapping[str, str], search: Sequence[Path], sandbox: Sandbox) -> None:
+    def __init__(
+        self, recipe: Recipe, chosen_paths: Mapping[str, str], search: Sequence[Path], sandbox: Sandbox
+    ) -> None:
         self._recipe, self._search = recipe, search
         self._texts = {owner: text for owner, (text, _) in find_path_texts(recipe.graph).items()}
-        self._given = {self._resolve_owner(name): path for name, path in given.items()}
+        self._chosen_paths = {self._resolve_owner(name): path for name, path in chosen_paths.items()}
         self._bases = (recipe.path.parent, Path(), *search, presets()[0].parent)
         self._hashes, self._sandbox = FileHashes(sandbox), sandbox
-        self._others: dict[str, str] | None = None
+        self._files_by_hash: dict[str, str] | None = None
 
     def find_all(self) -> tuple[LocatedFile, ...]:
         """All of them. Raises InputError for what `given` names and is not there."""
         try:
-            return tuple(self._find(used) for used in self._recipe.used)
+            return tuple(self._find_file(recorded) for recorded in self._recipe.files)
         finally:
             self._hashes.close()
 
     def find_likely(self) -> tuple[LocatedFile, ...]:
         """The files that have the right names at the likeliest places, without a look into them, which takes long."""
         return tuple(
-            LocatedFile(used, "same", path)
-            for used in self._recipe.used
+            LocatedFile(recorded, "same", path)
+            for recorded in self._recipe.files
             if (
                 path := next(
-                    (path for path in self._list_candidates(used) if _exists(used, path, sandbox=self._sandbox)), ""
+                    (
+                        path
+                        for path in self._list_candidates(recorded)
+                        if _exists(recorded, path, sandbox=self._sandbox)
+                    ),
+                    "",
                 )
             )
         )
 
     def _resolve_owner(self, name: str) -> str:
-        known = {used.owner.removeprefix(f"{INPUTS}."): used.owner for used in self._recipe.used}
-        if name in known.values():
+        owners = {used.owner.removeprefix(f"{INPUTS}."): used.owner for used in self._recipe.files}
+        if name in owners.values():
             return name
-        if name not in known:
-            raise UsageError(f"-i {name}=...: the picture was made of no file called that{did_you_mean(name, known)}")
-        return known[name]
+        if name not in owners:
+            raise UsageError(f"-i {name}=...: the picture was made of no file called that{did_you_mean(name, owners)}")
+        return owners[name]
 
-    def _find(self, used: RecordedFile) -> LocatedFile:
+    def _find_file(self, recorded: RecordedFile) -> LocatedFile:
         first = ""
-        for path in self._list_candidates(used):
-            found = self._inspect(used, path)
-            if found and found.state == "same":
-                return found
-            first = first or (path if found else "")
-            if used.owner in self._given and not found:
-                raise InputError(f"-i {used.owner.removeprefix(f'{INPUTS}.')}={path}: there is no such file")
-        if used.owner not in self._given and (path := self._find_by_content(used)):
-            return self._inspect(used, path) or LocatedFile(used, "missing")
-        return (self._inspect(used, first) if first else None) or LocatedFile(used, "missing")
+        for path in self._list_candidates(recorded):
+            located = self._inspect(recorded, path)
+            if located and located.state == "same":
+                return located
+            first = first or (path if located else "")
+            if recorded.owner in self._chosen_paths and not located:
+                raise InputError(f"-i {recorded.owner.removeprefix(f'{INPUTS}.')}={path}: there is no such file")
+        if recorded.owner not in self._chosen_paths and (path := self._find_by_content(recorded)):
+            return self._inspect(recorded, path) or LocatedFile(recorded, "missing")
+        return (self._inspect(recorded, first) if first else None) or LocatedFile(recorded, "missing")
 
-    def _inspect(self, used: RecordedFile, path: str) -> LocatedFile | None:
+    def _inspect(self, recorded: RecordedFile, path: str) -> LocatedFile | None:
         """What is at a path, if there is anything; of a sequence, at that of one of its files or at its pattern."""
-        if not used.frames:
+        if not recorded.frames:
             if not _may_be_read(path, sandbox=self._sandbox):
                 return None
             digest = self._hashes.hash_file(path)
-            return LocatedFile(used, "same" if digest == used.digest else "changed", path, digest)
-        pattern = Pattern.parse(path) or Pattern.parse(str(Path(path).with_name(used.pattern)))
-        files = [pattern.name(frame) for frame in used.frames] if pattern else []
+            return LocatedFile(recorded, "same" if digest == recorded.digest else "changed", path, digest)
+        pattern = Pattern.parse(path) or Pattern.parse(str(Path(path).with_name(recorded.pattern)))
+        files = [pattern.name(frame) for frame in recorded.frames] if pattern else []
         if not pattern or not all(_may_be_read(file, self._sandbox) for file in files):
             return None
         digest = self._hashes.hash_files(files)
-        return LocatedFile(used, "same" if digest == used.together else "changed", pattern.text, digest)
+        return LocatedFile(recorded, "same" if digest == recorded.sequence_digest else "changed", pattern.text, digest)
 
-    def _list_candidates(self, used: RecordedFile) -> Iterator[str]:
+    def _list_candidates(self, recorded: RecordedFile) -> Iterator[str]:
         """Where the file may be, the likeliest place first."""
-        if used.owner in self._given:
-            yield self._given[used.owner]
+        if recorded.owner in self._chosen_paths:
+            yield self._chosen_paths[recorded.owner]
             return
-        name = used.pattern or used.name
-        if text := self.find_text(used.owner):
+        name = recorded.pattern or recorded.name
+        if text := self.find_text(recorded.owner):
             yield from (str(Path(base, text).with_name(name)) for base in self._bases)
         yield from (str(base / name) for base in self._bases)
         for top in self._search:
             for folder, _, names in os.walk(top):
-                if used.name in names:
+                if recorded.name in names:
                     yield str(Path(folder, name))
 
-    def _find_by_content(self, used: RecordedFile) -> str:
+    def _find_by_content(self, recorded: RecordedFile) -> str:
         """The path of a file with another name and the same content below the folders that were named, or ""."""
-        if used.frames:
+        if recorded.frames:
             return ""
-        if self._others is None:
-            self._others = {}
-            endings = {Path(item.name).suffix.casefold() for item in self._recipe.used}
+        if self._files_by_hash is None:
+            self._files_by_hash = {}
+            endings = {Path(item.name).suffix.casefold() for item in self._recipe.files}
             for top in self._search:
                 for folder, _, names in os.walk(top):
                     files = (str(Path(folder, name)) for name in names if Path(name).suffix.casefold() in endings)
-                    self._others |= {
+                    self._files_by_hash |= {
                         self._hashes.hash_file(file): file
                         for file in files
                         if _may_be_read(file, sandbox=self._sandbox)
                     }
-        return self._others.get(used.digest, "")
+        return self._files_by_hash.get(recorded.digest, "")
 
     def find_text(self, owner: str) -> str:
         """How the graph names the file of an owner; "" if it does not."""
@@ -157,19 +164,19 @@ def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None
     return relink_files(recipe.graph, FileFinder(recipe, {}, (), sandbox=sandbox).find_likely())
 
 
-def relink_files(graph: Graph, found: Sequence[LocatedFile]) -> Graph:
+def relink_files(graph: Graph, located_files: Sequence[LocatedFile]) -> Graph:
     """The graph with what was found in place of what it names, seen from its own folder."""
     texts = {owner: text for owner, (text, _) in find_path_texts(graph).items()}
-    here = {item.used.owner: _spell_path(item.path, graph.folder) for item in found if item.path}
-    moved = {text: path for owner, path in here.items() if (text := find_text(texts, owner))}
-    graph = change_paths(graph, lambda text: moved.get(text, text))
+    new_paths = {item.recorded.owner: _spell_path(item.path, graph.folder) for item in located_files if item.path}
+    paths_by_text = {text: path for owner, path in new_paths.items() if (text := find_text(texts, owner))}
+    graph = change_paths(graph, lambda text: paths_by_text.get(text, text))
     ends = dict(graph.inputs)
-    for item in found:
-        node, _, name = item.used.owner.partition(".")
+    for item in located_files:
+        node, _, name = item.recorded.owner.partition(".")
         if node == INPUTS and name in ends and item.path:
-            ends[name] = replace(ends[name], file=here[item.used.owner], layer=item.used.layer)
+            ends[name] = replace(ends[name], file=new_paths[item.recorded.owner], layer=item.recorded.layer)
     color = graph.settings.color
-    if config := here.get(CONFIG):
+    if config := new_paths.get(CONFIG):
         color = structs.replace(color, config=config)
     return replace(graph, inputs=ends, settings=replace(graph.settings, color=color))
 
@@ -185,9 +192,9 @@ def _same_drive(full: str, folder: str) -> bool:
     return Path(full).drive == Path(folder).absolute().drive == Path().absolute().drive
 
 
-def _exists(used: RecordedFile, path: str, sandbox: Sandbox) -> bool:
-    pattern = Pattern.parse(path) if used.frames else None
-    return _may_be_read(pattern.name(used.frames[0]) if pattern else path, sandbox=sandbox)
+def _exists(recorded: RecordedFile, path: str, sandbox: Sandbox) -> bool:
+    pattern = Pattern.parse(path) if recorded.frames else None
+    return _may_be_read(pattern.name(recorded.frames[0]) if pattern else path, sandbox=sandbox)
 
 
 def _may_be_read(path: str, sandbox: Sandbox) -> bool:
@@ -195,13 +202,13 @@ def _may_be_read(path: str, sandbox: Sandbox) -> bool:
     return not sandbox.fault(path) and Path(path).is_file() and os.access(path, os.R_OK)
 
 
-def describe_missing(found: Sequence[LocatedFile], path: Path) -> InputError | None:
+def describe_missing(located_files: Sequence[LocatedFile], path: Path) -> InputError | None:
     """What to say of files that are nowhere, if any are."""
-    gone = [item.used for item in found if item.state == "missing"]
-    if not gone:
+    missing = [item.recorded for item in located_files if item.state == "missing"]
+    if not missing:
         return None
-    names = ", ".join(f"{used.pattern or used.name} ({used.owner.removeprefix(f'{INPUTS}.')})" for used in gone)
-    owner = gone[0].owner.removeprefix(f"{INPUTS}.")
+    names = ", ".join(f"{used.pattern or used.name} ({used.owner.removeprefix(f'{INPUTS}.')})" for used in missing)
+    owner = missing[0].owner.removeprefix(f"{INPUTS}.")
     return InputError(
         f"{path}: what it was made of is not there: {names}; say where with -i {owner}=FILE, or name a folder to look "
         "in with --search DIR"

@@ -21,7 +21,7 @@ from ..jobs.header import PREFIX
 
 _DIGEST = re.compile(r"(?P<name>.+) sha256:(?P<digest>[0-9a-f]{64})")
 _LAYERED = re.compile(r"(?P<name>.*?\.\w{1,5}):(?P<layer>.+)")
-_HOLDS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
+_SUPPORTED_FORMATS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class RecordedFile:
     layer: str = ""
     pattern: str = ""
     frames: tuple[int, ...] = ()
-    together: str = ""
+    sequence_digest: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,11 +46,11 @@ class Recipe:
     version: str
     renderer: str
     driver: str
-    used: tuple[RecordedFile, ...]
+    files: tuple[RecordedFile, ...]
     outputs: tuple[str, ...] = ()
     node: str = ""
     frame: int = 1
-    range: tuple[int, int] | None = None
+    frames: tuple[int, int] | None = None
     scale: float = 1.0
     size: Size | None = None
     precision: Precision = "half"
@@ -74,29 +74,29 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
         InputError: the file cannot be read, or says nothing of the kind.
         DocumentError: a graph that this version does not understand.
     """
-    said = {
+    metadata = {
         name: str(item) for name, item in media.read_metadata(path, sandbox=sandbox).items() if name.startswith(PREFIX)
     }
-    text = said.get("halation:graph")
+    text = metadata.get("halation:graph")
     if not text:
         raise InputError(
-            f"{path}: its header holds no graph: Halation did not write it, its format cannot hold one ({_HOLDS}), or "
-            "another program saved it since"
+            f"{path}: its header holds no graph: Halation did not write it, its format cannot hold one "
+            f"({_SUPPORTED_FORMATS}), or another program saved it since"
         )
     graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue, sandbox=sandbox)
     try:
-        settings = _parse_settings(said.get("halation:settings", ""))
-        used = _parse_files(said)
+        settings = _parse_settings(metadata.get("halation:settings", ""))
+        files = _parse_files(metadata)
     except ValueError as fault:
         raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
     return Recipe(
         Path(path),
         graph,
-        said.get("halation:version", ""),
-        said.get("halation:renderer", ""),
-        said.get("halation:driver", ""),
-        used,
-        color=said.get("halation:color", ""),
+        metadata.get("halation:version", ""),
+        metadata.get("halation:renderer", ""),
+        metadata.get("halation:driver", ""),
+        files,
+        color=metadata.get("halation:color", ""),
         **settings,
     )
 
@@ -112,27 +112,27 @@ def _parse_settings(text: str) -> dict[str, Any]:
     for word in shlex.split(text):
         name, _, value = word.partition("=")
         words.setdefault(name, []).append(value)
-    found: dict[str, Any] = {"outputs": tuple(words.pop("output", ()))}
+    settings: dict[str, Any] = {"outputs": tuple(words.pop("output", ()))}
     plain = {name: values[-1] for name, values in words.items()}
     for name in ("node", "view", "display", "look", "colorspace", "compression"):
         if name in plain:
-            found[name] = plain[name]
-    for name, known in (
+            settings[name] = plain[name]
+    for name, options in (
         ("precision", ("half", "float")),
         ("intermediates", ("half", "float")),
         ("form", ("fragment", "compute")),
     ):
-        if plain.get(name) in known:
-            found[name] = plain[name]
+        if plain.get(name) in options:
+            settings[name] = plain[name]
     if "frame" in plain:
-        found["frame"] = int(plain["frame"])
+        settings["frame"] = int(plain["frame"])
     if "scale" in plain:
-        found["scale"] = float(plain["scale"])
+        settings["scale"] = float(plain["scale"])
     if "size" in plain:
-        found["size"] = _parse_pair(plain["size"], "x")
+        settings["size"] = _parse_pair(plain["size"], "x")
     if "frames" in plain:
-        found["range"] = _parse_pair(plain["frames"], "..")
-    return found
+        settings["frames"] = _parse_pair(plain["frames"], "..")
+    return settings
 
 
 def _parse_pair(text: str, between: str) -> tuple[int, int]:
@@ -140,23 +140,25 @@ def _parse_pair(text: str, between: str) -> tuple[int, int]:
     return int(first), int(second)
 
 
-def _parse_files(said: Mapping[str, str]) -> tuple[RecordedFile, ...]:
+def _parse_files(metadata: Mapping[str, str]) -> tuple[RecordedFile, ...]:
     """The files that a header names. Raises ValueError."""
-    found: list[RecordedFile] = []
-    for name, text in said.items():
+    files: list[RecordedFile] = []
+    for name, text in metadata.items():
         if not name.startswith("halation:input:"):
             continue
         owner = name.removeprefix("halation:input:")
         file, digest = _split_digest(text)
         layered = _LAYERED.fullmatch(file)
         file, layer = (layered["name"], layered["layer"]) if layered else (file, "")
-        pattern, frames, together = "", (), ""
-        if several := said.get(f"halation:frames:{owner}"):
-            rest, together = _split_digest(several)
+        pattern, frames, sequence_digest = "", (), ""
+        if sequence_text := metadata.get(f"halation:frames:{owner}"):
+            rest, sequence_digest = _split_digest(sequence_text)
             pattern, _, listed = rest.rpartition(" ")
             frames = parse_frames(listed)
-        found.append(RecordedFile(owner, PurePath(file).name, digest, layer, PurePath(pattern).name, frames, together))
-    return tuple(sorted(found, key=lambda one: one.owner))
+        files.append(
+            RecordedFile(owner, PurePath(file).name, digest, layer, PurePath(pattern).name, frames, sequence_digest)
+        )
+    return tuple(sorted(files, key=lambda recorded: recorded.owner))
 
 
 def _split_digest(text: str) -> tuple[str, str]:

@@ -26,21 +26,21 @@ from ..pinned_device import open_pinned
 from .file_finder import LocatedFile, relink_files
 from .recipe import Recipe
 
-ELSEWHERE = EIGHT_BIT_STEP
+OTHER_DEVICE_TOLERANCE = EIGHT_BIT_STEP
 """How far pictures of different renderers may be apart: one step of 8 bits, of the light itself where it is over 1."""
 
-_PINNED = "128 bits)"
+_PINNED_SUFFIX = "128 bits)"
 """How the software rasterizer calls itself where it is pinned."""
-_USUAL = "linear Rec.709, built in"
+_DEFAULT_COLOR = "linear Rec.709, built in"
 
 
 @dataclass(frozen=True)
 class EnvironmentDifference:
     """Something that is not what it was."""
 
-    what: str
-    then: str
-    now: str
+    name: str
+    recorded: str
+    current: str
 
 
 @dataclass(frozen=True)
@@ -62,14 +62,14 @@ class Reproduction:
     written: tuple[Path, ...]
 
     @property
-    def same(self) -> bool:
+    def is_same(self) -> bool:
         """True if the pixels are the same, within the tolerance."""
         return all(layer.farthest <= self.tolerance for layer in self.layers)
 
 
 def open_matching_device(recipe: Recipe, sandbox: Sandbox) -> Device:
     """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
-    if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED):
+    if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED_SUFFIX):
         return open_pinned(sandbox=sandbox)
     try:
         return open_device(recipe.form, sandbox=sandbox)
@@ -80,7 +80,7 @@ def open_matching_device(recipe: Recipe, sandbox: Sandbox) -> Device:
 def reproduce(
     renderer: Renderer,
     recipe: Recipe,
-    found: Sequence[LocatedFile],
+    located_files: Sequence[LocatedFile],
     files: Sequence[Path] = (),
     tolerance: float | None = None,
 ) -> Reproduction:
@@ -89,27 +89,27 @@ def reproduce(
     Without a tolerance, pictures of the same renderer must be equal, those of others within `ELSEWHERE`. Raises the
     errors of `app.errors`.
     """
-    graph, targets = _relink_graph(recipe, found), {}
+    graph, targets = _relink_graph(recipe, located_files), {}
     if recipe.node:
         targets = {recipe.node: find_node_output(graph, recipe.node)}
     names = recipe.outputs or (recipe.node,)  # "" is all of them
-    wanted = RenderRequest({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
+    request = RenderRequest({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
     for file in files:
         if file.resolve() == recipe.path.resolve():
             raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")
     with tempfile.TemporaryDirectory(prefix="halation-", dir=renderer.sandbox.root or None) as folder:
-        again = Path(folder, recipe.path.name)
-        pairs = [(name, file) for file in (again, *files) for name in names]
-        writing = OutputSettings(
+        rendered_file = Path(folder, recipe.path.name)
+        pairs = [(name, file) for file in (rendered_file, *files) for name in names]
+        settings = OutputSettings(
             pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
         )
-        run_job(renderer, graph, wanted, writing, (recipe.frame,))
-        layers = compare_layers(*(read_numbers(path, renderer.sandbox) for path in (again, recipe.path)))
+        run_job(renderer, graph, request, settings, (recipe.frame,))
+        layers = compare_layers(*(read_numbers(path, renderer.sandbox) for path in (rendered_file, recipe.path)))
     differences = tuple(
         _find_differences(recipe, renderer.device, get_color_manager(color_settings(graph), renderer.sandbox).digest)
     )
-    elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
-    allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
+    is_other_device = any(item.name in ("renderer", "driver", "passes") for item in differences)
+    allowed = (OTHER_DEVICE_TOLERANCE if is_other_device else 0.0) if tolerance is None else tolerance
     return Reproduction(differences, layers, allowed, tuple(files))
 
 
@@ -118,47 +118,59 @@ def compare_layers(actual: Mapping[str, Array], expected: Mapping[str, Array]) -
     layers: list[LayerDifference] = []
     for name in dict.fromkeys((*expected, *actual)):
         if name not in actual or name not in expected:
-            gone = "it was not made again" if name in expected else "it was not there before"
-            layers.append(LayerDifference(name, np.inf, PictureDifference(fault=gone)))
+            fault = "it was not made again" if name in expected else "it was not there before"
+            layers.append(LayerDifference(name, np.inf, PictureDifference(fault=fault)))
             continue
-        one, other = actual[name], expected[name]
-        if one.dtype != other.dtype:
+        actual_pixels, expected_pixels = actual[name], expected[name]
+        if actual_pixels.dtype != expected_pixels.dtype:
             layers.append(
-                LayerDifference(name, np.inf, PictureDifference(fault=f"it is {one.dtype} now, and was {other.dtype}"))
+                LayerDifference(
+                    name,
+                    np.inf,
+                    PictureDifference(fault=f"it is {actual_pixels.dtype} now, and was {expected_pixels.dtype}"),
+                )
             )
             continue
-        measured = compare_pictures(one, other, perceptual=False, threshold=0.0)
-        layers.append(LayerDifference(name, np.inf if measured.fault else _measure_distance(one, other), measured))
+        difference = compare_pictures(actual_pixels, expected_pixels, perceptual=False, threshold=0.0)
+        layers.append(
+            LayerDifference(
+                name, np.inf if difference.fault else _measure_distance(actual_pixels, expected_pixels), difference
+            )
+        )
     return tuple(layers)
 
 
-def _measure_distance(one: Array, other: Array) -> float:
-    if one.dtype.kind in "ui":
-        one, other = (item / float(np.iinfo(item.dtype).max) for item in (one, other))
-    first, second = one.astype(np.float64), other.astype(np.float64)
-    same = (first == second) | (np.isnan(first) & np.isnan(second))
+def _measure_distance(actual: Array, expected: Array) -> float:
+    if actual.dtype.kind in "ui":
+        actual, expected = (item / float(np.iinfo(item.dtype).max) for item in (actual, expected))
+    first, second = actual.astype(np.float64), expected.astype(np.float64)
+    is_equal = (first == second) | (np.isnan(first) & np.isnan(second))
     with np.errstate(invalid="ignore"):
-        apart = np.abs(first - second) / np.maximum(1.0, np.abs(second))
-    apart = np.where(same, 0.0, np.where(np.isfinite(apart), apart, np.inf))
-    return float(apart.max(initial=0.0))
+        distances = np.abs(first - second) / np.maximum(1.0, np.abs(second))
+    distances = np.where(is_equal, 0.0, np.where(np.isfinite(distances), distances, np.inf))
+    return float(distances.max(initial=0.0))
 
 
-def _relink_graph(recipe: Recipe, found: Sequence[LocatedFile]) -> Graph:
-    graph = relink_files(recipe.graph, found)
-    if recipe.range:  # which frames a sequence has now may be others
-        return replace(graph, settings=replace(graph.settings, frames=recipe.range))
+def _relink_graph(recipe: Recipe, located_files: Sequence[LocatedFile]) -> Graph:
+    graph = relink_files(recipe.graph, located_files)
+    if recipe.frames:  # which frames a sequence has now may be others
+        return replace(graph, settings=replace(graph.settings, frames=recipe.frames))
     return graph
 
 
 def _find_differences(recipe: Recipe, device: Device, color: str) -> list[EnvironmentDifference]:
     """What is not as it was, of what says so."""
-    now = {
+    facts = {
         "version": (recipe.version, VERSION),
         "renderer": (recipe.renderer, device.target.renderer),
         "driver": (recipe.driver, device.driver),
         "passes": (recipe.form or "", device.target.form),
     }
-    found = [EnvironmentDifference(what, then, here) for what, (then, here) in now.items() if then and then != here]
+    differences = [
+        EnvironmentDifference(name, recorded, current)
+        for name, (recorded, current) in facts.items()
+        if recorded and recorded != current
+    ]
     if color != recipe.color:
-        found.append(EnvironmentDifference("color", recipe.color or _USUAL, color or _USUAL))
-    return found
+        differences.append(EnvironmentDifference("color", recipe.color or _DEFAULT_COLOR, color or _DEFAULT_COLOR))
+    return differences

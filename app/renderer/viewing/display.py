@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from typing import Protocol, get_args
 
 from ..device import Device, DeviceTexture, PixelRect, TextureDepth
-from .look import Channels, Look, Meaning, Size, find_origin, to_panel
+from .look import Channels, Look, Meaning, Size, find_origin, find_panel_point
 from .view_programs import ColorView, ViewProgram, ViewPrograms
 
-ENLARGED = 0.8
+MAX_TEXEL_DENSITY = 0.8
 """Texels per pixel, along a side, below which a view is computed per texel: at 0.8 the texels are
 0.64 of the pixels, clearly fewer, which pays for the second pass."""
 
@@ -82,7 +82,7 @@ class Display:
             self.draw_count += 1
         return panel.texture
 
-    def drop(self, slot: str) -> None:
+    def release_slot(self, slot: str) -> None:
         """Give back a slot that is not shown any more."""
         if slot in self._slots:
             with self._device.make_current():
@@ -131,10 +131,10 @@ class Display:
             program.set("viewed", 1)
         else:
             program = self._programs.get(view, look.manager, "off" if b is None else look.compare)
-        _place(program, "a", 0, a, size, look)
+        _set_placement(program, "a", 0, a, size, look)
         if b is not None:
             textures.append(b.texture)
-            _place(program, "b", 1, b, size, look)
+            _set_placement(program, "b", 1, b, size, look)
         _set_look(program, size, a.full_size, look)
         program.draw(target, textures, covered)
 
@@ -155,7 +155,7 @@ class Display:
         return self._texels
 
 
-def _place(program: ViewProgram, name: str, unit: int, picture: Drawable, panel: Size, look: Look) -> None:
+def _set_placement(program: ViewProgram, name: str, unit: int, picture: Drawable, panel: Size, look: Look) -> None:
     """Set where a picture, bound to a texture unit, lies on the panel."""
     size, full_size = picture.size, picture.full_size
     program.set(name, unit)
@@ -172,7 +172,7 @@ def _find_enlarged(panel: Size, picture: Drawable, covered: PixelRect, look: Loo
         step = picture.size[axis] / (picture.full_size[axis] * look.zoom)
         first, last = ((covered[axis] - corner) * step, (covered[axis] + covered[axis + 2] - corner) * step)
         low, high = max(0, math.floor(first) - 1), min(picture.size[axis], math.ceil(last) + 1)
-        if step > ENLARGED:
+        if step > MAX_TEXEL_DENSITY:
             return None
         spans.append((low, max(1, high - low)))
     (x, width), (y, height) = spans
@@ -211,7 +211,7 @@ def _set_look(program: ViewProgram, panel: Size, picture: Size, look: Look) -> N
         "exposure": 2.0**look.exposure,
         "gamma": look.gamma,
         "range": (look.low, look.high if look.high != look.low else look.low + 1e-6),
-        "wipe_point": to_panel(look, panel, picture, (look.wipe[0] * picture[0], look.wipe[1] * picture[1])),
+        "wipe_point": find_panel_point(look, panel, picture, (look.wipe[0] * picture[0], look.wipe[1] * picture[1])),
         "wipe_normal": (math.cos(angle), math.sin(angle)),
         "checker": look.checker,
         "clipping": look.clipping,
@@ -221,6 +221,6 @@ def _set_look(program: ViewProgram, panel: Size, picture: Size, look: Look) -> N
     }
     x, y, width, height = look.region or (-1e9, -1e9, 2e9, 2e9)
     corners = ((x, y), (x + width, y + height))
-    uniforms["region"] = tuple(part for corner in corners for part in to_panel(look, panel, picture, corner))
+    uniforms["region"] = tuple(part for corner in corners for part in find_panel_point(look, panel, picture, corner))
     for name, setting in uniforms.items():
         program.set(name, setting)

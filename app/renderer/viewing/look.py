@@ -10,7 +10,7 @@ from ...color.management import ColorManager, get_default_color_manager
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Meaning = Literal["image", "field", "vector", "normal"]
 Compare = Literal["off", "wipe", "difference", "b"]
-Color = tuple[float, float, float]
+DisplayColor = tuple[float, float, float]
 Point = tuple[float, float]
 Size = tuple[int, int]
 
@@ -46,14 +46,14 @@ class Look:
     """Of that line in degrees: 0 is vertical with a on the left, 90 horizontal with a on top."""
     checker: bool = True
     """A pattern behind what is transparent, instead of `background`."""
-    background: Color = (0.0, 0.0, 0.0)
+    background: DisplayColor = (0.0, 0.0, 0.0)
     clipping: bool = False
     """Stripes over what is beyond 0..1: after exposure, or of the range."""
     nonfinite: bool = True
     """Magenta where a pixel is NaN or infinite."""
     region: tuple[float, float, float, float] | None = None
     """x, y, width, height; what lies outside is dimmed."""
-    surround: Color = (0.12, 0.12, 0.12)
+    surround: DisplayColor = (0.12, 0.12, 0.12)
 
 
 def find_origin(look: Look, panel: Size, picture: Size) -> Point:
@@ -62,16 +62,16 @@ def find_origin(look: Look, panel: Size, picture: Size) -> Point:
     return float(round(x)), float(round(y))
 
 
-def to_picture(look: Look, panel: Size, picture: Size, point: Point) -> Point:
+def find_picture_point(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """The point of the picture, in full-size pixels, under a point of the panel."""
-    left, top = find_origin(look, panel, picture)
-    return (point[0] - left) / look.zoom, (point[1] - top) / look.zoom
+    origin_x, origin_y = find_origin(look, panel, picture)
+    return (point[0] - origin_x) / look.zoom, (point[1] - origin_y) / look.zoom
 
 
-def to_panel(look: Look, panel: Size, picture: Size, point: Point) -> Point:
+def find_panel_point(look: Look, panel: Size, picture: Size, point: Point) -> Point:
     """Where a point of the picture, in full-size pixels, lies on the panel."""
-    left, top = find_origin(look, panel, picture)
-    return point[0] * look.zoom + left, point[1] * look.zoom + top
+    origin_x, origin_y = find_origin(look, panel, picture)
+    return point[0] * look.zoom + origin_x, point[1] * look.zoom + origin_y
 
 
 def fit_zoom(panel: Size, picture: Size) -> float:

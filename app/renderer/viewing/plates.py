@@ -7,7 +7,7 @@ import numpy as np
 from ..device import Device, DeviceTexture
 
 
-class Plate:
+class PlateTexture:
     """One texture for a picture that changes."""
 
     def __init__(self, device: Device) -> None:

@@ -16,18 +16,18 @@ from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 
 
-class Probe:
+class PixelProbe:
     """Reads textures of one device. Channels are those of the texture: a vector of three is stored as four."""
 
     def __init__(self, device: Device) -> None:
         self._device = device
         self._decimation: DeviceProgram | None = None
 
-    def pixel(self, texture: DeviceTexture, x: int, y: int) -> tuple[float, ...]:
+    def read_pixel(self, texture: DeviceTexture, x: int, y: int) -> tuple[float, ...]:
         """The channels of one pixel. Raises UsageError outside of the picture."""
-        return tuple(float(part) for part in self.region(texture, (x, y, 1, 1))[0, 0])
+        return tuple(float(part) for part in self.read_region(texture, (x, y, 1, 1))[0, 0])
 
-    def region(self, texture: DeviceTexture, rect: PixelRect) -> Array:
+    def read_region(self, texture: DeviceTexture, rect: PixelRect) -> Array:
         """Pixels as [height, width, channels] of float32. Raises UsageError outside of the picture."""
         x, y, width, height = rect
         across, down = texture.size
@@ -36,7 +36,7 @@ class Probe:
         with self._device.make_current():
             return self._device.read_region(texture, rect)
 
-    def small(self, texture: DeviceTexture, max_width: int) -> Array:
+    def read_small(self, texture: DeviceTexture, max_width: int) -> Array:
         """A picture of at most that width, of pixels taken at even distances: [height, width, channels] of float32."""
         across, down = texture.size
         width = min(max_width, across)
@@ -61,7 +61,7 @@ class Probe:
         self._decimation = None
 
 
-class Nonfinite(Struct, frozen=True):
+class NonfinitePixel(Struct, frozen=True):
     """A pixel (x, y; row 0 on top) that is NaN or infinite, and the first node, in order, that has one."""
 
     path: str
@@ -72,36 +72,36 @@ class Nonfinite(Struct, frozen=True):
 
 
 def find_first_nonfinite(
-    renderer: Renderer, graph: Graph, wanted: RenderRequest, port: Port
-) -> Iterator[Nonfinite | None]:
+    renderer: Renderer, graph: Graph, request: RenderRequest, port: Port
+) -> Iterator[NonfinitePixel | None]:
     """Search what `port` shows and everything upstream of it, in order and without fusion.
 
     Yields None after every step, so that a caller can stop in between; what is found comes last. Raises the errors of
     `app.errors`.
     """
-    plan = renderer.compile(graph, replace(wanted, targets={"": port}), fusion=False)
+    plan = renderer.compile(graph, replace(request, targets={"": port}), fusion=False)
     firsts: dict[int, Port] = {}
-    for known, number in plan.results.items():
-        firsts.setdefault(number, known)
+    for result_port, number in plan.results.items():
+        firsts.setdefault(number, result_port)
     firsts.setdefault(plan.outputs[""], port)
-    for number, one in firsts.items():
-        pixels = yield from _render_pixels(renderer, graph, replace(wanted, targets={"": one}))
+    for number, port_searched in firsts.items():
+        pixels = yield from _render_pixels(renderer, graph, replace(request, targets={"": port_searched}))
         broken = np.argwhere(~np.isfinite(pixels[..., : plan.surfaces[number].channels]).all(axis=2))
         if len(broken):
             row, column = (int(part) for part in broken[0])
-            path = f"{one}" if one.node.rpartition("/")[2] == INPUTS else one.node
-            yield Nonfinite(path, one, (column, row), tuple(float(part) for part in pixels[row, column]))
+            path = f"{port_searched}" if port_searched.node.rpartition("/")[2] == INPUTS else port_searched.node
+            yield NonfinitePixel(path, port_searched, (column, row), tuple(float(part) for part in pixels[row, column]))
             return
         yield None
 
 
-def _render_pixels(renderer: Renderer, graph: Graph, wanted: RenderRequest) -> Generator[None, None, Array]:
-    plan = renderer.compile(graph, wanted, fusion=False)
-    kept = renderer.runner.lease()
+def _render_pixels(renderer: Renderer, graph: Graph, request: RenderRequest) -> Generator[None, None, Array]:
+    plan = renderer.compile(graph, request, fusion=False)
+    lease = renderer.runner.create_lease()
     try:
-        with renderer.runner.steps(plan, kept) as steps:
-            for _ in steps:
+        with renderer.runner.start_run(plan, lease) as run:
+            for _ in run:
                 yield None
         return renderer.runner.download(plan)[""]
     finally:
-        kept.close()
+        lease.close()

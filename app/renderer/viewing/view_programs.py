@@ -75,7 +75,7 @@ class ViewPrograms:
         if key not in self._programs:
             text = write_view_program(view.view, view.display, view.look, manager) if view else None
             library = library_for(installed_library(), find_working_space(manager))
-            self._programs[key] = self._compile(text, _source(text, library, compare, texels, viewed))
+            self._programs[key] = self._compile(text, _write_source(text, library, compare, texels, viewed))
         return self._programs[key]
 
     def release(self) -> None:
@@ -96,7 +96,7 @@ class ViewPrograms:
         return ViewProgram(self._device, handle, resources)
 
 
-def _source(view: ColorProgram | None, library: Library, compare: Compare, texels: bool, viewed: bool) -> str:
+def _write_source(view: ColorProgram | None, library: Library, compare: Compare, texels: bool, viewed: bool) -> str:
     """The whole fragment shader; modes are numbers by name."""
     names = {f"COMPARE_{mode}": number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Compare)))}
     names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Channels)))}

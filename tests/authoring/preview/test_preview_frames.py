@@ -34,7 +34,7 @@ def look(preview, graph: Graph, frame: int) -> np.ndarray:
 def by_reel(engine, graph: Graph, frame: int) -> np.ndarray:
     reel = FrameRenderer(engine, graph, RenderRequest(targets=PORTS))
     try:
-        return reel.render(frame)["A"].copy()
+        return reel.render_frame(frame)["A"].copy()
     finally:
         reel.close()
 
@@ -70,7 +70,7 @@ def test_frames_that_are_ready_need_no_pass_and_no_plan(preview, engine):
 
 def test_a_long_history_is_planned_and_run_in_steps(preview, engine, monkeypatch):
     graph, seen, plans = trails((1, 60)), set(), []
-    plan = FrameRenderer._plan
+    plan = FrameRenderer._plan_from
 
     def count_plans(reel: FrameRenderer, begin: int, frame: int):
         plans.append((begin, frame) not in reel._plans)

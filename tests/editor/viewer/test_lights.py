@@ -92,7 +92,7 @@ def see(editor: Any, socket: str, *values: float) -> None:
     session.apply(Connect(Port(source, socket), Port("lamps", socket)))
     session.select(["lamps"])
     known = {"depth": "depth", "place": "position"}
-    editor.probe = SimpleNamespace(pixel=lambda texture, x, y: values)
+    editor.probe = SimpleNamespace(read_pixel=lambda texture, x, y: values)
     editor.preview.shown = lambda name: (
         SimpleNamespace(
             port=Port(source, socket),

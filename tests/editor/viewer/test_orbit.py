@@ -94,7 +94,7 @@ def test_what_is_in_front_goes_where_the_mouse_goes() -> None:
 def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -> None:
     before = now(editor)
     editor.viewer.orbiting = True
-    editor.probe = SimpleNamespace(pixel=lambda texture, x, y: (depth or 1e10,))
+    editor.probe = SimpleNamespace(read_pixel=lambda texture, x, y: (depth or 1e10,))
     editor.preview.shown = lambda name: SimpleNamespace(
         port=Port("scene", "depth"),
         full_size=(400, 200),
