@@ -65,7 +65,7 @@ class TiledRun(Run):
 
     @property
     def is_ready(self) -> bool:
-        """False while the next pass of a tile would wait for the trial of a program; pictures are read when requested."""
+        """False while the next pass of a tile would wait for the trial of a program; pictures never wait."""
         return self._tile is None or self._tile.is_ready
 
     def __next__(self) -> Pass:
