@@ -8,7 +8,6 @@ import gc
 import os
 import sys
 from io import TextIOWrapper
-from pathlib import Path
 from typing import TextIO
 
 _INTERRUPTED = 130
@@ -20,13 +19,12 @@ is garbage."""
 def main() -> None:
     """Run the command line and end the process at once: the system frees all that it holds.
 
-    A closed standard stream is replaced, because the next opened file would get its number. File names may hold bytes
-    that are not valid text, so printing escapes them. Matrices are small here, and the threads that numpy starts for
-    large ones would cost time.
+    File names may hold bytes that are not valid text, so printing escapes them. Matrices are small here, and the
+    threads that numpy starts for large ones would cost time.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     gc.set_threshold(_YOUNG)
-    sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
+    _replace_closed_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
@@ -39,5 +37,19 @@ def main() -> None:
     os._exit(code)
 
 
-def _nowhere() -> TextIO:
-    return Path(os.devnull).open("w")
+def _replace_closed_streams() -> None:
+    """Give closed standard streams a descriptor, because the next opened file would get its number.
+
+    Nothing can be written to that of standard output, so a command that prints fails instead of losing its results.
+    """
+    for descriptor, mode in enumerate((os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, mode)  # the smallest number that is free, which is this one
+    sys.stdin = sys.stdin or _open_stream(0, "r")
+    sys.stdout, sys.stderr = sys.stdout or _open_stream(1, "w"), sys.stderr or _open_stream(2, "w")
+
+
+def _open_stream(descriptor: int, mode: str) -> TextIO:
+    return open(descriptor, mode, encoding="utf-8", closefd=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import functools
 import json
 import os
@@ -65,12 +66,16 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
         return type(fault).__name__, fault.exit_code, str(fault)
     if isinstance(fault, KeyboardInterrupt):
         return "Interrupted", INTERRUPTED, "interrupted; no unfinished file is left"
+    if isinstance(fault, OSError) and fault.filename is None and fault.errno == errno.EBADF:
+        return "OSError", 1, "standard output is closed: the result cannot be printed"
     if isinstance(fault, OSError):  # an OSError without a file is of standard output
         return (
             "OSError",
             1,
             f"{fault.filename or 'standard output'}: the system reports an error: {fault.strerror or fault}",
         )
+    if isinstance(fault, RuntimeError) and "start new thread" in str(fault):
+        return "MemoryError", 1, "the system gives no more threads or memory (ulimit -u, ulimit -v): allow more"
     if isinstance(fault, MemoryError):
         return "MemoryError", 1, "there is not enough memory; render a smaller picture with --scale or --size"
     if format_message := getattr(fault, "format_message", None):  # the parser of the command line raises it

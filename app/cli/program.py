@@ -112,6 +112,8 @@ def run(arguments: Sequence[str]) -> int:
     try:
         words = tuple(arguments)
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
+    except SystemExit:  # so click ends when the program that read its help has ended
+        code = report_failure(BrokenPipeError(), as_json)
     except (Exception, KeyboardInterrupt) as fault:
         code = report_failure(fault, as_json)
     return flush_output(code if isinstance(code, int) else 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from collections.abc import Mapping
@@ -51,13 +52,15 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
     with open_picture(path, sandbox=sandbox) as handle:
         found: dict[str, int | float | str | TypedAttribute] = {}
         for item in handle.spec().extra_attribs:
-            if is_structural(item.name):
-                continue
             try:
+                if is_structural(item.name):
+                    continue
                 value: Any = item.value
             except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
                 continue
-            found[item.name] = value if isinstance(value, int | float | str) else TypedAttribute(str(item.type), value)
+            if value is not None:
+                is_plain = isinstance(value, int | float | str)
+                found[item.name] = value if is_plain else TypedAttribute(str(item.type), value)
         return _unpack(found, _PACKED.get(handle.format_name(), ""))
 
 
@@ -77,6 +80,7 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
             continue
         if format == "png" and not isinstance(value, str):  # PNG holds text only
             value = str(value.value if isinstance(value, TypedAttribute) else value)
+        name, value = _to_utf8(name), _to_utf8(value) if isinstance(value, str) else value
         most = _PACKED_BYTES if name == _PACKED.get(format) else _JPEG_BYTES
         if format == "jpeg" and len(str(value).encode()) > most:  # libjpeg ends the process beyond 64 KB
             continue
@@ -84,10 +88,21 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
             continue
         if format == "jpeg" and name == _PACKED["jpeg"]:
             spec.attribute("jpeg:com_attributes", 1)
+        _set_attribute(spec, name, value)
+
+
+def _set_attribute(spec: oiio.ImageSpec, name: str, value: Any) -> None:
+    """Put an attribute into a header, or leave it out where its value is none of its type: so damaged files have it."""
+    with contextlib.suppress(TypeError, ValueError, RuntimeError, OverflowError):
         if isinstance(value, TypedAttribute):
             spec.attribute(name, oiio.TypeDesc(value.type), value.value)
         else:
             spec.attribute(name, value)
+
+
+def _to_utf8(text: str) -> str:
+    """A text that a header can hold: bytes of names of files that are no UTF-8 are written as escapes."""
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:

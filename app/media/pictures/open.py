@@ -11,6 +11,8 @@ from halation.nodes import Size
 
 from ...errors import InputError
 from ...resources.input_files import check_file, fingerprint
+from ...resources.library_messages import quiet_libraries
+from ...resources.library_names import name_for_library
 from ...resources.machine import available_cores
 from ...resources.sandbox import Sandbox
 from ..channels import ChannelPart, group_channels
@@ -53,16 +55,17 @@ def open_picture(path: str | Path, sandbox: Sandbox) -> Iterator[oiio.ImageInput
     settings = oiio.ImageSpec()
     settings.attribute("oiio:UnassociatedAlpha", 1)
     picture = None
-    try:
-        picture = oiio.ImageInput.open(str(file), settings)
-        if picture is None:
-            raise InputError(f"{path}: {describe_fault(oiio.geterror())}")
-        yield picture
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: {describe_fault('corrupt')}") from error
-    finally:
-        if picture is not None:
-            picture.close()
+    with name_for_library(file) as name, quiet_libraries():
+        try:
+            picture = oiio.ImageInput.open(name, settings)
+            if picture is None:
+                raise InputError(f"{path}: {describe_fault(oiio.geterror())}")
+            yield picture
+        except UnicodeDecodeError as error:
+            raise InputError(f"{path}: {describe_fault('corrupt')}") from error
+        finally:
+            if picture is not None:
+                picture.close()
 
 
 def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> ImageInfo:

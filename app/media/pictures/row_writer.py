@@ -12,6 +12,7 @@ from halation.nodes import Kind, Size
 from ...color.encoding import Encoding
 from ...color.transforms import Array
 from ...resources.atomic_write import replace_file
+from ...resources.library_names import name_for_library
 from ...resources.sandbox import Sandbox
 from ..metadata import add_metadata
 from .writer import Precision, encode_exr_parts, encoder_error, open_encoder
@@ -54,7 +55,8 @@ class ScanlineWriter:
         if not self._row:
             part.spec.height = part.spec.full_height = self._size[1]
             add_metadata(part.spec, self._metadata, "openexr")
-            self._check_encoded(self._output.open(str(self._replacement.temporary), part.spec))
+            name = self._open.enter_context(name_for_library(self._replacement.temporary))
+            self._check_encoded(self._output.open(name, part.spec))
             self._open.callback(self._output.close)
         end = self._row + len(rows)
         self._check_encoded(self._output.write_scanlines(self._row, end, 0, part.array))

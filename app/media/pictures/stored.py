@@ -16,6 +16,8 @@ from ...color.display import to_display
 from ...color.transforms import Array, to_three_channels
 from ...errors import InputError, OutputError
 from ...resources.atomic_write import write_atomically
+from ...resources.library_messages import quiet_libraries
+from ...resources.library_names import name_for_library
 from ...resources.sandbox import Sandbox
 from ..metadata import read_metadata
 from .open import describe_fault, open_picture
@@ -62,15 +64,17 @@ def read_stored_parts(path: str | Path, sandbox: Sandbox) -> dict[str, StoredPar
     settings = oiio.ImageSpec()
     settings.attribute("oiio:UnassociatedAlpha", 1)
     parts: dict[str, StoredPart] = {}
-    for index in range(count):
-        buffer = oiio.ImageBuf(str(path), index, 0, settings)
-        pixels = buffer.get_pixels(oiio.FLOAT, roi=buffer.roi_full) if buffer.read(index, 0, True, oiio.FLOAT) else None
-        if pixels is None:
-            raise InputError(f"{path}: {describe_fault(buffer.geterror() or 'corrupt')}")
-        spec = buffer.spec()
-        name = str(spec.get_string_attribute("oiio:subimagename")) or str(index or "")
-        integers = str(buffer.nativespec().format) not in _FLOATS
-        parts[name] = StoredPart(np.asarray(pixels), tuple(spec.channelnames), integers)
+    with name_for_library(path) as file, quiet_libraries():
+        for index in range(count):
+            buffer = oiio.ImageBuf(file, index, 0, settings)
+            is_read = buffer.read(index, 0, True, oiio.FLOAT)
+            pixels = buffer.get_pixels(oiio.FLOAT, roi=buffer.roi_full) if is_read else None
+            if pixels is None:
+                raise InputError(f"{path}: {describe_fault(buffer.geterror() or 'corrupt')}")
+            spec = buffer.spec()
+            name = str(spec.get_string_attribute("oiio:subimagename")) or str(index or "")
+            integers = str(buffer.nativespec().format) not in _FLOATS
+            parts[name] = StoredPart(np.asarray(pixels), tuple(spec.channelnames), integers)
     return parts
 
 
