@@ -16,7 +16,7 @@ from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
 from ..resources.sandbox import Sandbox
 from .display import make_display_processor
-from .management import ColorManager, OcioColorSpace, get_color_manager, load_ocio, ocio_errors
+from .management import ColorManager, OcioColorSpace, describe_ocio_error, get_color_manager, load_ocio, ocio_errors
 
 
 def write_color_change(change: ColorChange, sandbox: Sandbox) -> ColorProgram:
@@ -71,7 +71,7 @@ def write_view_program(
 
 @lru_cache(maxsize=64)
 def _write_color_change(change: ColorChange, mark: str, sandbox: Sandbox) -> ColorProgram:
-    name = f"recolor_{blake2b(f'{change} {mark}'.encode(), digest_size=8).hexdigest()}"
+    name = f"recolor_{blake2b(f'{change} {mark}'.encode('utf-8', 'surrogateescape'), digest_size=8).hexdigest()}"
     return write_color_program(
         _make_file_processor(change, sandbox)
         if isinstance(change, LookupFile)
@@ -100,5 +100,5 @@ def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
     try:
         return api.Config.CreateRaw().getProcessor(transform)
     except ocio_errors() as error:
-        reason = str(error).strip().splitlines()[0]
+        reason = describe_ocio_error(error)
         raise InputError(f"{change.path}: is no color table that can be read: {reason}") from error

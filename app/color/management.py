@@ -223,7 +223,7 @@ class ColorManager:
         try:
             return make()
         except ocio_errors() as error:
-            raise self._error(f"{self.where}: {_first_line(error)}") from error
+            raise self._error(f"{self.where}: {describe_ocio_error(error)}") from error
 
     def _read_config(self, source: str) -> Any:
         if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
@@ -238,11 +238,13 @@ class ColorManager:
                 if source.startswith("ocio://")
                 else load_ocio().Config.CreateFromFile(source)
             )
+            if not source.startswith("ocio://") and not Path(source).read_bytes().isascii():
+                config.serialize()  # names that are no UTF-8 are found here, and not when one is asked for
             if reason := find_config_fault(config, self._sandbox):
                 raise self._error(f"{self._describe_source(source)}: {reason}")
             return config
         except ocio_errors() as error:
-            reason = f"is no color config that can be read: {_first_line(error)}"
+            reason = f"is no color config that can be read: {describe_ocio_error(error)}"
             if source.startswith("ocio://"):
                 near = difflib.get_close_matches(source, list_builtin_configs(), 1, 0.3)
                 reason = f"there is no such built-in config{_suggest(near)}"
@@ -302,7 +304,7 @@ def load_ocio() -> Any:
 
 def ocio_errors() -> tuple[type[Exception], ...]:
     """What OpenColorIO raises."""
-    return load_ocio().Exception, load_ocio().ExceptionMissingFile
+    return load_ocio().Exception, load_ocio().ExceptionMissingFile, UnicodeDecodeError
 
 
 @cache
@@ -322,8 +324,11 @@ def list_builtin_configs() -> tuple[str, ...]:
     return (BUILT_IN, "ocio://cg-config-latest", _STUDIO, *names)
 
 
-def _first_line(error: Exception) -> str:
-    lines = str(error).strip().splitlines()
+def describe_ocio_error(error: Exception) -> str:
+    """The first line of what OpenColorIO complains of, without its period."""
+    is_quoting = isinstance(error, UnicodeDecodeError)  # the complaint quotes a file that is no UTF-8
+    text = error.object.decode("utf-8", "replace") if is_quoting else str(error)
+    lines = text.strip().splitlines()
     return lines[0].rstrip(".") if lines else "OpenColorIO gave no reason"
 
 

@@ -93,11 +93,11 @@ def _read_attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
     found: dict[str, Value] = {}
     for item in spec.extra_attribs:
         try:
-            value: Any = item.value
+            name, value = make_printable(item.name), item.value
         except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
             continue
         if isinstance(value, str):
-            found[make_printable(item.name)] = make_printable(value)
+            found[name] = make_printable(value)
         elif isinstance(value, int | float | tuple):
-            found[make_printable(item.name)] = value
+            found[name] = value
     return found

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import re
 from collections.abc import Mapping
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ import OpenImageIO as oiio
 from msgspec import Struct
 
 from ..graph.frames import is_video
+from ..resources.library_names import escape_bytes
 from ..resources.sandbox import Sandbox
 from .pictures.open import open_picture
 
@@ -24,6 +27,12 @@ _STRUCTURAL = re.compile(
     re.IGNORECASE,
 )
 _JPEG_BYTES = 8000
+_JPEG_TOTAL = 48_000
+"""Bytes of all attributes together but the packed one: each block of a JPEG's header may hold all of them, with their
+names, within 65,533 bytes (ITU T.81)."""
+_ASPECTS = ("PixelAspectRatio", "XResolution", "YResolution")
+_MOST_ASPECT = 1e6
+"""OpenEXR refuses pixels that are wider or higher by more."""
 _PACKED = {"jpeg": "halation:header", "tiff": "DocumentName"}
 """Formats that keep no text under names of our own: the one name that has to do for all of it."""
 _PACKED_BYTES = 60_000
@@ -75,19 +84,25 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
     No date is among them: the same picture gives the same bytes.
     """
     spec.attribute("DateTime", "")
+    left, has_aspect = _JPEG_TOTAL, _is_aspect(metadata)
     for name, value in _pack(metadata, format).items():
         if is_structural(name):
             continue
         if format == "png" and not isinstance(value, str):  # PNG holds text only
             value = str(value.value if isinstance(value, TypedAttribute) else value)
-        name, value = _to_utf8(name), _to_utf8(value) if isinstance(value, str) else value
-        most = _PACKED_BYTES if name == _PACKED.get(format) else _JPEG_BYTES
-        if format == "jpeg" and len(str(value).encode()) > most:  # libjpeg ends the process beyond 64 KB
+        name, value = escape_bytes(name), escape_bytes(value) if isinstance(value, str) else value
+        if name in _ASPECTS and not has_aspect:
             continue
         if format == "jpeg" and isinstance(value, TypedAttribute):  # it would come back as text
             continue
-        if format == "jpeg" and name == _PACKED["jpeg"]:
-            spec.attribute("jpeg:com_attributes", 1)
+        if format == "jpeg":  # libjpeg ends the process where a block of the header is longer than 64 KB
+            is_packed, size = name == _PACKED["jpeg"], len(escape(str(value)).encode())
+            if size > (_PACKED_BYTES if is_packed else min(_JPEG_BYTES, left)):
+                continue
+            if is_packed:
+                spec.attribute("jpeg:com_attributes", 1)
+            else:
+                left -= size
         _set_attribute(spec, name, value)
 
 
@@ -100,9 +115,13 @@ def _set_attribute(spec: oiio.ImageSpec, name: str, value: Any) -> None:
             spec.attribute(name, value)
 
 
-def _to_utf8(text: str) -> str:
-    """A text that a header can hold: bytes of names of files that are no UTF-8 are written as escapes."""
-    return text.encode("utf-8", "backslashreplace").decode()
+def _is_aspect(metadata: Mapping[str, Any]) -> bool:
+    """True if the shape of pixels, given as a ratio or by two resolutions, is one that pixels can have."""
+    numbers = [value for name in _ASPECTS if (value := metadata.get(name)) is not None]
+    if not all(isinstance(number, int | float) and 0.0 < number < math.inf for number in numbers):
+        return False
+    across, down = (metadata.get(name, 1.0) for name in _ASPECTS[1:])
+    return all(1.0 / _MOST_ASPECT <= ratio <= _MOST_ASPECT for ratio in (metadata.get(_ASPECTS[0], 1.0), across / down))
 
 
 def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:

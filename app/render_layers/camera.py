@@ -14,8 +14,10 @@ A camera that does not explain half of the picture within a pixel is refused: a 
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 from halation.nodes import CameraModel, Size
@@ -293,19 +295,23 @@ def read_header_camera(attributes: Mapping[str, object], size: Size) -> CameraMo
         if (matrix := matrices.get(name)) is not None and (camera := _from_projection(matrix)) is not None:
             return camera
     matrix, window = matrices.get("worldtocamera"), attributes.get("screenWindowWidth", 1.0)
-    if matrix is None or not isinstance(window, int | float) or window in (0.0, 1.0):
+    if matrix is None or not _is_finite(window) or window in (0.0, 1.0):
         return None  # 1 is what writers put that do not know
     pixel = attributes.get("PixelAspectRatio", 1.0)
-    aspect = size[0] / size[1] * (pixel if isinstance(pixel, int | float) and pixel > 0.0 else 1.0)
+    aspect = size[0] / size[1] * (pixel if _is_finite(pixel) and pixel > 0.0 else 1.0)
     return _from_placement(matrix, float(window), aspect)
 
 
 def _parse_matrix(value: object) -> Array | None:
     """16 numbers for row vectors, as Imath has them, as a matrix for columns."""
-    if not isinstance(value, tuple) or len(value) != 16:
+    if not isinstance(value, tuple) or len(value) != 16 or not all(map(_is_finite, value)):
         return None
-    matrix = np.array(value, np.float64).reshape(4, 4).T
-    return matrix if np.isfinite(matrix).all() else None
+    return np.array(value, np.float64).reshape(4, 4).T
+
+
+def _is_finite(value: object) -> TypeGuard[float]:
+    """True for a finite number: a damaged header may hold a text instead."""
+    return isinstance(value, int | float) and math.isfinite(value)
 
 
 def _from_projection(matrix: Array) -> CameraModel | None:

@@ -107,6 +107,7 @@ def _read_manifest(attributes: Mapping[str, object], key: str, folder: Path, san
         text = read_bytes(file, sandbox).decode() if is_beside else str(embedded or "{}")
         parsed = json.loads(text)
         names = cast("dict[str, object]", parsed if isinstance(parsed, dict) else {})
-        return {name: int(str(number), 16) for name, number in names.items()}
-    except (InputError, ValueError):
+        ids = {name: int(str(number), 16) for name, number in names.items()}
+        return {name: number for name, number in ids.items() if 0 <= number < 2**32}
+    except (InputError, ValueError, RecursionError):
         return {}

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+_ESCAPED = re.compile(r"\\u(dc[89a-f][0-9a-f])")
 
 
 @contextmanager
@@ -24,6 +27,16 @@ def name_for_library(path: str | Path) -> Iterator[str]:
         link = Path(folder, f"file{ending if is_utf8(ending) else ''}")
         link.symlink_to(os.path.abspath(name))  # noqa: PTH100 - a link that is replaced meanwhile stays a link
         yield str(link)
+
+
+def escape_bytes(text: str) -> str:
+    """A text as UTF-8 can hold it: bytes of names of files that are no UTF-8 become `\\udcff`, as in JSON."""
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+def restore_bytes(text: str) -> str:
+    """The name of a file that `escape_bytes` has changed."""
+    return _ESCAPED.sub(lambda match: chr(int(match[1], 16)), text)
 
 
 def is_utf8(name: str) -> bool:

@@ -12,6 +12,7 @@ import pytest
 from halation.media import read_layer
 from halation.media.meshes.load import load_mesh
 from halation.nodes import Kind, SceneFile
+from halation.resources.sandbox import UNRESTRICTED
 from oiio_pictures import write_picture
 
 pytestmark = pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="names of files are bytes on Linux only")
@@ -39,7 +40,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_pictures_are_read(folder):
     for ending in ("exr", "png", "tif"):
-        assert read_layer(folder / f"in{ODD}.{ending}", "", Kind.IMAGE).array.shape == (8, 8, 4)
+        assert read_layer(folder / f"in{ODD}.{ending}", "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (8, 8, 4)
 
 
 @pytest.mark.parametrize("ending", ["exr", "png", "jpg", "tif", "webp", "hdr", "dpx"])
@@ -93,7 +94,7 @@ def test_large_pictures_by_rows(cli, folder):
 def test_meshes_and_tables(folder, cli):
     mesh = folder / f"mesh{ODD}.obj"
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
-    assert len(load_mesh(SceneFile(str(mesh))).indices) == 3
+    assert len(load_mesh(SceneFile(str(mesh)), sandbox=UNRESTRICTED).indices) == 3
     table = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
     for name, content in (
         (f"lut{ODD}.cube", table.encode()),

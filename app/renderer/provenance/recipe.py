@@ -16,6 +16,7 @@ from ...compiler import Form, Precision
 from ...errors import InputError
 from ...graph import Graph
 from ...graph.frames import parse_frames
+from ...resources.library_names import restore_bytes
 from ...resources.sandbox import Sandbox
 from ..jobs.header import PREFIX
 
@@ -165,4 +166,4 @@ def _split_digest(text: str) -> tuple[str, str]:
     match = _DIGEST.fullmatch(text)
     if match is None:
         raise ValueError(f"'{text[:60]}' is no file and its hash")
-    return cast("Sequence[str]", match.groups())[0], match["digest"]
+    return restore_bytes(cast("Sequence[str]", match.groups())[0]), match["digest"]

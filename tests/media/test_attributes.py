@@ -1,0 +1,129 @@
+"""Attributes of any type under any name that means something: a damaged header is no reason to fail."""
+
+from __future__ import annotations
+
+import json
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from halation.media import read_layer, read_metadata, write_picture
+from halation.media.color_spaces import describe_color_spaces
+from halation.media.header import read_header
+from halation.nodes import Kind
+from halation.render_layers.analysis import analyze_render
+from halation.render_layers.mattes import find_mattes
+from halation.render_layers.report import format_report
+from halation.resources.sandbox import UNRESTRICTED
+from oiio_pictures import write_picture as write_by_openimageio
+
+NAMES = (
+    "chromaticities",
+    "colorInteropID",
+    "Orientation",
+    "worldToCamera",
+    "worldToNDC",
+    "worldToScreen",
+    "screenWindowWidth",
+    "screenWindowCenter",
+    "PixelAspectRatio",
+    "Software",
+    "multiView",
+    "view",
+    "BlenderMultiChannel",
+    "cryptomatte/1234567/name",
+    "cryptomatte/1234567/manifest",
+    "cryptomatte/1234567/manif_file",
+    "halation:graph",
+    "halation:renderer",
+    "halation:inputs",
+    "oiio:Gamma",
+    "oiio:ColorSpace",
+    "smpte:TimeCode",
+    "FramesPerSecond",
+    "DateTime",
+    "ImageDescription",
+    "owner",
+    "envmap",
+    "wrapmodes",
+    "dwa:compressionLevel",
+)
+NAN, INF = float("nan"), float("inf")
+VALUES = {
+    "text": "what?",
+    "empty": "",
+    "long": "x" * 70_000,
+    "nested": "[" * 20_000,
+    "int": 2**31 - 1,
+    "negative": -(2**31),
+    "float": 1e38,
+    "nan": NAN,
+    "infinite": INF,
+    "texts": ("string[3]", ("a", "b", "")),
+    "many texts": ("string[16]", ("a",) * 16),
+    "ints": ("int[8]", (0,) * 8),
+    "floats": ("float[8]", (NAN, INF, -INF, 0.0, 1e38, -1.0, 1.0, 0.5)),
+    "zeros": ("float[8]", (0.0,) * 8),
+    "matrix": ("matrix", (NAN,) * 16),
+    "big matrix": ("matrix", (1e38,) * 16),
+    "zero matrix": ("matrix", (0.0,) * 16),
+    "double": ("double", 1e308),
+    "timecode": ("timecode", (2**32 - 1, 2**32 - 1)),
+    "rational": ("rational", (1, 0)),
+    "vector": ("vector", (NAN, INF, 0.0)),
+    "box": ("box2i", (2**31 - 1, -(2**31), 0, 0)),
+}
+
+
+@pytest.mark.parametrize("value", VALUES)
+@pytest.mark.parametrize("ending", ["exr", "png", "tif", "jpg"])
+def test_any_attribute(tmp_path, value, ending):
+    if (value, ending) == ("long", "jpg"):
+        pytest.skip("libjpeg ends the process of whoever writes it, see below")
+    given = VALUES[value]
+    for number, name in enumerate(NAMES):
+        attributes = {name: (oiio.TypeDesc(given[0]), given[1]) if isinstance(given, tuple) else given}
+        array = np.full((6, 8, 4), 0.5, np.float32)
+        path = tmp_path / f"{number}.{ending}"
+        try:
+            write_by_openimageio(path, array, format="float" if ending == "exr" else "uint8", attributes=attributes)
+        except (AssertionError, TypeError):  # OpenImageIO does not write it
+            continue
+        header = read_header(path, sandbox=UNRESTRICTED)
+        json.dumps({key: repr(item) for key, item in header.attributes.items()})
+        describe_color_spaces(path, sandbox=UNRESTRICTED)
+        analysis = analyze_render(path, sandbox=UNRESTRICTED)
+        assert list(format_report(analysis)) and isinstance(find_mattes(analysis), tuple)
+        metadata = read_metadata(path, sandbox=UNRESTRICTED)
+        for target in (tmp_path / f"out.{ending}", tmp_path / "out.exr"):
+            write_picture(target, {"": array}, kinds={"": Kind.IMAGE}, metadata=metadata, sandbox=UNRESTRICTED)
+            assert target.stat().st_size
+        if name not in ("colorInteropID", "oiio:ColorSpace"):
+            assert np.isfinite(read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array).all()
+
+
+@pytest.mark.parametrize("ending", ["jpg", "png", "tif", "webp", "hdr", "dpx", "exr"])
+@pytest.mark.parametrize("size", [900, 7900, 70_000])
+def test_many_long_texts(tmp_path, ending, size):
+    """Together they are longer than a block of a JPEG's header, where libjpeg ends the process."""
+    names = ["ImageDescription", "Artist", "Copyright", "Software", "Make", "Model", "HostComputer", "Keywords"]
+    names += [f"Exif:{word}" for word in ("UserComment", "ImageUniqueID", "LensModel", "MakerNote", "BodySerialNumber")]
+    names += [f"IPTC:{word}" for word in ("Caption", "Instructions", "City", "Creator", "CopyrightNotice", "Headline")]
+    path = tmp_path / f"a.{ending}"
+    metadata = dict.fromkeys(names, "&<\u00e9" * (size // 3))
+    array = np.full((6, 8, 4), 0.5, np.float32)
+    code = (
+        "import pickle, sys; from halation.media import write_picture; write_picture(**pickle.load(sys.stdin.buffer))"
+    )
+    options = {
+        "path": path,
+        "layers": {"": array},
+        "kinds": {"": Kind.IMAGE},
+        "metadata": metadata,
+        "sandbox": UNRESTRICTED,
+    }
+    ended = subprocess.run([sys.executable, "-P", "-c", code], input=pickle.dumps(options), check=False)
+    assert ended.returncode == 0 and read_layer(path, "", Kind.IMAGE, sandbox=UNRESTRICTED).array.shape == (6, 8, 4)
