@@ -83,7 +83,7 @@ def test_code_that_takes_too_long_to_compile(tried: Renderer) -> None:
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
 def test_code_that_ends_the_process(tried: Renderer, trial_process: TrialProcess) -> None:
     tried.render(effect(0.25), REQUEST)
-    with tried.runner.steps(tried.compile(graph(SLOW), REQUEST), tried.runner.lease()) as run:
+    with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
         assert not run.ready
         os.kill(find_process(trial_process), signal.SIGSEGV)
         with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
@@ -93,7 +93,7 @@ def test_code_that_ends_the_process(tried: Renderer, trial_process: TrialProcess
 
 def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
     """So an editor draws its window meanwhile."""
-    with tried.runner.steps(tried.compile(graph(SLOW), REQUEST), tried.runner.lease()) as run:
+    with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
         waits = 0
         while not run.ready:
             began = time.monotonic()
