@@ -1,6 +1,11 @@
-"""Plan in, pixels out. The only floor that knows OpenGL; it never opens a window.
+"""The renderer: runs plans on a device and writes files. The only folder that uses OpenGL; it never opens a window.
 
-A module is loaded when what it has is asked for (PEP 562): most renderings do without half of them.
+- `engine` compiles a graph and runs its plan; `frame_renderer` adds the history of temporal nodes.
+- `execution` runs a plan on a `Device`; `opengl` implements the device.
+- `jobs` renders frames into files; `provenance` renders a picture again from its header.
+- `viewing` draws results on a screen and reads pixels back.
+
+Modules are imported when one of their names is first used (PEP 562), because most programs need only half of them.
 """
 
 from __future__ import annotations

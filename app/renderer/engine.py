@@ -1,4 +1,4 @@
-"""Graphs to arrays: the engine's one door for the command line, the editor and Python."""
+"""Renders graphs to arrays: what the command line, the editor and Python call."""
 
 from __future__ import annotations
 
@@ -24,14 +24,16 @@ if TYPE_CHECKING:
     from ..inputs.provider import Binding
 
 DEFAULT_BUDGET = 512 * 2**20
+"""Bytes of results that stay on the device: 16 pictures of 1920x1080 in RGBA floats. Chosen by judgement: enough that
+undo and sliders find earlier results, and a small part of what GPUs have today. More keeps more results."""
 
 
 class RenderRequest(Struct, frozen=True):
     """What to render of a graph.
 
-    `inputs` are bound to graph inputs by name, or what makes them for a frame; `targets` are node or graph outputs by
-    the name they come back under (default: every graph output). `size` replaces the size of canvas and pictures;
-    `scale` renders a proxy.
+    `inputs` are files, arrays or numbers by the name of a graph input, or functions from the frame to one of these;
+    `targets` are node or graph outputs by the name of their results (default: every graph output). `size` replaces the
+    size of canvas and pictures; `scale` renders a proxy.
     """
 
     inputs: Mapping[str, Binding | Callable[[int], Binding]] = field(default_factory=lambda: MappingProxyType({}))
@@ -41,18 +43,18 @@ class RenderRequest(Struct, frozen=True):
     frame: int = 1
     precision: Precision | None = None
     memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
-    """What nodes remember of the frame before: see `FrameRenderer`."""
+    """What temporal nodes stored in the frame before: see `FrameRenderer`."""
     halves: frozenset[str] = frozenset()
-    """Those that will be rounded to half floats: they may come back as that."""
+    """Outputs that the caller will round to half floats: they may come back rounded."""
 
     region: Region | None = None
-    """The part of every output that is computed, in pixels of it: a surface's `window` says what came of that."""
+    """The part of every output to compute, in its pixels. The `window` of a surface says which part was computed."""
     by_rows: frozenset[str] = frozenset()
-    """Those that are taken by rows, from the top down, where they are made by tiles: see `Run.receive_rows`."""
+    """Outputs that are handed over by rows, from the top down, if they are made in tiles: see `Run.receive_rows`."""
 
     @property
     def bound_inputs(self) -> dict[str, Binding]:
-        """What the inputs are at this frame."""
+        """The inputs at this frame."""
         return {name: item(self.frame) if callable(item) else item for name, item in self.inputs.items()}
 
 

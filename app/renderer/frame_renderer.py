@@ -1,4 +1,13 @@
-"""Frames of one graph: each with the history that it needs, whatever was rendered before."""
+"""Renders frames of one graph in any order, each with the history that its temporal nodes need.
+
+Temporal nodes, such as motion trails, read what they stored in the frame before. A frame in the middle of a sequence
+therefore depends on all frames before it. A `FrameRenderer` finds out how far back it must go: what a frame stored is
+known by key, and if the texture of that key is still on the device, the history up to there is not rendered again. So
+frames in order cost one frame each, and a jump costs only the frames in between.
+
+The plan of a frame needs only the keys of what the frame before stored, not its pixels. So plans are made frame by
+frame without rendering; `plan_next` makes one at a time, for callers that must not wait.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +23,13 @@ from .execution.run import PassTimings, Run, find_shared_surfaces
 from .execution.texture_pool import TextureLease
 
 MAX_PLANS = 16
+"""Plans that are kept: those of the last frames, for playing back and forth. Chosen by judgement: a plan of a large
+graph takes about a megabyte, and one that was dropped is compiled again in milliseconds."""
 
 MAX_CARRIED_BYTES = 2**29
-"""What may be kept of one frame for the next, beyond what nodes remember."""
+"""Bytes of results that may stay on the device from one frame to the next, beyond what temporal nodes store. Chosen by
+judgement, as large as `DEFAULT_BUDGET`: nodes that read neighboring frames share most of their pictures with the next
+frame. With less, more of them are computed again."""
 
 Memories = Mapping[Port, Memory]
 
@@ -24,9 +37,8 @@ Memories = Mapping[Port, Memory]
 class FrameRenderer:
     """Renders frames of a graph in any order; the pixels of a frame are always the same.
 
-    What nodes remember begins at the first frame of the graph's range, or `preroll` frames before the one that is
-    rendered where the graph says so; a frame before the range remembers nothing. What is remembered is known by key:
-    it is computed again only where it is no longer on the device. The frame of `wanted` does not matter.
+    History begins at the first frame of the graph's range, or `preroll` frames before the rendered one if the graph
+    says so; a frame before the range has no history. The frame of `request` does not matter.
     """
 
     def __init__(self, renderer: Renderer, graph: Graph, request: RenderRequest) -> None:
@@ -34,7 +46,7 @@ class FrameRenderer:
         self.frames = renderer.find_frames(graph, request)
         """The first and last frame of the range."""
         self._memories: dict[tuple[int, int], Memories] = {}
-        """By the frame where history begins, and the frame that remembers."""
+        """What each frame stores, by the frame where history begins and the frame itself."""
         self._plans: dict[tuple[int, int], Plan] = {}
         self._carried: TextureLease = renderer.runner.create_lease()
 
@@ -46,13 +58,13 @@ class FrameRenderer:
         return first if preroll is None else max(first, frame - preroll)
 
     def plan_frame(self, frame: int) -> Plan:
-        """How a frame is made, of what was remembered before it. Raises the errors of `app.errors`."""
+        """The plan of a frame, which reads what the frame before stored. Raises the errors of `app.errors`."""
         return self._plan_from(self.find_history_start(frame), frame)
 
     def find_lead_frames(self, frame: int) -> range:
-        """The frames that must be gone through, for what they remember, before a frame can be made.
+        """The frames that must be rendered before a frame, for what they store.
 
-        None where that is on the device, or the frame itself is.
+        None if what the frame needs is on the device, or the frame itself is.
         """
         begin, textures = self.find_history_start(frame), self.renderer.runner.textures
         if self._is_on_device(self._plan_from(begin, frame)):
@@ -63,9 +75,9 @@ class FrameRenderer:
         return range(start, frame)
 
     def plan_next(self, frame: int) -> tuple[int, int] | None:
-        """Compile one more of the plans that lead to a frame: how many of how many are known then; None when all were.
+        """Compile one more of the plans that lead to a frame: how many of how many exist then; None if all do.
 
-        `plan` compiles all at once, which takes long far from where the history begins.
+        `plan_frame` compiles all of them at once, which takes long far from where the history begins.
         """
         begin, at = self.find_history_start(frame), frame - 1
         while at >= begin and (begin, at) not in self._memories:
@@ -81,9 +93,10 @@ class FrameRenderer:
     def start_runs(
         self, frame: int, outputs_lease: TextureLease, timings: PassTimings | None = None, following: int | None = None
     ) -> Iterator[Run]:
-        """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`.
+        """The runs that make a frame, one after the other; the last one is the frame itself.
 
-        What the frame `following` would make again stays on the device until that has been made.
+        At the end `outputs_lease` holds its outputs. Results that the frame `following` reads too stay on the device
+        until that frame is rendered.
         """
         runner, begin = self.renderer.runner, self.find_history_start(frame)
         for at in self.find_lead_frames(frame):
@@ -93,7 +106,7 @@ class FrameRenderer:
             )
             self._carry(lease)
         plan, lease = self.plan_frame(frame), runner.create_lease()
-        # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
+        # If the outputs are on the device, what the frame stored may not be: a later frame renders it again if needed.
         remembered = () if self._is_on_device(plan) else plan.remembered
         carried = () if following is None else _find_carried_surfaces(plan, self.plan_frame(following))
         yield runner.start_run(plan, outputs_lease, (*plan.outputs.values(), *remembered, *carried), timings=timings)
@@ -115,7 +128,7 @@ class FrameRenderer:
             lease.close()
 
     def close(self) -> None:
-        """Let go of what was remembered."""
+        """Release the history."""
         self._carried.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -126,7 +139,7 @@ class FrameRenderer:
         return all(plan.surfaces[number].key in textures for number in plan.outputs.values())
 
     def _carry(self, lease: TextureLease) -> None:
-        """Keep what a frame remembered, and has in common with the next one, until that has been made."""
+        """Keep what a frame stored, and what it has in common with the next one, until that one is rendered."""
         before, self._carried = self._carried, lease
         before.close()
 
@@ -142,7 +155,7 @@ class FrameRenderer:
         return self._plans[key]
 
     def _find_memories(self, begin: int, frame: int) -> Memories:
-        """What the frame before remembers."""
+        """What the frame before stores."""
         if frame <= begin:
             return {}
         start = frame - 1
@@ -157,10 +170,10 @@ class FrameRenderer:
 
 
 def _find_carried_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
-    """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
+    """The surfaces of a plan that stay on the device for the next one, as far as there is room."""
     carried: list[int] = []
     nbytes, most, memory = 0, MAX_CARRIED_BYTES, plan.target.memory
-    if memory:  # of the frame before there may be as much
+    if memory:  # the frame before may have left as much, so each of both gets half
         most = min(most, (memory - max(plan.held_bytes, following.held_bytes)) // 2)
     for number in find_shared_surfaces(plan, following):
         nbytes += plan.surfaces[number].nbytes

@@ -84,7 +84,7 @@ def test_code_that_takes_too_long_to_compile(tried: Renderer) -> None:
 def test_code_that_ends_the_process(tried: Renderer, trial_process: TrialProcess) -> None:
     tried.render(effect(0.25), REQUEST)
     with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
-        assert not run.ready
+        assert not run.is_ready
         os.kill(find_process(trial_process), signal.SIGSEGV)
         with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
             next(run)
@@ -95,7 +95,7 @@ def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
     """So an editor draws its window meanwhile."""
     with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
         waits = 0
-        while not run.ready:
+        while not run.is_ready:
             began = time.monotonic()
             time.sleep(0.01)
             assert time.monotonic() - began < 0.2

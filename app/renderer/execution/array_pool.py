@@ -1,4 +1,4 @@
-"""Arrays that are used again: touching fresh memory for the first time takes longer than filling it."""
+"""Reuses arrays, because the operating system takes longer to supply fresh memory than a download takes to fill it."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ import numpy as np
 from .decoding import Array
 
 MAX_SPARE_ARRAYS = 3
-"""Arrays that wait to be used again: one is filled while two are written."""
+"""Unused arrays that are kept: the write queue holds two frames while a third one is downloaded. More would never be
+used for a graph of one output, and fewer would make every frame allocate memory."""
 
 
 class ArrayPool:
-    """Lends arrays, and lends them again once they were given back. Any thread may give."""
+    """Lends arrays, and lends them again after they were given back. Any thread may give them back."""
 
     def __init__(self) -> None:
         self._spare: deque[Array] = deque(maxlen=MAX_SPARE_ARRAYS)
 
     def take(self, shape: tuple[int, ...], dtype: type[np.floating]) -> Array:
-        """An array of any numbers."""
+        """An array of this shape with undefined numbers."""
         for _ in range(len(self._spare)):
             array = self._spare.popleft()
             if array.shape == shape and array.dtype == dtype:
@@ -29,5 +30,5 @@ class ArrayPool:
         return np.empty(shape, dtype)
 
     def give(self, arrays: Iterable[Array]) -> None:
-        """Arrays that were taken, or parts of them, which nobody reads any more."""
+        """Give back arrays, or views of them, that nobody reads any more."""
         self._spare.extend(array if array.base is None else array.base for array in arrays)

@@ -1,4 +1,4 @@
-"""Pictures are decoded on other threads while shaders compile and earlier passes run."""
+"""Decodes pictures on other threads, while shaders compile and earlier passes run."""
 
 from __future__ import annotations
 
@@ -17,13 +17,15 @@ PictureLoader = Callable[[Picture], Array]
 """Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
 
 MAX_LOOKAHEAD = 4
-"""Pictures decoded before their turn: enough to keep the threads busy, few enough to fit into memory."""
+"""Pictures decoded before their turn: two for each decoding thread, so that a thread always has the next one. More
+would only take memory, because pictures are uploaded in order."""
 
 MAX_LOOKAHEAD_BYTES = 2**28
-"""What they may take together; one picture may be larger."""
+"""Bytes of pictures decoded before their turn; one picture may be larger. Two pictures of 3840x2160 in RGBA floats have
+253 MiB. Chosen by judgement: with more, a frame of many large layers would fill the memory of a small machine."""
 
 DecodeRequest = tuple[Upload, Surface]
-"""What is to be decoded, and where it goes."""
+"""A picture to be decoded, and the surface that it is uploaded to."""
 
 
 class DecodedPicture(Struct, frozen=True):
@@ -34,14 +36,14 @@ class DecodedPicture(Struct, frozen=True):
 
 
 def decode_picture(load: PictureLoader, picture: Picture) -> DecodedPicture:
-    """Load a picture and say how long that took."""
+    """Load a picture and measure how long that took."""
     started = time.perf_counter()
     pixels = load(picture)
     return DecodedPicture(pixels, time.perf_counter() - started)
 
 
 def limit_lookahead(requests: Iterable[DecodeRequest]) -> Iterator[DecodeRequest]:
-    """As many of the first ones as may be decoded before their turn."""
+    """The first requests, as many as may be decoded before their turn."""
     nbytes = 0
     for number, (upload, surface) in enumerate(requests):
         nbytes += surface.nbytes
@@ -51,9 +53,9 @@ def limit_lookahead(requests: Iterable[DecodeRequest]) -> Iterator[DecodeRequest
 
 
 class DecodeQueue:
-    """Decodes pictures in the order in which they are wanted, a few ahead of what is taken.
+    """Decodes pictures in the order of the requests, a few ahead of what is taken.
 
-    What was begun and is not wanted any more stays in `begun` for the next one, which may well want it.
+    Pictures that were begun and not taken go to `leftovers` by key, where the next queue finds them.
     """
 
     def __init__(
@@ -72,7 +74,7 @@ class DecodeQueue:
         return surface in self._requests
 
     def find_upload(self, surface: int) -> Upload:
-        """What is decoded for a surface."""
+        """The upload of a surface."""
         return self._requests[surface][0]
 
     def is_ready(self, surface: int) -> bool:
@@ -88,7 +90,7 @@ class DecodeQueue:
         return decoded
 
     def skip(self, surface: int) -> None:
-        """These pixels have come from elsewhere."""
+        """Do not decode a picture: its pixels are on the device already."""
         del self._requests[surface]
         future = self._futures.pop(surface, None)
         if future is not None:
@@ -96,7 +98,7 @@ class DecodeQueue:
         self._start_next()
 
     def cancel(self) -> None:
-        """Nothing more is wanted."""
+        """Stop decoding; what was begun is left for the next queue."""
         unfinished = {
             self._requests[surface][1].key: future
             for surface, future in self._futures.items()

@@ -1,4 +1,4 @@
-"""Executes single passes, uploads and downloads. It knows nothing of what comes before and after."""
+"""Executes single passes, uploads and downloads, without knowing the plan's order."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ of 1920x1080 is still one piece."""
 
 
 class RunnerCounters(Struct):
-    """What a runner has done since it was made."""
+    """How many passes and uploads a runner has executed, and how many passes it skipped."""
 
     passes: int = 0
     uploads: int = 0
@@ -45,7 +45,7 @@ class RunnerCounters(Struct):
 
 
 class Executor:
-    """Programs, textures and buffers on one device, and what is done with them."""
+    """Executes passes on one device and owns its programs, textures and buffers."""
 
     def __init__(self, device: Device, budget: int, trials: Trials | None = None) -> None:
         self.device, self._trials = device, trials
@@ -217,7 +217,7 @@ class Executor:
         return texture
 
     def download(self, plan: Plan, number: int, arrays: ArrayPool) -> Array:
-        """The pixels of a surface as [height, width, channels], in one of the `arrays`."""
+        """The pixels of a surface as [height, width, channels], in memory that `arrays` lends."""
         surface = plan.surfaces[number]
         width, height = surface.size
         if self.device.target.software:  # llvmpipe may read a texture before the draws into it are done

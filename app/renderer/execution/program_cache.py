@@ -15,7 +15,8 @@ from .resource_cache import ResourceCache
 _FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")
 
 MAX_PROGRAMS = 512
-"""Programs that are kept: fifteen times those of the largest preset (34), and an end to hours of editing."""
+"""Programs that are kept: fifteen times as many as the largest preset has (34), so that only hours of editing reach
+it."""
 
 
 class ProgramCache:

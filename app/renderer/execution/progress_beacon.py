@@ -1,4 +1,4 @@
-"""Tells another process which code of a user runs on the device right now."""
+"""Tells a watching process which code of the user runs on the device right now."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ BEACON_FILE = "HALATION_HEARTBEAT"
 
 
 class ProgressBeacon:
-    """Writes to a file when code of a user begins to run, and when it has ended; nothing if no process watches.
+    """Writes to a file when code of the user begins to run, and when it has ended; nothing if no process watches.
 
-    A device that hangs cannot be asked, and takes its process with it: only another process can notice.
+    A device that hangs blocks its own process, so only another process can notice it.
     """
 
     def __init__(self) -> None:
@@ -29,7 +29,7 @@ class ProgressBeacon:
 
     @contextmanager
     def announce(self, nodes: Sequence[str]) -> Iterator[None]:
-        """Say that these nodes run, for as long as the block takes."""
+        """Say that these nodes run until the end of the block."""
         self._count += 1
         self._write(f"{self._count} {', '.join(nodes)}")
         try:

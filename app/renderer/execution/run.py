@@ -1,4 +1,4 @@
-"""Plans under way, pass by pass."""
+"""Runs of plans, one pass at a time."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ PassTimings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""
 
 RowsReceiver = Callable[[str, int, Array], None]
-"""Takes rows of an output: its name, the first row, and [rows, width, channels], which is used again afterwards."""
+"""Receives rows of an output: its name, the first row, and [rows, width, channels], an array that is reused after."""
 
 QueueStarter = Callable[[Iterable[DecodeRequest]], DecodeQueue]
 
 
 class Run(ABC):
-    """A plan under way: one pass per `next`. Several may be, step by step. One that is dropped must be closed."""
+    """A plan that is being executed, one pass per `next`. Several runs may take turns. A dropped run must be closed."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
@@ -30,7 +30,7 @@ class Run(ABC):
         """Passes executed."""
         self.has_ended = False
         self.receive_rows: RowsReceiver | None = None
-        """Takes the outputs that the plan makes by rows; without it they are put together as all others are."""
+        """Receives the outputs that the plan makes by rows; without it they become whole arrays like all others."""
 
     @property
     @abstractmethod
@@ -62,14 +62,14 @@ class Run(ABC):
 
     @abstractmethod
     def close(self) -> None:
-        """Hand back what this run still holds."""
+        """Release what this run still holds."""
         ...
 
 
 class WholeRun(Run):
-    """Executes a plan that fits; when it ends, `kept` leases the textures of the surfaces `wanted`.
+    """Executes a plan that fits on the device; at the end `outputs_lease` holds the `requested` surfaces.
 
-    What others have computed already is not computed again.
+    Surfaces that are on the device under their keys are not computed again.
     """
 
     def __init__(
@@ -177,7 +177,7 @@ class WholeRun(Run):
 
 
 def find_needed_passes(plan: Plan, requested: Iterable[int], available: Container[str]) -> list[int]:
-    """The passes that must run for the surfaces `wanted`, since these keys are not `given`; in order."""
+    """The passes that must run, in order, for the `requested` surfaces, if the keys in `available` need not be made."""
     makers = {number: index for index, render_pass in enumerate(plan.passes) for number in render_pass.targets}
     passes: set[int] = set()
     todo = list(requested)
@@ -203,7 +203,7 @@ def _count_readers(plan: Plan, needed: list[int], requested: tuple[int, ...]) ->
 def find_needed_uploads(
     plan: Plan, needed: list[int], requested: tuple[int, ...], available: Container[str]
 ) -> list[DecodeRequest]:
-    """What must be decoded, in the order in which passes want it, since these keys are not `given`."""
+    """The pictures that must be decoded, in the order in which passes read them, except keys in `available`."""
     uploads = {upload.surface: (upload, plan.surfaces[upload.surface]) for upload in plan.uploads}
     return [
         uploads[number]
@@ -213,7 +213,7 @@ def find_needed_uploads(
 
 
 def find_shared_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
-    """The surfaces of a plan that the next one would read, so that it need not make them again, or has as outputs."""
+    """The surfaces of a plan that the next plan reads or has as outputs, so that it need not compute them again."""
     numbers_by_key = {surface.key: number for number, surface in enumerate(plan.surfaces)}
     requested = tuple(dict.fromkeys((*following.outputs.values(), *following.remembered)))
     needed = find_needed_passes(following, requested, numbers_by_key)
@@ -222,5 +222,5 @@ def find_shared_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:
 
 
 def _collect_reads(plan: Plan, needed: list[int], requested: tuple[int, ...]) -> dict[int, None]:
-    """The surfaces that passes read, and those that are `wanted`."""
+    """The surfaces that passes read, then the `requested` ones, each once."""
     return dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *requested))

@@ -37,7 +37,7 @@ class Runner:
         self.counters = self._executor.counters
         self._leftovers: dict[str, Future[DecodedPicture]] = {}
         self._tiled_outputs: WeakValueDictionary[tuple[str, ...], TiledOutputs] = WeakValueDictionary()
-        """What was made tile by tile, by the keys of the outputs, as long as somebody leases it."""
+        """Outputs of tiled plans by their keys, as long as somebody leases them."""
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
@@ -61,9 +61,9 @@ class Runner:
     ) -> Run:
         """Run one pass per step, so that a caller can stop in between.
 
-        At the end `kept` leases the surfaces `wanted`, by default the outputs. With `timings`, every pass is waited for
-        and what it took is added to them. A plan that does not fit is run tile by tile: `kept` holds its outputs
-        in memory, and it is not timed. Raises DeviceError for that.
+        At the end `outputs_lease` holds the `requested` surfaces, by default the outputs. With `timings`, every pass is
+        waited for, and its seconds are added to them. A plan that does not fit is run tile by tile: `outputs_lease`
+        holds its outputs in memory. Raises DeviceError if such a plan is to be timed.
         """
         if self._executor.closed:
             raise UsageError("this renderer is closed: make another one")
@@ -76,7 +76,7 @@ class Runner:
             return WholeRun(self._executor, plan, outputs_lease, self._create_queue, surfaces, timings)
 
     def measure(self, plan: Plan) -> PassTimings:
-        """Run to the end, waiting for every pass, and say what each took. The pixels are not kept."""
+        """Run to the end, waiting for every pass; the seconds of each. The pixels are not kept."""
         lease, timings = self.create_lease(), PassTimings()
         try:
             with self.start_run(plan, lease, timings=timings) as run:
@@ -91,7 +91,7 @@ class Runner:
         self._executor.compile(render_pass)
 
     def start_decoding(self, plan: Plan, coming: Container[str] = ()) -> None:
-        """Begin to decode what a plan will want soon; `given` are the keys of what will be there by then."""
+        """Begin to decode pictures for the next plan; `coming` are keys that will be on the device by then."""
         if plan.tiling is not None:
             return
         available = {surface.key for surface in plan.surfaces if surface.key in self.textures or surface.key in coming}
@@ -104,7 +104,7 @@ class Runner:
     def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
         """The outputs of a plan that has run, while they are leased, as [height, width, channels].
 
-        They are float16 where the plan keeps halves. `arrays` lend what they are written to, to be given back.
+        They are float16 where the plan keeps halves. `arrays` lends the memory, which the caller gives back.
         """
         if plan.tiling is not None:
             return dict(self._tiled_outputs[_list_output_keys(plan)].pixels)
@@ -113,11 +113,11 @@ class Runner:
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
     def create_lease(self) -> TextureLease:
-        """Keeps pixels on the device, none as yet."""
+        """A new lease that holds no pixels yet."""
         return TextureLease(self.textures)
 
     def release_idle(self) -> None:
-        """Give back to the driver what nobody leases."""
+        """Release all textures without a lease."""
         with self.device.make_current():
             self.textures.release_idle()
 
@@ -134,7 +134,7 @@ class Runner:
             self._executor.close()
 
     def _keep_outputs(self, plan: Plan, outputs_lease: TextureLease, pixels: dict[str, Array]) -> None:
-        """Have a lease hold what was made tile by tile."""
+        """Let a lease hold the outputs of a tiled plan."""
         outputs = self._tiled_outputs[_list_output_keys(plan)] = TiledOutputs(pixels)
         outputs_lease.hold(outputs)
 

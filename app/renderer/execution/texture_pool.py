@@ -22,9 +22,9 @@ TextureKind = tuple[int, int, int, Depth]
 
 
 _MIN_RANKED_BYTES = 2**16
-"""The bytes that a texture counts for at least when results are ranked. By its own 16 bytes a single pixel would
-outrank every picture, and thousands of them would stay for ever. Chosen, not measured: it stands for what the driver
-keeps beside the pixels."""
+"""The bytes that a texture counts for at least when results are ranked. With its own 16 bytes a single pixel would rank
+above every picture, and thousands of them would stay for ever. Chosen by judgement, not measured: it stands for the
+memory that the driver takes beside the pixels. Larger values evict small pictures sooner."""
 
 
 class PooledTexture(Struct, eq=False):

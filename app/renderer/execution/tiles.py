@@ -1,4 +1,4 @@
-"""A plan that does not fit, run tile by tile."""
+"""Runs a plan that does not fit on the device, tile by tile."""
 
 from __future__ import annotations
 
@@ -34,18 +34,19 @@ class PlanRunner(Protocol):
         ...
 
     def download(self, plan: Plan, arrays: ArrayPool | None = None) -> dict[str, Array]:
-        """The outputs of a plan that has run, in `arrays` that are lent."""
+        """The outputs of a plan that has run, in memory that `arrays` lends."""
         ...
 
     def create_lease(self) -> TextureLease:
-        """Keeps pixels on the device."""
+        """A new lease that holds no pixels yet."""
         ...
 
 
 class TiledRun(Run):
-    """Executes a plan tile by tile, one pass per `next`. When it ends, `finished` is given the outputs by name.
+    """Executes a plan tile by tile, one pass per `next`. At the end `keep_outputs` gets the outputs by name.
 
-    What is read anywhere is put together in memory before; so are the outputs, unless their rows are taken.
+    Pictures that passes read anywhere are assembled in memory first. So are the outputs, unless `receive_rows` takes
+    their rows.
     """
 
     def __init__(
@@ -105,7 +106,7 @@ class TiledRun(Run):
     def _run_stage(
         self, stage: TileStage, stored: Mapping[int, StoredResult]
     ) -> Generator[Pass, None, dict[str, Array]]:
-        """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
+        """Make the pictures of a stage: [height, width, channels] by name, except those handed over by rows."""
         size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
         row_outputs = self._tiling.by_rows.intersection(stage.outputs) if self.receive_rows else frozenset[str]()
         pictures: dict[str, Array] = {}
@@ -151,12 +152,12 @@ class TiledRun(Run):
         return pictures
 
     def _load_pictures(self, plan: Plan) -> Plan:
-        """The same plan with the pixels that it reads."""
+        """The same plan with the pixels of its uploads."""
         uploads = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
         return replace(plan, uploads=uploads)
 
     def _store_outputs(self, stage: TileStage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
-        """What a stage made, in place of the operations that would make it again."""
+        """The results of a stage as operations that replace those which would compute them again."""
         program, keys = self._tiling.program, self._tiling.keys
         stored: dict[int, StoredResult] = {}
         for index in dict.fromkeys(ref.op for ref in stage.outputs.values()):
@@ -174,7 +175,7 @@ class TiledRun(Run):
         return stored
 
     def _drop_unread(self, stored: dict[int, StoredResult], later: Iterable[TileStage]) -> None:
-        """Let go of what no later stage reads."""
+        """Forget results and pictures that no later stage reads."""
         read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
         read |= {ref.op for ref in self._tiling.program.outputs.values()}
         for index in stored.keys() - read:
@@ -214,13 +215,13 @@ class _PictureCache:
         return replace(upload, picture=replace(picture, in_memory=True, pixels=pixels))
 
     def keep(self, pictures: Set[Picture]) -> None:
-        """Let go of all others."""
+        """Forget all other pictures."""
         for picture in self._decoded.keys() - pictures:
             del self._decoded[picture]
 
 
 def _check_memory(program: LoweredProgram, row_outputs: Set[str]) -> None:
-    """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
+    """Raise DeviceError if this machine cannot hold the outputs: all but `row_outputs` are assembled in memory."""
     shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in row_outputs]
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
     if nbytes > (available := machine_memory()):
