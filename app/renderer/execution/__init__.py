@@ -18,5 +18,5 @@ surface loses its lease, and its texture can be used for the next surface of the
 (`decoding`). Pictures that a dropped run has begun are kept for the next one, because the editor drops a run at each
 movement of a slider and the next run needs the same files.
 
-**Errors end a run.** Textures that were not finished are discarded, all leases are closed, and the error names the node.
+**Errors end a run.** Unfinished textures are discarded, all leases are closed, and the error names the node.
 """

@@ -21,7 +21,7 @@ class PassCosts:
         self._per_pixel: dict[str, float] = {}
 
     def record_time(self, plan: Plan, render_pass: Pass, seconds: float) -> None:
-        """Record how long a pass took. The first time is ignored: drivers finish compiling when a program first runs."""
+        """Record how long a pass took. The first time is ignored: drivers finish compiling a program when it runs."""
         earlier = self._per_pixel.pop(render_pass.shader.source, None)
         self._per_pixel[render_pass.shader.source] = (
             0.0 if earlier is None else seconds / _count_pixels(plan, render_pass)
