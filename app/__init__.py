@@ -36,11 +36,12 @@ __version__ = VERSION
 
 
 def load(path: str | Path) -> Graph:
-    """The graph in a JSON file. Raises DocumentError with the JSON path of a fault."""
+    """The graph in a JSON file, or a preset by its name. Raises DocumentError with the JSON path of a fault."""
     from . import document
+    from .custom_nodes.plugins import find_graph_or_preset
     from .resources.sandbox import read_process_sandbox
 
-    return document.load(path, sandbox=read_process_sandbox())
+    return document.load(find_graph_or_preset(path), sandbox=read_process_sandbox())
 
 
 def save(graph: Graph, path: str | Path) -> None:

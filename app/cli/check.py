@@ -11,7 +11,7 @@ import typer
 
 from ..resources.sandbox import Sandbox
 from ..version import VERSION
-from .options import AsJson, read_standard_input
+from .options import AsJson, expand_preset, read_standard_input
 from .outcome import print_json, print_note
 from .plugins import list_refused_plugins, print_refused_plugins
 
@@ -27,7 +27,10 @@ def check(
     graphs: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Graph files (JSON), folders with graphs in them or below, or patterns such as '**/*.json'."
+            parser=expand_preset,
+            metavar="[GRAPHS...]",
+            help="Graph files (JSON), names of presets, folders with graphs in them or below, or patterns such as "
+            "'**/*.json'.",
         ),
     ] = None,
     off: Annotated[

@@ -9,12 +9,17 @@ import typer
 
 from ..resources.sandbox import read_process_sandbox
 from . import parsing
-from .options import Inputs, resolve_inputs
+from .options import Inputs, locate_graph, resolve_inputs
 
 
 def edit(
     graph: Annotated[
-        Path | None, typer.Argument(help="A graph file (JSON); without one the start screen opens.")
+        Path | None,
+        typer.Argument(
+            parser=locate_graph,
+            metavar="[GRAPH]",
+            help="A graph file (JSON), or the name of a preset; without one the start screen opens.",
+        ),
     ] = None,
     inputs: Inputs = None,
 ) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import os
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -74,7 +75,48 @@ Root = Annotated[
     Path | None,
     typer.Option("--root", metavar="FOLDER", help="Read and write only files in this folder and below."),
 ]
-GraphFile = Annotated[Path, typer.Argument(help="A graph file (JSON), or - for standard input.")]
+
+
+def locate_graph(text: str) -> Path:
+    """The graph file that the user named by its path, or a preset by its name; a file wins.
+
+    Raises DocumentError with a suggestion for a name that is neither.
+    """
+    path = expand_preset(text)
+    if text != "-" and not os.path.lexists(path) and (hint := _preset_hint(path)):
+        from ..errors import DocumentError
+
+        raise DocumentError(text, "", f"there is no such file{hint}", rule="unreadable-graph")
+    return path
+
+
+def expand_preset(text: str) -> Path:
+    """The path that the user named, or the file of a preset if there is no such path and a preset has this name."""
+    from ..custom_nodes.plugins import find_graph_or_preset
+
+    return find_graph_or_preset(text)
+
+
+def _preset_hint(path: Path) -> str:
+    """How to name the preset that the user may mean by a path where nothing is, or ""."""
+    from ..custom_nodes.plugins import find_preset, name_presets
+    from ..graph import did_you_mean
+
+    if path.suffix.lower() == ".json":
+        return f"; for the preset write {path.stem}" if find_preset(path.stem) else ""
+    is_name = path.name == str(path) and path.name.replace(".", "_").isidentifier()
+    hint = did_you_mean(path.name, name_presets()) or "; halation demo --list prints them"
+    return f", and no preset has this name{hint}" if is_name else ""
+
+
+GraphFile = Annotated[
+    Path,
+    typer.Argument(
+        parser=locate_graph,
+        metavar="GRAPH",
+        help="A graph file (JSON), the name of a preset, or - for standard input.",
+    ),
+]
 
 
 def add_root(command: Callable[..., int]) -> Callable[..., int]:

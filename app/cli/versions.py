@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..resources.sandbox import Sandbox
-from .options import read_standard_input
+from .options import locate_graph, read_standard_input
 
 if TYPE_CHECKING:
     from ..document.diff_merge import DifferenceLine
@@ -19,7 +19,7 @@ _COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}
 
 
 def read_version(source: str, sandbox: Sandbox) -> tuple[str, str]:
-    """The text of a file, of `REV:path` in git or of standard input (`-`), and the folder of its relative paths.
+    """The text of a file or preset, of `REV:path` in git or of standard input (`-`), and where relative paths start.
 
     Raises DocumentError, UsageError.
     """
@@ -31,6 +31,7 @@ def read_version(source: str, sandbox: Sandbox) -> tuple[str, str]:
     path = Path(source)
     if ":" in source and not path.drive and not os.path.lexists(path):
         return read_revision(source)
+    path = locate_graph(source)
     return read_text(path, sandbox=sandbox), str(path.parent)
 
 

@@ -1,7 +1,8 @@
-"""What plug-ins bring besides nodes and shaders."""
+"""Presets by name, those of plug-ins included."""
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from halation import presets
@@ -10,5 +11,28 @@ from halation.nodes import plugins
 
 def preset_paths() -> tuple[Path, ...]:
     """Every preset: those of Halation, then those that plug-ins have in their folder `presets`."""
-    folders = (plugin.folder / "presets" for plugin in plugins() if plugin.folder and not plugin.fault)
-    return (*presets.paths(), *(path for folder in folders for path in sorted(folder.glob("*.json"))))
+    return tuple(name_presets().values())
+
+
+def name_presets() -> dict[str, Path]:
+    """Every preset by its name: `soft_bloom`, or `acme_glow.dream` for one of a plug-in."""
+    loaded = {plugin.namespace: plugin.folder / "presets" for plugin in plugins() if plugin.folder and not plugin.fault}
+    names = {path.stem: path for path in presets.paths()}
+    for namespace, folder in loaded.items():
+        names |= {f"{namespace}.{path.stem}": path for path in sorted(folder.glob("*.json"))}
+    return names
+
+
+def find_preset(name: str) -> Path | None:
+    """The file of a preset, or None. Plug-ins are imported only for names that have a namespace."""
+    if "." in name:
+        return name_presets().get(name)
+    return next((path for path in presets.paths() if path.stem == name), None)
+
+
+def find_graph_or_preset(name: str | Path) -> Path:
+    """The path that the user named, or the file of a preset if there is no such path and a preset has this name."""
+    path = Path(name)
+    if path.name == str(name) and not os.path.lexists(path):
+        return find_preset(path.name) or path
+    return path
