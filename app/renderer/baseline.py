@@ -1,4 +1,4 @@
-"""A measurement against an older one: what became slower, and by how much."""
+"""Compares a benchmark with an older one: what became slower, and how much."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ from ..resources.sandbox import Sandbox
 from .bench import Benchmark, identify_passes
 
 MIN_JUDGED_SHARE = 0.02
-"""The part of the whole that a pass must take to be judged: what takes less is lost in the noise."""
+"""The share of the total time that a pass must have to be judged. Chosen by judgement: on a busy machine totals vary by
+some percent, so a pass that takes less cannot change the result."""
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """How many times as long something took as before: by its median, and by its fastest time.
+    """How many times as long something takes as before: by its median, and by its fastest time.
 
-    `nodes` are those of a pass; none for the whole. A moment of noise makes one of both large, rarely both: so what is
-    judged is the smaller one.
+    `nodes` are those of a pass; none for the total. Noise makes one of both ratios large, rarely both, so the smaller
+    one is judged.
     """
 
     nodes: tuple[str, ...]
@@ -34,13 +35,13 @@ class Ratio:
 
     @property
     def smaller(self) -> float:
-        """The smaller of both."""
+        """The smaller one of both ratios."""
         return min(self.median, self.fastest)
 
 
 @dataclass(frozen=True)
 class BaselineComparison:
-    """A baseline: the whole first, then passes that both have and that matter; `gone` and `new` are passes of one."""
+    """The ratios to a baseline: the total first, then passes that both have. Others are counted as missing or new."""
 
     ratios: tuple[Ratio, ...]
     missing_passes: int
@@ -48,12 +49,12 @@ class BaselineComparison:
     device: str
 
     def find_slower(self, limit: float) -> tuple[Ratio, ...]:
-        """What took more than so many times as long, the worst first."""
+        """The ratios above a limit, the largest first."""
         return tuple(sorted((ratio for ratio in self.ratios if ratio.smaller > limit), key=lambda one: -one.smaller))
 
 
 def compare_with_baseline(bench: Benchmark, path: Path, sandbox: Sandbox) -> BaselineComparison:
-    """Compare with what `halation bench --json` printed before. Raises UsageError for a file that is none of these."""
+    """Compare with an earlier output of `halation bench --json`. Raises UsageError for any other file."""
     baseline = _read_baseline(path, sandbox)
     size = tuple(baseline["size"])
     if size != bench.size:

@@ -1,8 +1,8 @@
-"""How long a graph takes on this device, pass by pass.
+"""Measures how long a graph takes on this device, pass by pass.
 
-Every pass is waited for: on a GPU a timer query says what it took there, on a software rasterizer, whose queries leave
-most of the work out, the clock does. All passes are gone through in turn and then all again, so that a moment in which
-the machine is busy with something else falls on all of them alike.
+Every pass is waited for. On a GPU a timer query measures it; on a software rasterizer, whose queries leave out most of
+the work, the clock does. All passes run in turn and then all again, so that a moment in which the machine is busy with
+something else affects all of them alike.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from .execution.texture_pool import TextureLease
 from .frame_renderer import FrameRenderer
 
 PassName = tuple[tuple[str, ...], tuple[str, ...], int]
-"""What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""
+"""Identifies a pass in all frames and runs: its nodes, its functions, and how many such passes come before it."""
 
 
 @dataclass(frozen=True)
 class PassTiming:
-    """What a pass took, in seconds, every time; and the bytes of the textures that it reads and writes."""
+    """The seconds of a pass in every run, and the bytes of the textures that it reads and writes."""
 
     nodes: tuple[str, ...]
     functions: tuple[str, ...]
@@ -35,21 +35,21 @@ class PassTiming:
 
     @property
     def median(self) -> float:
-        """Half of the times were shorter."""
+        """The median time."""
         return median(self.seconds)
 
     @property
     def fastest(self) -> float:
-        """The time with the least disturbance."""
+        """The shortest time, which was disturbed the least."""
         return min(self.seconds)
 
 
 @dataclass(frozen=True)
 class Benchmark:
-    """Times of all passes in their order, of the whole (the sum of passes, for each time), and what came first.
+    """Times of all passes in order, totals of all runs (sums of passes), and the times of what happens once.
 
-    `planning` is graph to plan, `compiling` is programs by the driver, `loading` is the first run with all that is read
-    from files; `lead` says how many frames were gone through before, for what nodes remember.
+    `planning` is from graph to plan, `compiling` is the driver's work on programs, `loading` is the first run with all
+    files; `lead_frames` is how many frames were rendered before for the history.
     """
 
     passes: tuple[PassTiming, ...]
@@ -75,7 +75,7 @@ class Benchmark:
 
 @dataclass(frozen=True)
 class NodeShare:
-    """Passes of the same nodes together: what is fused cannot be told apart, and has one time."""
+    """The times of all passes of the same nodes: fused nodes share passes and have one time together."""
 
     nodes: tuple[str, ...]
     count: int
@@ -96,7 +96,8 @@ def measure_graph(
 ) -> Benchmark:
     """Measure frames of a graph: each is rendered `warm_up` times unmeasured, then `repeats` times.
 
-    `renderer` has a budget of 0, since what is kept takes no time. Raises the errors of `app.errors`.
+    `renderer` must have a budget of 0, because results that are kept would take no time. Raises the errors of
+    `app.errors`.
     """
     compiled = renderer.runner.programs.compiled
     started = time.perf_counter()
@@ -140,7 +141,7 @@ def measure_graph(
 
 
 def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:
-    """The passes by their nodes, what takes longest first."""
+    """The passes grouped by their nodes, the slowest first."""
     timings_by_nodes: dict[tuple[str, ...], list[PassTiming]] = {}
     for timing in passes:
         timings_by_nodes.setdefault(timing.nodes, []).append(timing)
@@ -159,7 +160,7 @@ def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:
 
 
 def identify_passes(passes: Iterable[Pass | PassTiming]) -> list[PassName]:
-    """What to know passes by, in their order."""
+    """The names of passes, in order."""
     counts: dict[tuple[tuple[str, ...], tuple[str, ...]], int] = {}
     names: list[PassName] = []
     for render_pass in passes:
@@ -170,7 +171,7 @@ def identify_passes(passes: Iterable[Pass | PassTiming]) -> list[PassName]:
 
 
 def load_frame_inputs(renderer: Renderer, frame_renderer: FrameRenderer, frame: int) -> TextureLease:
-    """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
+    """Load what a frame reads onto the device: pixels of files, and what the frame before stored."""
     plan, runner = frame_renderer.plan_frame(frame), renderer.runner
     lease, outputs_lease = runner.create_lease(), runner.create_lease()
     written = {number for render_pass in plan.passes for number in render_pass.targets}
@@ -193,7 +194,7 @@ def load_frame_inputs(renderer: Renderer, frame_renderer: FrameRenderer, frame: 
 
 
 def _merge_frames(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[PassTimings]]) -> tuple[PassTiming, ...]:
-    """The passes of all frames; the same pass of several is one, with the times of all."""
+    """The passes of all frames; a pass that several frames have is one, with the times of all."""
     merged: dict[PassName, PassTiming] = {}
     for frame, turns in timings.items():
         plan = plans[frame]

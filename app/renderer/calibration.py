@@ -1,7 +1,7 @@
-"""What either form of passes takes on a device that no table knows: measured at the first start, then kept in a file.
+"""Measures which form of passes is faster on a device that is in no table, at the first start, and stores the result.
 
-The file is in the cache folder of the user, one for each renderer and version of its driver. All processes go by it, so
-that frames which several of them render, today and tomorrow, are of one form.
+The file is in the user's cache folder, one for each renderer and version of its driver. All processes use it, so that
+frames which several processes render, today and tomorrow, have the same form.
 """
 
 from __future__ import annotations
@@ -29,14 +29,15 @@ from .execution.runner import Runner
 SIZE = (1024, 1024)
 TURNS = 5
 ENOUGH_SECONDS = 0.1
-"""Seconds of passes after which no further turn is taken: what is slow can be told apart sooner."""
+"""Seconds of passes after which no further turn is taken: times of a slow device vary less. Chosen by judgement; a
+start of the program should not take noticeably longer for it."""
 
 VERSION = 1
-"""Goes up when other passes are measured, or the compiler makes something else of them."""
+"""Increased when other passes are measured, or when the compiler emits them differently."""
 
 
 def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sandbox) -> FormTimings | None:
-    """What is kept of the device; else it is measured and kept. None where it cannot be kept.
+    """The stored times of a device, else new ones, which are stored. None where they cannot be stored.
 
     `folder` is by default that of the user.
     """
@@ -60,7 +61,7 @@ def load_or_measure(device: Device, folder: Path | None = None, *, sandbox: Sand
 def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> FormTimings:
     """Seconds that noise, which is arithmetic, and its blur, which is reading, take in either form.
 
-    Both forms take turns, after a first one that counts for nothing: it compiles, and wakes the device up.
+    Both forms take turns. The first turn does not count: it compiles, and the device may still run at a low clock.
     """
     nodes = catalogue()
     graph = Graph(settings=Settings(size)).add("noise", nodes["noise"]()).add("blur", nodes["gaussian_blur"]())
@@ -76,7 +77,7 @@ def measure_forms(device: Device, size: Size = SIZE, turns: int = TURNS) -> Form
                 plan = compile_graph(graph, request, pictures, target=runner.device.target)
                 try:
                     seconds = sum(pass_seconds for _, pass_seconds in runner.measure(plan))
-                except HalationError:  # the driver refuses these passes: the others are left
+                except HalationError:  # the driver refuses these passes: only the others are measured
                     fastest[form] = math.inf
                     runners.pop(form).close()
                     continue

@@ -1,4 +1,4 @@
-"""Opening the device, with the form of passes that suits it."""
+"""Opens a device and chooses the form of passes that suits it."""
 
 from __future__ import annotations
 

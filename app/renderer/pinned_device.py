@@ -1,8 +1,8 @@
-"""The same bytes everywhere: what Mesa's software rasterizer may do differently from machine to machine is pinned.
+"""Opens Mesa's software rasterizer with pinned settings, so that it gives the same bytes on all machines.
 
 Passes are fragment shaders, intermediates have 32 bits (`RenderRequest.precision`), and the processor's instructions
 stop at SSE 4.1: newer ones multiply and add in one step, which rounds once instead of twice. The number of threads
-changes no bit; the width of vectors changes what the renderer calls itself.
+changes no bit; the width of vectors only changes the renderer's name.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ _MESA = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 @contextmanager
 def pin_driver() -> Iterator[None]:
-    """Inside, an OpenGL context that is opened is the software rasterizer's where the system has one.
+    """Let OpenGL contexts that are opened in this block use the pinned software rasterizer, if the system has it.
 
-    The variables of the environment that say so are as before afterwards. A process that has opened a context already
-    keeps the instructions that it chose then.
+    Afterwards the environment variables are as before. A process that has already opened a context keeps the
+    instructions that the driver chose then.
     """
     pinned = {**_PINNED_VARIABLES, **({"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {})}
     before = {name: os.environ.get(name) for name in (*pinned, *_REMOVED_VARIABLES)}
@@ -61,9 +61,9 @@ def pin_driver() -> Iterator[None]:
 
 
 def open_pinned(memory: int = 0, *, sandbox: Sandbox) -> Device:
-    """The software rasterizer; another device where there is none. Raises DeviceError where there is no OpenGL at all.
+    """The pinned software rasterizer, or another device if there is none. Raises DeviceError without OpenGL.
 
-    `Device.target.software` says which it is.
+    `Device.target.software` says which one it is.
     """
     with pin_driver():
         return open_device("fragment", memory, sandbox=sandbox)

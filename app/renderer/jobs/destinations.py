@@ -1,4 +1,4 @@
-"""Where results go: which outputs into which file, and what can be refused before anything is rendered."""
+"""Decides which outputs go into which files, and refuses invalid destinations before anything is rendered."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class OutputSettings(Struct, frozen=True):
     look: str = ""
     space: str = ""
     codec: str = ""
-    """Of videos; "" for what is usual."""
+    """The codec of videos; "" for the default of the file format."""
 
     @property
     def videos(self) -> tuple[Path, ...]:
@@ -46,7 +46,7 @@ class OutputSettings(Struct, frozen=True):
 
 
 class Destination(Struct, frozen=True):
-    """A file to be written: the output behind each of its layers, and what the layers hold."""
+    """A file to be written: the output for each of its layers, and the kinds of the layers."""
 
     path: Path
     layers: Mapping[str, str]
@@ -55,7 +55,7 @@ class Destination(Struct, frozen=True):
 
     @property
     def view(self) -> str:
-        """The view that it is seen through."""
+        """The view through which its colors are converted for a display."""
         return self.encoding.view
 
 
@@ -81,7 +81,7 @@ def _name_at_frame(path: Path, frame: int) -> Path:
 def _group_outputs(
     graph: Graph, request: RenderRequest, settings: OutputSettings, sandbox: Sandbox
 ) -> tuple[Destination, ...]:
-    """What is to be written, by the names that were given."""
+    """The files of a job, as they are named on the command line."""
     names = tuple(request.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
     spellings: dict[str, Path] = {}
@@ -109,7 +109,7 @@ def check_destinations(
     settings: OutputSettings,
     sandbox: Sandbox,
 ) -> None:
-    """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
+    """Raise UsageError or OutputError for a file that cannot be written, or that one of `sources` reads.
 
     `sources` are pictures by the input or node that reads them.
     """
@@ -129,7 +129,7 @@ def check_destinations(
 
 
 def select_half_outputs(files: Sequence[Destination], settings: OutputSettings) -> frozenset[str]:
-    """The outputs of which only half floats are kept, as they are: no file wants more of them."""
+    """The outputs that every file stores as half floats without another conversion before."""
     half_outputs, other_outputs = set[str](), set[str]()
     for file in files:
         for layer, name in file.layers.items():

@@ -1,6 +1,6 @@
-"""What a finished picture says of itself: what it was made of, and how to make it again.
+"""The header of a rendered picture: the graph, the files that it read, and the settings to render it again.
 
-Nothing in it depends on when or where it was made: the same graph and the same files give the same bytes.
+Nothing in it depends on the time or place of rendering: the same graph and the same files give the same bytes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _KEY = "halation:key"
 
 
 def dump_whole_graph(graph: Graph) -> str:
-    """A graph and its groups as one text."""
+    """The text of a graph with its groups inside, so that it needs no other graph file."""
     return document.dumps(inline_files(graph))
 
 
@@ -41,9 +41,9 @@ def make_header(
     sources: Sequence[SourceFile],
     hashes: FileHashes,
 ) -> dict[str, Any]:
-    """What a file says: metadata of what was read passes through, and how to make it again is added.
+    """The metadata of a file: that of the pictures that were read, and what is needed to render it again.
 
-    The graph is the text of `whole`.
+    `graph` is the text of `dump_whole_graph`.
     """
     metadata: dict[str, Any] = {}
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):
@@ -64,9 +64,9 @@ def make_header(
 def format_settings(
     request: RenderRequest, target: Target, settings: OutputSettings, file: Destination, frames: tuple[int, int] | None
 ) -> str:
-    """How a file was rendered and written, as `name=value` words that a shell would take apart.
+    """How a file was rendered and written, as `name=value` words with the quotes of a shell.
 
-    `frames` are the first and last of the graph, where history matters.
+    `frames` are the first and last frame of the graph if it has temporal nodes.
     """
     parts = [("scale", request.scale), ("frame", request.frame)]
     words = [f"{name}={value}" for name, value in parts]
@@ -91,9 +91,9 @@ def compute_frame_key(
     sources: Sequence[SourceFile],
     hashes: FileHashes,
 ) -> str:
-    """What tells whether a file is still what would be written: it is equal only where all bytes of pixels are.
+    """A key that is equal only if all bytes of the pixels are: it tells whether a file is still up to date.
 
-    It covers shaders, values and the content of all that is read; where history matters, the whole graph.
+    It covers shaders, values and the contents of all files that are read; with temporal nodes, the whole graph.
     """
     contents = {
         item.picture.path: hashes.hash_file(item.picture.path) for item in plan.uploads if not item.picture.in_memory
@@ -110,26 +110,26 @@ def compute_frame_key(
 
 
 def has_key(file: Destination, sandbox: Sandbox) -> bool:
-    """True if that file is there and says what it was made of."""
+    """True if the file exists and its header has a key."""
     return bool(_read_key(file, sandbox=sandbox))
 
 
 def matches_key(file: Destination, key: str, sandbox: Sandbox) -> bool:
-    """True if that file is there and says that it was made with that key."""
+    """True if the file exists and its header has this key."""
     return _read_key(file, sandbox=sandbox) == key
 
 
 def _read_key(file: Destination, sandbox: Sandbox) -> object:
     try:
         return media.read_metadata(file.path, sandbox=sandbox).get(_KEY) if file.path.is_file() else None
-    except HalationError:  # whatever it is, it is not what would be written
+    except HalationError:  # no picture of ours
         return None
 
 
 def _compute_content_keys(plan: Plan, contents: Mapping[str, str], history: str) -> dict[int, str]:
-    """Keys of surfaces as a plan has them, but of what is in files instead of where these are and how old.
+    """Keys of surfaces like those of a plan, but from the contents of files instead of their paths and dates.
 
-    What was remembered of the frame before is known by `before`.
+    `history` stands for what the frame before stored.
     """
     keys: dict[int, str] = {}
     for item in plan.uploads:

@@ -1,7 +1,7 @@
-"""Renderings from graph to files: what `halation render` does once its arguments are understood.
+"""Renders a graph into files: what `halation render` does after its arguments are parsed.
 
-While a frame is computed the next one's pictures are decoded and the last one's results are written, all in bounded
-memory: a few pictures ahead, two frames behind. What two frames have in common stays on the device in between.
+While a frame is rendered, the pictures of the next one are decoded and the results of the frames before are written,
+within bounded memory: a few pictures ahead, two frames behind. What two frames have in common stays on the device.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ __all__ = ["FrameReport", "JobProgress", "JobReport", "OutputSettings", "run_job
 
 
 class FrameReport(Struct, frozen=True):
-    """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were.
+    """The result of a frame. `passes` were executed for it; none if its files were up to date and are kept.
 
-    A video is not among the files `written`: it is there when all frames are.
+    A video is not among the files `written`: it is complete when all frames are.
     """
 
     frame: int
@@ -51,14 +51,14 @@ class FrameReport(Struct, frozen=True):
 
 
 class JobProgress(Protocol):
-    """Hears how far a job is."""
+    """Is told how far a job is."""
 
     def report_pass(self, frame: int, passes_done: int, total: int, nodes: Sequence[str]) -> None:
-        """A pass of a frame, or of one that leads up to it, is done; it computed these nodes."""
+        """A pass of a frame, or of a frame of its history, is finished; it computed these nodes."""
         ...
 
     def report_frame(self, report: FrameReport, frames_done: int, total: int) -> None:
-        """The files of a frame are there; so many of all frames are done."""
+        """The files of a frame are written; `frames_done` of `total` frames are finished."""
         ...
 
 
@@ -90,11 +90,10 @@ def run_job(
     resume: bool = False,
     progress: JobProgress | None = None,
 ) -> JobReport:
-    """Render frames, by default that of `wanted`, and write them.
+    """Render frames, by default that of `request`, and write them.
 
-    Whatever can be known to be wrong with a destination is known before anything is rendered. With `resume`, frames
-    whose files are there and would come out the same are kept. Raises the errors of `app.errors`; the frames that were
-    finished stay, no partial file and no video is left behind.
+    Destinations are checked before anything is rendered. With `resume`, files that are up to date are kept. Raises the
+    errors of `app.errors`; the files of finished frames stay, and no incomplete file and no video is left behind.
     """
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
     job = _Job(renderer, graph, request, settings, resume, progress, tuple(frames or (request.frame,)))
@@ -115,7 +114,7 @@ def run_job(
 
 
 class _Task(Struct, frozen=True):
-    """One frame: its files, how it is made, and of what."""
+    """One frame: its files, its plan, and the files that it reads."""
 
     frame: int
     files: tuple[Destination, ...]
@@ -180,7 +179,7 @@ class _Job:
         return sorted(self._reports, key=lambda report: self._frames.index(report.frame))
 
     def close(self) -> None:
-        """Let what is being written come to its end."""
+        """Finish the file that is being written, and remove incomplete ones."""
         self._write_queue.close()
         self._video_writers.abort()
         if self._row_writers is not None:
@@ -190,13 +189,16 @@ class _Job:
 
     @cached_property
     def _graph_text(self) -> str:
-        """The graph as files say it."""
+        """The text of the graph for headers."""
         return dump_whole_graph(self._graph)
 
     # --- one frame ---------------------------------------------------------------------------------------------------
 
     def _plan_next(self, todo: deque[int]) -> _Task | None:
-        """The next frame that must be rendered. One that cannot be made is the end: the ones before it can."""
+        """The next frame that must be rendered; None at the end, or at a frame with an error, which ends the job later.
+
+        So the frames before the faulty one are still finished.
+        """
         try:
             return self._find_unfinished(todo)
         except HalationError as error:
@@ -224,7 +226,7 @@ class _Job:
         return None
 
     def _is_done(self, task: _Task) -> bool:
-        """True if the files of a frame are there and would come out the same."""
+        """True if the files of a frame exist and are up to date."""
         if not all(has_key(file, self._renderer.sandbox) for file in task.files):
             return False
         request = replace(self._request, frame=task.frame)
@@ -235,7 +237,7 @@ class _Job:
         return all(matches_key(file, key, self._renderer.sandbox) for file, key in zip(task.files, keys, strict=True))
 
     def _render_frame(self, task: _Task, following: _Task | None) -> tuple[TextureLease, int]:
-        """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
+        """Send the passes of a frame to the device; a lease of its outputs, and the number of passes."""
         started, passes = time.perf_counter(), 0
         self._hashes.start(task.sources)
         lease = self._renderer.runner.create_lease()
@@ -265,7 +267,7 @@ class _Job:
         return outputs
 
     def _make_header(self, task: _Task, file: Destination) -> dict[str, Any]:
-        """What a file says of itself."""
+        """The metadata of a file."""
         request, device = replace(self._request, frame=task.frame), self._renderer.device
         metadata = make_header(
             self._graph_text,
@@ -313,7 +315,7 @@ class _Job:
             self._report_frame(report)
 
     def _find_rate(self) -> float | Fraction:
-        """Frames per second of what is written."""
+        """The frames per second of videos."""
         pictures = self._renderer.pictures
         return pictures.find_rate(self._graph, pictures.bind(self._graph, self._request.bound_inputs))
 

@@ -1,4 +1,4 @@
-"""Files that are written while their pictures are being made, because no memory holds them."""
+"""Writes files row by row while their pictures are rendered, because memory cannot hold the whole pictures."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def select_row_outputs(files: Sequence[Destination]) -> frozenset[str]:
-    """The outputs that every file can take by rows: those of EXRs of one layer."""
+    """The outputs that all their files can take by rows: those of EXR files with one layer."""
     row_outputs, other_outputs = set[str](), set[str]()
     for file in files:
         has_one_layer = len(file.layers) == 1 and file.path.suffix.casefold() == ".exr"
@@ -25,8 +25,10 @@ def select_row_outputs(files: Sequence[Destination]) -> frozenset[str]:
 
 
 class ScanlineWriters:
-    """The files of a frame that are written by rows. Each is opened when its first rows come; what is not finished
-    leaves nothing behind. `said` is the header of a file."""
+    """The files of a frame that are written by rows. Each is opened with its first rows; incomplete files are removed.
+
+    `make_metadata` makes the header of a file.
+    """
 
     def __init__(
         self,
@@ -65,7 +67,7 @@ class ScanlineWriters:
             self._open[file.path].add(pixels)
 
     def finish(self) -> frozenset[Path]:
-        """Give all of them their names, which are returned. Raises OutputError."""
+        """Complete all files; their paths. Raises OutputError."""
         paths = frozenset(self._open)
         for file in self._open.values():
             file.close()
@@ -73,7 +75,7 @@ class ScanlineWriters:
         return paths
 
     def abort(self) -> None:
-        """Remove what is not finished."""
+        """Remove incomplete files."""
         for file in self._open.values():
             file.abort()
         self._open.clear()

@@ -1,4 +1,4 @@
-"""What a frame is made of: the files that it reads, those of the frames before it too, and what is in them."""
+"""Finds the files that a frame reads, with those of its history, and hashes their contents."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 class SourceFile(Struct, frozen=True):
     """A file that a frame reads.
 
-    `owner` is who reads it: an input of the graph as `inputs.beauty`, a node for its pixels as `read`, another value
-    that is a file as `camera.path`. Of a sequence that is read at several frames `path` is one file, `pattern` the name
-    of all, and `files` are those that are read, by frame and in order.
+    `owner` says what reads it: an input of the graph as `inputs.beauty`, a node for its pixels as `read`, another value
+    that names a file as `camera.path`. Of a sequence that is read at several frames, `path` is one file, `pattern` the
+    name of all, and `files` are those that are read, by frame and in order.
     """
 
     owner: str
@@ -55,16 +55,16 @@ class FileHashes:
         self._lock = Lock()
 
     def start(self, sources: Sequence[SourceFile]) -> None:
-        """Begin with what will be asked for."""
+        """Begin to hash files that will be asked for."""
         for path in {path for item in sources for path in (item.path, *item.files.values())}:
             self._start_hash(path)
 
     def hash_file(self, path: str) -> str:
-        """That of a file, sooner or later."""
+        """The hash of a file; waits for it."""
         return self._start_hash(path).result()
 
     def hash_files(self, files: Iterable[str]) -> str:
-        """That of the hashes of several files, in their order. A list that goes on takes no longer than what is new."""
+        """The hash of the hashes of several files, in order. A list that grew is hashed from its first new file on."""
         paths = tuple(files)
         with self._lock:
             hashed, digest = self._chains.get(paths[0], ((), hashlib.sha256()))
@@ -77,7 +77,7 @@ class FileHashes:
             return digest.hexdigest()
 
     def close(self) -> None:
-        """Stop."""
+        """Stop hashing."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _start_hash(self, path: str) -> Future[str]:
@@ -88,14 +88,14 @@ class FileHashes:
 
 
 class SourceFinder:
-    """Finds what the frames of a graph read."""
+    """Finds the files that the frames of a graph read."""
 
     def __init__(self, pictures: MediaProvider, graph: Graph, bound: Mapping[str, Picture]) -> None:
         self._pictures, self._graph, self._bound = pictures, graph, bound
         self._history_files: dict[str, dict[int, str]] = {}
 
     def find_sources(self, plan: Plan, frame: int, begin: int) -> tuple[SourceFile, ...]:
-        """What a frame reads whose history begins at another one."""
+        """The files that a frame reads; `begin` is the frame where its history begins."""
         pictures_by_owner: dict[str, list[Picture]] = {}
         for item in plan.uploads:
             if not item.picture.in_memory:
@@ -137,12 +137,12 @@ class SourceFinder:
 
     @cached_property
     def _picture_paths(self) -> dict[str, tuple[str, Missing]]:
-        """The path of every picture, and what shows where a frame has no file, by who reads it."""
+        """The path of every picture, and what replaces a missing file, by input or node."""
         return {owner: (path, missing) for path, owner, missing in find_named_files(self._graph, self._bound)}
 
     @cached_property
     def _other_files(self) -> dict[str, str]:
-        """Files of nodes, which may be no pictures, or of which only the header is read, by who names them."""
+        """Files that nodes name but do not read as pictures, such as cameras and tables, by node and value."""
         needed_nodes = self._graph.upstream(OUTPUTS)
         paths = {owner: path for owner, (_, path) in find_path_texts(self._graph).items()}
         return {
@@ -154,7 +154,7 @@ class SourceFinder:
 
 
 def describe_source(source: SourceFile, hashes: FileHashes) -> dict[str, str]:
-    """What a header says of a source."""
+    """The entries of a header for a file that was read."""
     layer = f":{source.layer}" if source.layer else ""
     entries = {
         f"halation:input:{source.owner}": f"{Path(source.path).name}{layer} sha256:{hashes.hash_file(source.path)}"

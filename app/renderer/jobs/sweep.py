@@ -1,4 +1,4 @@
-"""One graph many times: a picture for every combination of values that are swept."""
+"""Renders one graph many times: a sheet with a picture for every combination of some values."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ LABEL_SIZE = 16
 MAX_CELLS = 400
 FRAME = "frame"
 _SHEET_ASPECT = 1.7
-"""How much wider than high a sheet of one row of values becomes when it wraps, about."""
+"""Width over height of a sheet whose cells wrap: close to a screen of 16:9, with some room for labels."""
 
 
 @dataclass(frozen=True)
 class SweepStep:
-    """One setting of what is swept: as it was typed, and what makes a graph have it."""
+    """One value of an axis: as the user typed it, and a function that sets it in a graph."""
 
     text: str
     apply: Callable[[Graph], Graph]
@@ -40,7 +40,7 @@ class SweepStep:
 
 @dataclass(frozen=True)
 class SweepAxis:
-    """What is swept: `blur.sigma`, a control, or the frame; `label` is what cells call it."""
+    """What varies along one side of a sheet: `blur.sigma`, a control, or the frame; cells show its `label`."""
 
     name: str
     label: str
@@ -49,7 +49,7 @@ class SweepAxis:
 
 @dataclass(frozen=True)
 class SweepCell:
-    """A picture: one step of every axis, the graph that they make, and the frame of it."""
+    """One picture of a sheet: a step of every axis, the graph with their values, and its frame."""
 
     steps: tuple[tuple[SweepAxis, SweepStep], ...]
     graph: Graph
@@ -57,12 +57,12 @@ class SweepCell:
 
     @property
     def label(self) -> str:
-        """As a person reads it: `sigma 4`."""
+        """The text in the cell: `sigma 4`."""
         return "  ".join(f"{axis.label} {step.text}" for axis, step in self.steps)
 
     @property
     def file_stem(self) -> str:
-        """A name for a file of its own: `blur.sigma=4`, `blur.sigma=4,frame=0012`."""
+        """The name of the cell's own file: `blur.sigma=4`, `blur.sigma=4,frame=0012`."""
         return ",".join(f"{axis.name}={_format_step(step.text, axis.name == FRAME)}" for axis, step in self.steps)
 
 
@@ -76,14 +76,14 @@ class SweepRequest:
     width: int = 480
     columns: int = 0
     output_settings: OutputSettings | None = None
-    """How pictures are written alone, their folder as its only file; None if they are not."""
+    """How each picture is also written as a file, with the folder as its only file; None if it is not."""
     ending: str = ".png"
     title: str = ""
 
 
 @dataclass(frozen=True)
 class SweepSheet:
-    """Light of the display, what is in its cells, and the files that were written beside it."""
+    """The sheet as light of the display, its cells, and the files that were written beside it."""
 
     light: Array
     cells: tuple[SweepCell, ...]
@@ -119,9 +119,9 @@ def render_sweep(
     frame: int,
     report_step: Callable[[str], None] = lambda name: None,
 ) -> SweepSheet:
-    """Render all cells and put them on a sheet; `step` hears the label of what comes next.
+    """Render all cells and put them on a sheet; `report_step` is called with the label of each cell before.
 
-    What several pictures share is computed once. Raises the errors of `app.errors`.
+    Results that several pictures share are computed once. Raises the errors of `app.errors`.
     """
     cells = list_cells(graph, axes, frame)
     pictures: list[Array] = []
@@ -152,7 +152,7 @@ def _render_cell(renderer: Renderer, cell: SweepCell, sweep: SweepRequest) -> Ar
 
 
 def _write_cell(renderer: Renderer, cell: SweepCell, sweep: SweepRequest) -> tuple[Path, ...]:
-    """Write a picture as `render` would; what was rendered for the sheet is not rendered again."""
+    """Write a picture as `halation render` does; results of the sheet are not computed again."""
     assert sweep.output_settings is not None
     ((_, folder),) = sweep.output_settings.files
     file = folder / f"{cell.file_stem}{sweep.ending}"
@@ -161,13 +161,13 @@ def _write_cell(renderer: Renderer, cell: SweepCell, sweep: SweepRequest) -> tup
 
 
 def _shrink(array: Array, width: int) -> Array:
-    """Every n-th pixel of a picture that is far larger than its cell: sheets are not kept in memory at full size."""
+    """Every n-th pixel of a picture that is much larger than its cell, so that a sheet takes little memory."""
     step = max(1, array.shape[1] // (4 * width)) if width else 1
     return np.ascontiguousarray(array[::step, ::step])
 
 
 def _show_cells(graph: Graph, pictures: Sequence[Array], sweep: SweepRequest) -> list[Array]:
-    """Pictures as light of the display; data between the smallest and largest number of all of them."""
+    """Pictures as light of the display; data is shown between the smallest and largest number of all of them."""
     port = sweep.request.targets.get(sweep.output, Port(OUTPUTS, sweep.output))
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
@@ -180,12 +180,12 @@ def _show_cells(graph: Graph, pictures: Sequence[Array], sweep: SweepRequest) ->
 
 
 def _widen(array: Array) -> Array:
-    """One value is shown as a field of it."""
+    """A single value as a picture of that value."""
     return np.tile(array, (64, 64, 1)) if array.shape[:2] == (1, 1) else array
 
 
 def _choose_columns(count: int, first: Array) -> int:
-    """How many go side by side: few in one row, many in about the shape of a screen."""
+    """The number of columns: few cells stay in one row, many form about the shape of a screen."""
     if count <= 4:
         return count
     columns = min(count, ceil((_SHEET_ASPECT * count * first.shape[0] / first.shape[1]) ** 0.5))
@@ -198,7 +198,7 @@ def _format_step(text: str, is_frame: bool) -> str:
 
 
 def choose_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[str, str]:
-    """What cells call each name: its own label, the whole name where two labels would be the same."""
+    """The label of each name in cells: its own label, or the whole name if two labels would be equal."""
     return {
         name: labels[name] if sum(labels[other_name] == labels[name] for other_name in names) == 1 else name
         for name in names

@@ -1,4 +1,4 @@
-"""The videos that a job writes: all its frames go into one file each, in their order."""
+"""Writes the videos of a job: all frames in order into one file each."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class VideoWriters:
-    """Opened when their first frame comes; what is not finished leaves nothing behind."""
+    """Opens a video with its first frame. Incomplete videos are removed."""
 
     def __init__(self, settings: OutputSettings, find_rate: Callable[[], float | Fraction], sandbox: Sandbox) -> None:
         self._settings, self._find_rate, self._sandbox = settings, find_rate, sandbox
         self._open: dict[Path, media.VideoWriter] = {}
 
     def add_frame(self, file: Destination, layers: Mapping[str, Array], metadata: Mapping[str, Any]) -> None:
-        """Write one more frame; what the first one says of itself is said of all. Raises OutputError."""
+        """Write one more frame. The metadata of the first frame is that of the video. Raises OutputError."""
         if file.path not in self._open:
             height, width = next(iter(layers.values())).shape[:2]
             self._open[file.path] = media.VideoWriter(
@@ -39,7 +39,7 @@ class VideoWriters:
         self._open[file.path].add(layers, file.kinds)
 
     def finish(self) -> tuple[Path, ...]:
-        """Give all of them their names. Raises OutputError."""
+        """Complete all videos; their paths. Raises OutputError."""
         for video in self._open.values():
             video.close()
         paths = tuple(self._open)
@@ -47,7 +47,7 @@ class VideoWriters:
         return paths
 
     def abort(self) -> None:
-        """Remove what is not finished."""
+        """Remove incomplete videos."""
         for video in self._open.values():
             video.abort()
         self._open.clear()

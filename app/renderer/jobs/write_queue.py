@@ -1,4 +1,4 @@
-"""Frames whose results are written while the next ones are computed: some may wait, in arrays that are used again."""
+"""Writes the results of frames on another thread, while the next frames are rendered."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
 MAX_WAITING = 2
-"""Frames whose results may wait to be written."""
+"""Frames whose results may wait to be written: one is being written and one is next, which evens out frames that take
+longer. A longer queue only takes memory: if writing is the slower stage on average, any queue fills up."""
 
 MAX_WAITING_BYTES = 2**28
-"""What they may take together; one frame may be larger."""
+"""Bytes that waiting frames may take together; one frame may be larger. As many as pictures that are decoded ahead."""
 
 WriteResult = TypeVar("WriteResult")
 
 
 class WriteQueue(Generic[WriteResult]):
-    """Writes on one other thread, in order. `arrays` lend what results come in."""
+    """Writes frames in order on one other thread. `arrays` lends the memory of their pixels."""
 
     def __init__(self) -> None:
         self.arrays = ArrayPool()
@@ -28,7 +29,7 @@ class WriteQueue(Generic[WriteResult]):
         self._writes: deque[tuple[Future[WriteResult], int]] = deque()
 
     def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: Mapping[str, Array]) -> None:
-        """Have `write` called with outputs that `arrays` lent, which go back to them."""
+        """Call `write` with these outputs on the other thread, then give their memory back to `arrays`."""
 
         def work() -> WriteResult:
             try:
@@ -39,17 +40,17 @@ class WriteQueue(Generic[WriteResult]):
         self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
 
     def collect_finished(self) -> Iterator[WriteResult]:
-        """What was said of writes that are through, after waiting while too many are not. Raises what they raised."""
+        """The results of finished writes; waits while too many are unfinished. Raises what they raised."""
         while self._writes and (self._writes[0][0].done() or self._is_full()):
             yield self._writes.popleft()[0].result()
 
     def collect_all(self) -> Iterator[WriteResult]:
-        """The same of all that are left."""
+        """The results of all remaining writes."""
         while self._writes:
             yield self._writes.popleft()[0].result()
 
     def close(self) -> None:
-        """Let what is being written come to its end, and forget the rest."""
+        """Finish the frame that is being written, and forget the others."""
         self._writer.shutdown(cancel_futures=True)
 
     def _is_full(self) -> bool:

@@ -1,4 +1,4 @@
-"""Most of the time that opening OpenGL takes goes by while its driver is loaded, which others need not wait for."""
+"""Loads the OpenGL driver on another thread, because that takes most of the time of opening a device."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _DEVICE = 0x313F
 
 
 def warm() -> None:
-    """Begin to load the driver of a context without a window on another thread, where that can be done.
+    """Begin to load the driver of a context without a window on another thread, on Linux.
 
-    Opening one later needs nothing of this, and reports what is wrong: here nothing is.
+    It is only an optimization: opening a device works without it, and only that reports errors.
     """
     if sys.platform.startswith("linux"):
         Thread(target=_load, name="warm", daemon=True).start()
 
 
 def _load() -> None:
-    """What glcontext will do first: choose a device, and begin with it. EGL remembers that, for all threads."""
+    """Do what glcontext does first: choose a device and initialize it. EGL keeps that for all threads."""
     try:
         egl = ctypes.CDLL(EGL_LIBRARY)
     except OSError:
@@ -43,6 +43,6 @@ def _load() -> None:
 
 
 def _function(egl: ctypes.CDLL, name: bytes, *types: Any) -> Any:
-    """A function of EGL that is an extension: what it returns and takes; None if it is not there."""
+    """A function of an EGL extension by what it returns and takes; None if the driver does not have it."""
     found = egl.eglGetProcAddress(name)
     return ctypes.CFUNCTYPE(*types)(found) if found else None

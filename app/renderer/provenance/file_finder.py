@@ -1,4 +1,4 @@
-"""Finding again what a picture was made of: by name where it was, and by content wherever it is."""
+"""Finds the files that a picture was made from: by name at likely places, by hash in folders that the user names."""
 
 from __future__ import annotations
 
@@ -22,17 +22,15 @@ from ..jobs.source_files import FileHashes
 from .recipe import Recipe, RecordedFile, read_recipe
 
 _FAR = "../../../"
-"""Where the spelling of a path begins that leads too far away to be better than an absolute one."""
+"""A relative path that begins with three steps up is written as an absolute one. Chosen by judgement: farther away,
+the common folder is rarely moved as a whole, which is what relative paths are for."""
 
 State = Literal["same", "changed", "missing"]
 
 
 @dataclass(frozen=True)
 class LocatedFile:
-    """What became of a file: where it is now and its hash there, both "" for one that is missing.
-
-    Of a sequence `path` is its pattern.
-    """
+    """Where a recorded file is now and its hash; both are "" if it is missing. `path` of a sequence is its pattern."""
 
     recorded: RecordedFile
     state: State
@@ -56,14 +54,14 @@ class FileFinder:
         self._files_by_hash: dict[str, str] | None = None
 
     def find_all(self) -> tuple[LocatedFile, ...]:
-        """All of them. Raises InputError for what `given` names and is not there."""
+        """Find all files. Raises InputError for a path of the user where there is no file."""
         try:
             return tuple(self._find_file(recorded) for recorded in self._recipe.files)
         finally:
             self._hashes.close()
 
     def find_likely(self) -> tuple[LocatedFile, ...]:
-        """The files that have the right names at the likeliest places, without a look into them, which takes long."""
+        """The files with the right names at the likeliest places, without hashing them, which takes long."""
         return tuple(
             LocatedFile(recorded, "same", path)
             for recorded in self._recipe.files
@@ -101,7 +99,7 @@ class FileFinder:
         return (self._inspect(recorded, first) if first else None) or LocatedFile(recorded, "missing")
 
     def _inspect(self, recorded: RecordedFile, path: str) -> LocatedFile | None:
-        """What is at a path, if there is anything; of a sequence, at that of one of its files or at its pattern."""
+        """The file at a path, or None; for a sequence, the path is that of one of its files or a pattern."""
         if not recorded.frames:
             if not _may_be_read(path, sandbox=self._sandbox):
                 return None
@@ -115,7 +113,7 @@ class FileFinder:
         return LocatedFile(recorded, "same" if digest == recorded.sequence_digest else "changed", pattern.text, digest)
 
     def _list_candidates(self, recorded: RecordedFile) -> Iterator[str]:
-        """Where the file may be, the likeliest place first."""
+        """The paths where a file may be, the likeliest first."""
         if recorded.owner in self._chosen_paths:
             yield self._chosen_paths[recorded.owner]
             return
@@ -129,7 +127,7 @@ class FileFinder:
                     yield str(Path(folder, name))
 
     def _find_by_content(self, recorded: RecordedFile) -> str:
-        """The path of a file with another name and the same content below the folders that were named, or ""."""
+        """The path of a file with another name and the same hash below the named folders, or ""."""
         if recorded.frames:
             return ""
         if self._files_by_hash is None:
@@ -146,17 +144,17 @@ class FileFinder:
         return self._files_by_hash.get(recorded.digest, "")
 
     def find_text(self, owner: str) -> str:
-        """How the graph names the file of an owner; "" if it does not."""
+        """The path of an owner's file as the graph has it; "" if it has none."""
         return find_text(self._texts, owner)
 
 
 def find_text(texts: Mapping[str, str], owner: str) -> str:
-    """The text by who names it; a node without a value stands for its only file."""
+    """The text of an owner; a node without the name of a value stands for its only file."""
     return texts.get(owner) or next((text for name, text in texts.items() if name.rpartition(".")[0] == owner), "")
 
 
 def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> Graph:
-    """The graph that made a picture, with the files it was made of where they are easy to find.
+    """The graph that made a picture, linked to its files if they are easy to find.
 
     Raises InputError, DocumentError: see `read_recipe`.
     """
@@ -165,7 +163,7 @@ def load_graph_of_picture(path: Path, catalogue: Mapping[str, type[Node]] | None
 
 
 def relink_files(graph: Graph, located_files: Sequence[LocatedFile]) -> Graph:
-    """The graph with what was found in place of what it names, seen from its own folder."""
+    """The graph with the paths of the files that were found, relative to its own folder."""
     texts = {owner: text for owner, (text, _) in find_path_texts(graph).items()}
     new_paths = {item.recorded.owner: _spell_path(item.path, graph.folder) for item in located_files if item.path}
     paths_by_text = {text: path for owner, path in new_paths.items() if (text := find_text(texts, owner))}
@@ -182,7 +180,7 @@ def relink_files(graph: Graph, located_files: Sequence[LocatedFile]) -> Graph:
 
 
 def _spell_path(path: str, folder: str) -> str:
-    """How a graph in a folder names a file: relative if it is near."""
+    """The path of a file for a graph in a folder: relative if it is near."""
     full = os.path.abspath(path)  # noqa: PTH100
     near = relocate_path(os.path.relpath(full), "", folder) if _same_drive(full, folder) else full
     return full if near.startswith(_FAR) else near
@@ -203,7 +201,7 @@ def _may_be_read(path: str, sandbox: Sandbox) -> bool:
 
 
 def describe_missing(located_files: Sequence[LocatedFile], path: Path) -> InputError | None:
-    """What to say of files that are nowhere, if any are."""
+    """An error that names the missing files; None if there are none."""
     missing = [item.recorded for item in located_files if item.state == "missing"]
     if not missing:
         return None

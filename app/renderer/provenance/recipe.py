@@ -1,4 +1,4 @@
-"""How a picture was made, as its header says."""
+"""Reads from the header of a picture how it was made."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _SUPPORTED_FORMATS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
 
 @dataclass(frozen=True)
 class RecordedFile:
-    """A file that was read, by whom: see `Source`. Of a sequence, `frames` of `pattern` were, with hash `together`."""
+    """A file that was read, by the input or node that read it: see `SourceFile`.
+
+    Of a sequence, `frames` of `pattern` were read; `sequence_digest` is the hash of all of them.
+    """
 
     owner: str
     name: str
@@ -40,7 +43,7 @@ class RecordedFile:
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a header says. `range` are the first and last frame of the graph, where history matters."""
+    """What a header says. `frames` are the first and last frame of the graph if it has temporal nodes."""
 
     path: Path
     graph: Graph
@@ -63,17 +66,17 @@ class Recipe:
     colorspace: str = ""
     compression: str = "zip"
     color: str = ""
-    """What tells one management of color from another, "" for the usual one."""
+    """A hash of the color settings; "" for the default ones."""
 
 
 def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> Recipe:
-    """Read it. Relative paths in the graph start at the picture's folder, for want of a better one.
+    """Read the recipe of a picture. Relative paths in the graph start at the folder of the picture.
 
     `catalogue` are the node types by id, by default all that are installed.
 
     Raises:
-        InputError: the file cannot be read, or says nothing of the kind.
-        DocumentError: a graph that this version does not understand.
+        InputError: the file cannot be read, or its header holds no graph.
+        DocumentError: this version cannot read the graph.
     """
     metadata = {
         name: str(item) for name, item in media.read_metadata(path, sandbox=sandbox).items() if name.startswith(PREFIX)

@@ -1,4 +1,4 @@
-"""Making a picture again from what its header says, and seeing whether it is the same."""
+"""Renders a picture again from its header, and compares the two."""
 
 from __future__ import annotations
 
@@ -27,16 +27,17 @@ from .file_finder import LocatedFile, relink_files
 from .recipe import Recipe
 
 OTHER_DEVICE_TOLERANCE = EIGHT_BIT_STEP
-"""How far pictures of different renderers may be apart: one step of 8 bits, of the light itself where it is over 1."""
+"""How far pictures of different renderers may differ: one step of 8 bits, relative to light over 1. It is the smallest
+difference that an 8-bit display can show; drivers differ in the last bits of functions such as pow and exp."""
 
 _PINNED_SUFFIX = "128 bits)"
-"""How the software rasterizer calls itself where it is pinned."""
+"""The end of the name of the software rasterizer if it is pinned: see `pinned_device`."""
 _DEFAULT_COLOR = "linear Rec.709, built in"
 
 
 @dataclass(frozen=True)
 class EnvironmentDifference:
-    """Something that is not what it was."""
+    """A part of the environment that differs from the recorded one."""
 
     name: str
     recorded: str
@@ -45,7 +46,7 @@ class EnvironmentDifference:
 
 @dataclass(frozen=True)
 class LayerDifference:
-    """A part of a picture. `farthest` is the largest difference of a number, relative to it where it is over 1."""
+    """The difference of a layer. `farthest` is the largest difference of a number, relative to numbers over 1."""
 
     name: str
     farthest: float
@@ -54,7 +55,7 @@ class LayerDifference:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of making a picture again."""
+    """The result of rendering a picture again."""
 
     differences: tuple[EnvironmentDifference, ...]
     layers: tuple[LayerDifference, ...]
@@ -68,7 +69,7 @@ class Reproduction:
 
 
 def open_matching_device(recipe: Recipe, sandbox: Sandbox) -> Device:
-    """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
+    """A device like that of the recipe, if there is one. Raises DeviceError without usable OpenGL."""
     if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED_SUFFIX):
         return open_pinned(sandbox=sandbox)
     try:
@@ -84,10 +85,10 @@ def reproduce(
     files: Sequence[Path] = (),
     tolerance: float | None = None,
 ) -> Reproduction:
-    """Render what a recipe says with the files that were found, and compare; `files` keep what was rendered.
+    """Render a recipe with the files that were found, and compare; the result is also written to `files`.
 
-    Without a tolerance, pictures of the same renderer must be equal, those of others within `ELSEWHERE`. Raises the
-    errors of `app.errors`.
+    Without a tolerance, pictures of the same renderer must be equal, and others within `OTHER_DEVICE_TOLERANCE`. Raises
+    the errors of `app.errors`.
     """
     graph, targets = _relink_graph(recipe, located_files), {}
     if recipe.node:
@@ -114,7 +115,7 @@ def reproduce(
 
 
 def compare_layers(actual: Mapping[str, Array], expected: Mapping[str, Array]) -> tuple[LayerDifference, ...]:
-    """How far the parts of two files are apart, by name; one that only one of them has is as far as can be."""
+    """The differences of two files by layer; a layer that only one of them has differs infinitely."""
     layers: list[LayerDifference] = []
     for name in dict.fromkeys((*expected, *actual)):
         if name not in actual or name not in expected:
@@ -153,13 +154,13 @@ def _measure_distance(actual: Array, expected: Array) -> float:
 
 def _relink_graph(recipe: Recipe, located_files: Sequence[LocatedFile]) -> Graph:
     graph = relink_files(recipe.graph, located_files)
-    if recipe.frames:  # which frames a sequence has now may be others
+    if recipe.frames:  # the sequence may have other frames now
         return replace(graph, settings=replace(graph.settings, frames=recipe.frames))
     return graph
 
 
 def _find_differences(recipe: Recipe, device: Device, color: str) -> list[EnvironmentDifference]:
-    """What is not as it was, of what says so."""
+    """The recorded parts of the environment that differ now."""
     facts = {
         "version": (recipe.version, VERSION),
         "renderer": (recipe.renderer, device.target.renderer),

@@ -1,1 +1,1 @@
-"""Results on a screen, and numbers read back from them."""
+"""Draws results on a screen, and reads their numbers back."""

@@ -11,8 +11,8 @@ from .look import Channels, Look, Meaning, Size, find_origin, find_panel_point
 from .view_programs import ColorView, ViewProgram, ViewPrograms
 
 MAX_TEXEL_DENSITY = 0.8
-"""Texels per pixel, along a side, below which a view is computed per texel: at 0.8 the texels are
-0.64 of the pixels, clearly fewer, which pays for the second pass."""
+"""Texels per pixel, along a side, up to which a view is computed per texel: at 0.8 there are 0.64 texels for each
+pixel. Chosen by judgement: the second pass must cost less than the pixels that the view is not computed for."""
 
 
 class Drawable(Protocol):
@@ -37,7 +37,7 @@ class Drawable(Protocol):
 
 @dataclass(eq=False)
 class _Slot:
-    """What a slot shows now, and everything that decides its pixels."""
+    """The texture of a slot, and everything that decides its pixels."""
 
     texture: DeviceTexture
     contents: object = None

@@ -1,4 +1,4 @@
-"""How a result is looked at: where it lies on a panel, and what of it is shown."""
+"""How a viewer shows a result: its place on a panel, its channels, exposure, view and comparison."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Size = tuple[int, int]
 
 @dataclass(frozen=True)
 class Look:
-    """What a viewer is set to. Colors are display-referred, lengths on the picture in its full-size pixels."""
+    """The settings of a viewer. Colors are display-referred; lengths on the picture are in its full-size pixels."""
 
     zoom: float = 1.0
     """Panel pixels per full-size pixel of the picture."""

@@ -1,4 +1,4 @@
-"""Pictures made elsewhere, such as scopes, as textures that a window can show."""
+"""Uploads pictures that no plan renders, such as scopes, as textures that a window can show."""
 
 from __future__ import annotations
 

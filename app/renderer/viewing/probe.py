@@ -1,4 +1,4 @@
-"""Reads numbers back: a pixel under the pointer, a region, a small copy for scopes, the first that is not finite."""
+"""Reads pixels back: the one under the pointer, a region, a small copy for scopes, the first that is not finite."""
 
 from __future__ import annotations
 
@@ -74,10 +74,10 @@ class NonfinitePixel(Struct, frozen=True):
 def find_first_nonfinite(
     renderer: Renderer, graph: Graph, request: RenderRequest, port: Port
 ) -> Iterator[NonfinitePixel | None]:
-    """Search what `port` shows and everything upstream of it, in order and without fusion.
+    """Search the pixels of `port` and of everything upstream of it, in order and without fusion.
 
-    Yields None after every step, so that a caller can stop in between; what is found comes last. Raises the errors of
-    `app.errors`.
+    Yields None after every step, so that a caller can stop in between, then the pixel if there is one. Raises the
+    errors of `app.errors`.
     """
     plan = renderer.compile(graph, replace(request, targets={"": port}), fusion=False)
     firsts: dict[int, Port] = {}
