@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from hashlib import blake2b
 from keyword import iskeyword
@@ -20,7 +20,7 @@ from .ending import add_ending
 from .notes import Note, read_note
 from .passes import make_passes
 from .prefixes import prefix_names
-from .securing import expand_code, guard_code
+from .securing import check_length, expand_code, guard_code
 from .values import value_of
 
 _FORBIDDEN = re.compile(
@@ -47,6 +47,7 @@ class _Parameter(Struct, frozen=True):
 @lru_cache(KEPT)
 def glsl_node(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes. Raises CodeFault."""
+    check_length(code.text)
     source = unify_lines(code.text)
     plain = blank_comments(source)
     text = parse("written", source, code.name)
@@ -66,16 +67,19 @@ def glsl_node(code: Code) -> type[CustomNode]:
     if not outputs:
         outputs = {"out": OutputSocket(_picture(entry.result, Note(), entry.line, "the result"))}
     types = _list_types(inputs, values)
-    expanded = expand_code(source, _list_macros(values), types)
+    expanded = expand_code(source, _list_macros(values), types, may_include=True)
     _check_words(expanded)
-    _check_entry(entry, expanded)
+    functions = parse("written", expanded).all_functions
+    _check_entry(entry, functions)
     looks = bool(words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size")})
-    return _make_class(code, expanded, types, entry, parameters, inputs, values, outputs, looks)
+    names = {one.name for one in functions}
+    return _make_class(code, expanded, names, types, entry, parameters, inputs, values, outputs, looks)
 
 
 def _make_class(
     code: Code,
     expanded: str,
+    functions: Collection[str],
     types: Mapping[str, str],
     entry: GlslFunction,
     parameters: tuple[_Parameter, ...],
@@ -91,7 +95,6 @@ def _make_class(
     edges = {one.note.edge for one in parameters if one.note.edge}
     if len(edges) > 1:
         raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
-    functions = {one.name for one in parse("written", expanded).all_functions}
     renamed = prefix_names(expanded, functions, prefix)
     looped = guard_loops(renamed)
     guarded = guard_code(looped, types)
@@ -138,9 +141,8 @@ def _check_words(code: str) -> None:
         )
 
 
-def _check_entry(entry: GlslFunction, expanded: str) -> None:
+def _check_entry(entry: GlslFunction, functions: Sequence[GlslFunction]) -> None:
     """Raise CodeFault where macros or conditions make another signature than the one that the text shows."""
-    functions = parse("written", expanded).all_functions
     same = functions and functions[-1].name == entry.name
     if not same or (functions[-1].parameters, functions[-1].outputs) != (entry.parameters, entry.outputs):
         raise CodeFault(entry.line, f"the signature of '{entry.name}' must not depend on macros or conditions")

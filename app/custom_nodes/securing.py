@@ -11,14 +11,31 @@ from ..glsl.macros import expand_macros
 from ..glsl.tokens import GlslFault
 from .code import CodeFault
 
+MOST_LETTERS = 1_000_000
+MOST_LINES = 50_000
+"""Of one text: several times those of the largest public shaders that we know."""
 
-def expand_code(source: str, macros: Mapping[str, str] | None = None, types: Mapping[str, str] | None = None) -> str:
+
+def check_length(text: str) -> None:
+    """Raise CodeFault for a text that is too long to be read in the time of a keystroke."""
+    if len(text) > MOST_LETTERS or text.count("\n") > MOST_LINES:
+        raise CodeFault(1, f"the code has more than {MOST_LETTERS} letters or {MOST_LINES} lines")
+
+
+def expand_code(
+    source: str,
+    macros: Mapping[str, str] | None = None,
+    types: Mapping[str, str] | None = None,
+    *,
+    may_include: bool = False,
+) -> str:
     """The text without comments, macros and conditions, line by line. Raises CodeFault for what is too large.
 
-    `macros` are defined from the start; `types` are those of names that the text does not declare.
+    `macros` are defined from the start; `types` are those of names that the text does not declare. Only with
+    `may_include` it includes shaders of Halation.
     """
     try:
-        expanded = expand_macros(blank_comments(source), macros)
+        expanded = expand_macros(blank_comments(source), macros, may_include=may_include)
         check_size(expanded, types)
     except GlslFault as fault:
         raise CodeFault(fault.line, fault.sentence) from None

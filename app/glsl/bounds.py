@@ -48,6 +48,7 @@ _OPERATORS = frozenset({*"+-*/%<>&|^", "<<", ">>", "<=", ">=", "==", "!=", "&&",
 _PREFIXES = frozenset({"-", "+", "!", "~", "++", "--"})
 _ASSIGNMENTS = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="})
 _CONTROL = frozenset({"if", "for", "while", "do", "switch", "else"})
+_COUNTED = _OPERATORS | _PREFIXES | _ASSIGNMENTS | _CONTROL | {".", "[", "?", "case", ",", ";"}
 
 
 def check_size(code: str, given: Mapping[str, str] | None = None) -> None:
@@ -89,8 +90,8 @@ class _Bounds:
         outer: list[_Counts] = []
         counts, before = _Counts(), ""
         for at, token in enumerate(self.tokens):
-            counts.add(token, before)
-            if excess := counts.excess():
+            counts.add(token.text, before)
+            if token.text in _COUNTED and (excess := counts.excess()):
                 raise self.fault(at, f"there are more than {excess}")
             if token.text in ("(", "[", "{"):
                 outer.append(counts)
@@ -157,7 +158,7 @@ class _Bounds:
 
     def _count_items(self, at: int) -> int:
         """The parts that stand in the first brackets from a place on: an array without a length is as long."""
-        while at < len(self.tokens) and self.tokens[at].text not in ("(", "{", ";", ","):
+        while at < len(self.tokens) and self.tokens[at].text not in ("(", "{", ";", ",", ")", "]", "}"):
             at = self.partners.get(at, at) + 1
         if at >= len(self.tokens) or self.tokens[at].text not in ("(", "{"):
             return 0
@@ -274,11 +275,13 @@ class _Counts(Struct):
     alternatives: int = 0
     cases: int = 0
 
-    def add(self, token: GlslToken, before: str) -> None:
+    def add(self, text: str, before: str) -> None:
         """Count a token that follows another one."""
-        text = token.text
         if before in (";", "}") and text != "else":
             self.alternatives = 0
+        if text not in _COUNTED:
+            self.signs = 0
+            return
         self.signs = self.signs + 1 if text in _PREFIXES else 0
         self.terms += text in _OPERATORS
         self.members = self.members + 1 if text in (".", "[") else 0 if text in _OPERATORS else self.members

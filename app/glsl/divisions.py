@@ -15,6 +15,9 @@ from .tokens import GlslFault, GlslToken, count_line, mask_directives, match_bra
 
 QUOTIENT = "halation_quotient"
 REMAINDER = "halation_remainder"
+MOST_DIVISIONS = 100
+"""Divisions in a row: each is a call inside the next one, and 500 of those take Mesa ten seconds."""
+
 DEEPEST = 250
 """Brackets inside each other of text whose size is checked elsewhere."""
 
@@ -47,6 +50,8 @@ class _DivisionGuard:
     def __init__(self, code: str, tokens: Sequence[GlslToken], partners: Mapping[int, int], names: Names) -> None:
         self.code, self.tokens, self.partners = code, tokens, partners
         self.reader = OperandReader(tokens, partners, names)
+        self.starts: dict[int, int] = {}
+        """Where the chain of products before an operator begins."""
         self.floats: dict[int, bool] = {}
         """By where a chain of products begins: whether one of its factors so far is a float."""
 
@@ -69,6 +74,9 @@ class _DivisionGuard:
                 if self._is_harmless(start, at, end):
                     continue
                 inserted.setdefault(start, []).append(f"{function}(")
+                if len(inserted[start]) > MOST_DIVISIONS:
+                    line = count_line(self.code, self.tokens[at].start)
+                    raise GlslFault(line, f"more than {MOST_DIVISIONS} whole numbers divide each other in a row")
                 replaced[at] = ","
             appended.setdefault(end - 1, []).append(")")
         if first >= last:
@@ -88,9 +96,11 @@ class _DivisionGuard:
 
     def _chain_start(self, at: int) -> int:
         """Where the left operand of an operator begins: a chain of products."""
-        start = self._operand_start(at)
+        start, passed = self._operand_start(at), [at]
         while start > 0 and self.tokens[start - 1].text in _MULTIPLICATIVE:
-            start = self._operand_start(start - 1)
+            passed.append(start - 1)
+            start = self.starts.get(start - 1) or self._operand_start(start - 1)
+        self.starts |= dict.fromkeys(passed, start)
         return start
 
     def _operand_start(self, end: int) -> int:
@@ -130,6 +140,8 @@ class _DivisionGuard:
         at += 1
         while at < len(self.tokens) and self.tokens[at].text in _PREFIXES:
             at += 1
+        if self.partners.get(at, at) < at:
+            return at
         at = self.partners.get(at, at) + 1
         while at < len(self.tokens) and (text := self.tokens[at].text) in (".", "(", "[", "++", "--"):
             at = at + 2 if text == "." else self.partners.get(at, at) + 1

@@ -30,6 +30,7 @@ _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)
 _NAMED = re.compile(
     r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+([^\n]+)$|\bconst\s+(?:int|uint|float)\s+(\w+)\s*=\s*([^;,]+);", re.MULTILINE
 )
+_VARIABLE = re.compile(r"(?<!const )\b(?:int|uint|float)\s+(\w+)")
 _BEGIN = re.compile(r"\s*(int|uint|float)\s+(\w+)\s*=\s*([^,;]+)")
 _TEST = re.compile(r"\s*(\w+)\s*(<=|>=|<|>|!=)\s*([^|?]+)")
 _STEP = re.compile(r"\s*(?:(\+\+|--)\s*(\w+)|(\w+)\s*(\+\+|--)|(\w+)\s*(\+=|-=)\s*([^,]+))\s*")
@@ -152,9 +153,10 @@ def _constants(code: str) -> dict[str, float]:
     """What the text gives a name to: constants and macros that are numbers, unless the name is used for more."""
     constants: dict[str, float] = {}
     seen: set[str] = set()
+    variables = frozenset(_VARIABLE.findall(code))
     for match in _NAMED.finditer(code):
         name, value = match[1] or match[3], _value(match[2] or match[4], constants)
-        again = name in seen or re.search(rf"(?<!const )\b(?:int|uint|float)\s+{name}\b", code)
+        again = name in seen or name in variables
         seen.add(name)
         if value is None or again:
             constants.pop(name, None)

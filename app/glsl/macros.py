@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from msgspec import Struct
 
 from .conditions import evaluate_condition
+from .text import INCLUDE
 from .tokens import GlslFault, count_line, split_tokens
 
 MOST_TOKENS = 50_000
@@ -50,23 +51,24 @@ class _Macro(Struct, frozen=True):
     parameters: tuple[str, ...] | None = None
 
 
-def expand_macros(code: str, names: Mapping[str, str] | None = None) -> str:
+def expand_macros(code: str, names: Mapping[str, str] | None = None, *, may_include: bool = True) -> str:
     """The text without macros and conditions, line by line; `names` are defined from the start.
 
-    `#include` lines stay. `code` has no comments. Raises GlslFault for what is invalid or too large.
+    `#include` lines stay if it `may_include` files. `code` has no comments. Raises GlslFault for what is invalid or
+    too large.
     """
     if strange := _STRANGE.search(code):
         raise GlslFault(count_line(code, strange.start()), f"the character {strange[0]!a} is not allowed here")
     if (place := code.find("/*")) >= 0:
         raise GlslFault(count_line(code, place), "the comment that begins here is never closed")
-    return _Expander(code, {**_PREDEFINED, **(names or {})}).expand()
+    return _Expander(code, {**_PREDEFINED, **(names or {})}, may_include).expand()
 
 
 class _Expander:
     """The work in progress."""
 
-    def __init__(self, code: str, names: Mapping[str, str]) -> None:
-        self.lines = code.split("\n")
+    def __init__(self, code: str, names: Mapping[str, str], may_include: bool) -> None:
+        self.lines, self.may_include = code.split("\n"), may_include
         self.macros = {name: _Macro(tuple(split_tokens(text))) for name, text in names.items()}
         self.at = 0
         self.spent = 0
@@ -138,6 +140,8 @@ class _Expander:
             case "error":
                 raise GlslFault(line, f"#error {rest.strip()}".strip())
             case "include":
+                if not self.may_include or not INCLUDE.fullmatch(whole):
+                    raise GlslFault(line, "#include has no place here")
                 return whole
             case "" | "pragma" | "line" | "version" | "extension":
                 pass

@@ -11,13 +11,14 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
+INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
 _FUNCTION = re.compile(
     r"^[ \t]*(?:(?:highp|precise)\s+)*(\w+)\s+(?!(?:if|for|while|switch)\b)(\w+)\s*\(([^)]*)\)\s*\{", re.MULTILINE
 )
 _PARAMETER = re.compile(r"(?:(out)\s+)?((?:inout\s+)?\w+(?:\s*\[\w*\])?)\s*(\w*)\s*(\[\w*\])?")
 _QUALIFIER = re.compile(r"\b(?:const|in|highp|mediump|lowp|precise)\s+")
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_BRACE = re.compile(r"[{}]")
 _BLANK = re.compile(r"[^\n]")
 
 
@@ -93,10 +94,12 @@ class Text(Struct, frozen=True, dict=True):
 
 def _function(match: re.Match[str], code: str) -> GlslFunction:
     result, name, inside = match.groups()
-    depth, end = 1, match.end()
-    while depth and end < len(code):
-        depth += {"{": 1, "}": -1}.get(code[end], 0)
-        end += 1
+    depth, end = 1, len(code)
+    for brace in _BRACE.finditer(code, match.end()):
+        depth += 1 if brace[0] == "{" else -1
+        if not depth:
+            end = brace.end()
+            break
     used = frozenset(_WORD.findall(code, match.end(), end))
     parameters: list[tuple[str, str]] = []
     outputs: list[tuple[str, str]] = []
@@ -128,13 +131,13 @@ def parse(name: str, source: str, file: str = "") -> Text:
     functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
     by_name = MappingProxyType({one.name: one for one in functions})
     includes = {
-        match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in _INCLUDE.finditer(code)
+        match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in INCLUDE.finditer(code)
     }
     words = frozenset(_WORD.findall(code))
     return Text(
         name,
         file or f"shaders/{name}.glsl",
-        _INCLUDE.sub(_blank, code),
+        INCLUDE.sub(_blank, code),
         MappingProxyType(includes),
         by_name,
         functions,

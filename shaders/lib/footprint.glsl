@@ -9,4 +9,4 @@ int footprint_samples(vec2 across, vec2 down) {
 }
 
 // Where sample i of n x n lies, from the middle of its pixel.
-vec2 footprint_at(int i, int n) { return (vec2(i % n, i / n) + 0.5) / float(n) - 0.5; }
+vec2 footprint_at(int i, int n) { return (vec2(i % max(n, 1), i / max(n, 1)) + 0.5) / float(n) - 0.5; }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 
 import pytest
@@ -59,6 +60,25 @@ def test_what_is_too_large_is_refused_with_its_line(case: str) -> None:
     with pytest.raises(CodeFault) as caught:
         node_type(Code("glsl", effect(TOO_LARGE[case])))
     assert caught.value.line == 2 and time.monotonic() - began < 2.0
+
+
+GROWING = {
+    "constants": "".join(f"const float c{n} = 1.0;\n" for n in range(7000)),
+    "loops": "float g(float x) { " + "for (int i = 0; i < int(x); i++) x += 1.0;\n" * 2000 + "return x; }\n",
+    "divisions": "int g(int q) { q = " + "/".join(["q"] * 3900) + "; return q; }\n",
+    "lines": "\n" * 2_000_000,
+    "letters": " " * 2_000_000,
+    "comments": "/* a */" * 300_000,
+    "a broken header of a loop": "void g() { for (int i = 0.0) i < 4; i--) { } }\n",
+}
+
+
+@pytest.mark.parametrize("case", GROWING)
+def test_everything_is_read_in_a_time_that_does_not_grow_with_its_square(case: str) -> None:
+    began = time.process_time()
+    with contextlib.suppress(CodeFault):
+        node_type(Code("glsl", GROWING[case] + effect("")))
+    assert time.process_time() - began < 4.0
 
 
 @pytest.mark.parametrize(("arms", "levels"), [(4, 10), (2, 20), (1000, 3), (1, 400)])

@@ -115,6 +115,20 @@ def test_code_with_macros_renders(run: Run) -> None:
     assert (run(node_type(Code("glsl", text))(), PIXEL) == 0.25).all()
 
 
+@pytest.mark.parametrize(
+    "line", ['# include "lib/color.glsl"', "#include <lib/color.glsl>", "#include lib", "#include"]
+)
+def test_only_plain_includes_are_read(line: str) -> None:
+    """moderngl reads includes as well, and knows none."""
+    with pytest.raises(CodeFault, match="line 2: #include has no place here"):
+        node_type(Code("glsl", f"\n{line}\nvec4 f(vec4 image) {{ return image; }}"))
+
+
+def test_shaders_of_the_format_include_nothing() -> None:
+    with pytest.raises(CodeFault, match="#include has no place here"):
+        node_type(Code("isf", '/*{}*/\n#include "lib/color.glsl"\nvoid main() { gl_FragColor = vec4(1.0); }'))
+
+
 def test_a_signature_does_not_depend_on_conditions() -> None:
     text = "vec4 g(vec4 image) { return image; }\n#if 0\nvec4 f(vec4 image) { return image; }\n#endif"
     with pytest.raises(CodeFault, match="line 3: the signature of 'f'"):

@@ -14,6 +14,7 @@ from halation.nodes import Draw, Drawn, Filter, Plain, ShaderText, Size, Tempora
 from ...errors import GraphError
 from ...glsl import parse, words
 from ..code import Code, CustomNode
+from ..securing import check_length
 from .glsl import UNIFORMS, rename_word, samplers, shader_text, values
 from .header import PICTURES, Buffer, Header, read_header
 from .inputs import LIGHT, attributes, doc_of, number_of, socket_of, uniform_of, value_of
@@ -57,6 +58,8 @@ class IsfShader:
 @lru_cache(KEPT)
 def isf_node(code: Code) -> type[CustomNode]:
     """The class of the nodes that this shader describes. Raises CodeFault."""
+    for part in (code.text, code.vertex):
+        check_length(part)
     header = read_header(code.text)
     text = shader_text(code, header)
     used = words(*(stage.text for stage in (text.fragment, text.vertex) if stage))
