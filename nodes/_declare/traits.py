@@ -27,6 +27,8 @@ class Trait(StrEnum):
     """It filters the picture, so that two such nodes in a row cost sharpness and time."""
     KEEPS_NON_FINITE = "keeps non-finite"
     """Its outputs are its inputs unchanged, NaN and infinity included; all other nodes make every pixel finite."""
+    USES_ALPHA = "uses alpha"
+    """Its color depends on alpha: a pixel that is half covered is not half of the same pixel fully covered."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-from .._declare import Image, Pointwise
+from .._declare import Image, Pointwise, Trait
 
 
 class Unpremultiply(Pointwise):
@@ -6,5 +6,7 @@ class Unpremultiply(Pointwise):
 
     Where alpha is 0 the color stays as it is.
     """
+
+    traits = (Trait.USES_ALPHA,)
 
     image = Image()

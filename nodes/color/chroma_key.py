@@ -12,7 +12,7 @@ class ChromaKey(Pointwise):
     the screen's, over the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
     """
 
-    traits = (Trait.NEEDS_COLOR,)
+    traits = (Trait.NEEDS_COLOR, Trait.USES_ALPHA)
 
     image = Image()
     screen: Annotated[RGBA, Doc("The color of the empty screen, as it is lit.")] = (0.06, 0.5, 0.1, 1.0)

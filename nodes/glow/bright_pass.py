@@ -13,7 +13,7 @@ class BrightPass(Pointwise):
     arrives, that is premultiplied; alpha is kept.
     """
 
-    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS, Trait.USES_ALPHA)
 
     image = Image()
     mask = Field(1.0, doc="How much of each pixel may glow: emission, a matte.")

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 from source_trees import copy_tree, run_in_tree
 
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[2]
+CONTRIBUTING = (ROOT / "docs" / "CONTRIBUTING.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 EVERY_NODE = ("tests/nodes/test_catalogue.py", "tests/nodes/test_promises.py", "tests/nodes/test_pointwise_values.py")
 """Tests with a case for every node."""
@@ -46,6 +48,25 @@ def test_the_new_node_passes_the_tests_of_every_node(tree: Path) -> None:
     result = run_in_tree(tree, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", "solarize", *EVERY_NODE)
     assert result.returncode == 0, result.stdout
     assert int(re.findall(r"(\d+) passed", result.stdout)[0]) > 10
+
+
+def test_its_numbers_are_tested_as_contributing_says(tree: Path) -> None:
+    section = CONTRIBUTING.partition("### A node")[2].partition("\n### ")[0]
+    (text,) = re.findall(r"```python\n(.*?)```", section, re.S)
+    (tree / "tests/nodes/test_solarize.py").write_text(text, encoding="utf-8")
+    result = run_in_tree(tree, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/nodes/test_solarize.py")
+    assert result.returncode == 0 and "1 passed" in result.stdout, result.stdout
+    style = run_in_tree(tree, "-m", "ruff", "check", "tests/nodes/test_solarize.py", "nodes/color/solarize.py")
+    assert style.returncode == 0, style.stdout
+
+
+def test_commands_of_the_table_select_tests(tree: Path) -> None:
+    rows = re.findall(r"^\| `\./dev test(.*?)` \|", CONTRIBUTING, re.M)
+    assert len(rows) >= 4
+    for row in rows:
+        result = run_in_tree(tree, "-m", "pytest", "--collect-only", "-qq", "-p", "no:cacheprovider", *row.split())
+        counts = [int(count) for count in re.findall(r": (\d+)$", result.stdout, re.M)]
+        assert result.returncode == 0 and sum(counts) > 10, (row, result.stdout)
 
 
 def test_nothing_else_notices_it(tree: Path) -> None:

@@ -253,6 +253,13 @@ def outputs_of(renderer, node: type[Node], arrays, **options):
     return renderer.render(fed(node(), arrays), RenderRequest(arrays, targets, precision="float", **options))
 
 
+def recolors_one_picture(node: type[Node]) -> bool:
+    """True for a pointwise node that changes the color of its only picture, whatever its coverage."""
+    images = [socket for socket in node.inputs.values() if socket.kind is Kind.IMAGE]
+    gives_picture = any(output.socket.kind is Kind.IMAGE for output in node.outputs.values())
+    return issubclass(node, Pointwise) and len(images) == 1 and gives_picture and Trait.USES_ALPHA not in node.traits
+
+
 @rendered
 @pytest.mark.parametrize("size", [(1, 1), (2, 3), (17, 11), (64, 1), (1, 63)], ids=str)
 def test_it_renders_finite_at_defaults(renderer, node, size):
@@ -292,6 +299,28 @@ def test_nothing_that_is_no_number_comes_out(renderer, node):
     found = renderer.render(graph, RenderRequest(arrays, targets, precision="float"))
     for name in node.outputs:
         assert np.isfinite(found[name]).all(), name
+
+
+@pytest.mark.parametrize("node", [node for node in RENDERED if recolors_one_picture(node)], ids=lambda node: node.id)
+def test_half_coverage_gives_half_of_the_color(renderer, node):
+    """Pictures are premultiplied: an edge must not become another color than the area that it bounds."""
+    rng = np.random.default_rng(8)
+    (image,) = (name for name, socket in node.inputs.items() if socket.kind is Kind.IMAGE)
+    arrays = {
+        name: np.full((1, 1), 0.4, np.float32) if socket.single else picture(node, name, (16, 12), rng)
+        for name, socket in node.inputs.items()
+        if socket.kind is not Kind.CAMERA
+    }
+    arrays[image][..., 3] = 1.0
+    halves = arrays | {image: 0.5 * arrays[image]}
+    targets = {name: Port("node", name) for name, output in node.outputs.items() if output.socket.kind is Kind.IMAGE}
+    for values in ({}, neutral_off(node)):
+        covered, half = (
+            renderer.render(fed(node(**values), pictures), RenderRequest(pictures, targets, precision="float"))
+            for pictures in (arrays, halves)
+        )
+        for name in targets:
+            np.testing.assert_allclose(2.0 * half[name], covered[name], rtol=1e-3, atol=1e-3, err_msg=name)
 
 
 def neutral_off(node: type[Node]) -> dict[str, object]:
