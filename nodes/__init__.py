@@ -12,7 +12,7 @@ from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names
 from ._declare import Node
 from ._plugins import Plugin, find_class, list_files, plugins
 
-__all__ = ["Plugin", "built_in_nodes", "catalogue", "plugins"]
+__all__ = ["Plugin", "built_in_nodes", "catalogue", "plugins", "reload_catalogue"]
 __all__ += _declare.__all__
 
 
@@ -88,3 +88,11 @@ def built_in_nodes() -> BuiltInNodes:
 def catalogue() -> Mapping[str, type[Node]]:
     """Every node class by id, plug-ins included, in the order of the menu."""
     return Catalogue(built_in_nodes())
+
+
+def reload_catalogue() -> Mapping[str, type[Node]]:
+    """The same of the modules as they are now."""
+    built_in_nodes.cache_clear()
+    catalogue.cache_clear()
+    dict(built_in_nodes())
+    return catalogue()

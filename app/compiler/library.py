@@ -279,3 +279,9 @@ def _find_files(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
 def installed_library() -> Library:
     """The library that ships with Halation, with the shaders of plug-ins."""
     return Library(InstalledTexts())
+
+
+def reload_installed_library() -> Library:
+    """The same with the texts of shaders as they are now."""
+    installed_library.cache_clear()
+    return installed_library()

@@ -11,15 +11,18 @@ from .calibration import load_or_measure
 from .device import Device
 from .opengl.context import open_current, open_standalone
 from .opengl.device import OpenGLDevice
+from .opengl.driver_settings import USER_DRIVER, DriverSettings
 
 
-def open_device(form: Form | None = None, memory: int = 0, *, sandbox: Sandbox) -> Device:
+def open_device(
+    form: Form | None = None, memory: int = 0, *, sandbox: Sandbox, driver: DriverSettings = USER_DRIVER
+) -> Device:
     """Open OpenGL without a window. Raises DeviceError where there is none, or one that is too old.
 
     `form` overrides how passes are emitted; otherwise the table says, or what was measured at the first start. Plans
     use at most `memory` bytes of the device; 0 is as much as it has.
     """
-    return _choose_form(open_standalone(), form, memory, sandbox=sandbox)
+    return _choose_form(open_standalone(driver), form, memory, sandbox=sandbox)
 
 
 def adopt_window(form: Form | None = None, *, sandbox: Sandbox) -> Device:

@@ -7,13 +7,11 @@ changes no bit; the width of vectors only changes the renderer's name.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from ..resources.sandbox import Sandbox
 from .device import Device
+from .opengl.driver_settings import DriverSettings
 from .opening import open_device
 
 _PINNED_VARIABLES = {
@@ -38,26 +36,10 @@ _REMOVED_VARIABLES = (
 _MESA = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 
-@contextmanager
-def pin_driver() -> Iterator[None]:
-    """Let OpenGL contexts that are opened in this block use the pinned software rasterizer, if the system has it.
-
-    Afterwards the environment variables are as before. A process that has already opened a context keeps the
-    instructions that the driver chose then.
-    """
-    pinned = {**_PINNED_VARIABLES, **({"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {})}
-    before = {name: os.environ.get(name) for name in (*pinned, *_REMOVED_VARIABLES)}
-    for name in _REMOVED_VARIABLES:
-        os.environ.pop(name, None)
-    os.environ.update(pinned)
-    try:
-        yield
-    finally:
-        for name, text in before.items():
-            if text is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = text
+def pin_driver() -> DriverSettings:
+    """The settings under which a context is the software rasterizer's, where the system has one."""
+    vendor = {"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {}
+    return DriverSettings({**_PINNED_VARIABLES, **vendor}, _REMOVED_VARIABLES)
 
 
 def open_pinned(memory: int = 0, *, sandbox: Sandbox) -> Device:
@@ -65,5 +47,4 @@ def open_pinned(memory: int = 0, *, sandbox: Sandbox) -> Device:
 
     `Device.target.software` says which one it is.
     """
-    with pin_driver():
-        return open_device("fragment", memory, sandbox=sandbox)
+    return open_device("fragment", memory, sandbox=sandbox, driver=pin_driver())

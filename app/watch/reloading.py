@@ -68,9 +68,7 @@ class NodeFiles:
             for name, module in before.items():
                 _install(name, module)
             return f"{self._describe_fault(fault)}; all nodes stay as they were"
-        built_in_nodes.cache_clear()
-        catalogue.cache_clear()
-        dict(built_in_nodes())
+        nodes.reload_catalogue()
         self._texts = texts
         return ""
 

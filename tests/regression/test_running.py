@@ -330,7 +330,7 @@ def test_pinning_leaves_the_environment_as_it_was(monkeypatch) -> None:
     monkeypatch.setenv("LP_DEBUG", "tgsi")
     monkeypatch.delenv("LIBGL_ALWAYS_SOFTWARE", raising=False)
     before = dict(os.environ)
-    with pytest.raises(ZeroDivisionError), pin_driver():
+    with pytest.raises(ZeroDivisionError), pin_driver().apply():
         assert os.environ["GALLIUM_DRIVER"] == "llvmpipe" and "LP_DEBUG" not in os.environ
         raise ZeroDivisionError
     assert dict(os.environ) == before

@@ -9,13 +9,15 @@ import moderngl
 
 from ...errors import DeviceError
 from .device import OLDEST, OpenGLDevice, describe_target
+from .driver_settings import DriverSettings
 from .warming import EGL_LIBRARY, GL
 
 
-def open_standalone() -> OpenGLDevice:
+def open_standalone(driver: DriverSettings) -> OpenGLDevice:
     """A device without a window. Raises DeviceError where OpenGL cannot be opened, or is too old."""
-    context = _create_context()
-    return OpenGLDevice(context, describe_target(context))
+    with driver.apply():
+        context = _create_context()
+        return OpenGLDevice(context, describe_target(context))
 
 
 def open_current() -> OpenGLDevice:
