@@ -155,7 +155,7 @@ def _write_sarif(reports: Sequence[CheckReport], rules: Mapping[str, Rule], file
     from ..resources.atomic_write import write_text_atomically
 
     here = Path.cwd()
-    log = sarif(reports, rules, Surroundings().root(here) or here, VERSION)
+    log = sarif(reports, rules, Surroundings(sandbox).root(here) or here, VERSION)
     if file == "-":
         print_json(log)
     else:

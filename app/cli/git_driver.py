@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..resources.input_files import read_bytes
 from ..resources.sandbox import read_process_sandbox
 from .outcome import print_note
 from .versions import is_colored, paint, print_lines
@@ -111,4 +113,7 @@ def _parse_graph(text: str, name: str) -> Graph | None:
 
 
 def _read_text(file: str) -> str:
-    return Path(file).read_text(encoding="utf-8-sig", errors="replace")
+    """The text of a file that git hands over; git names the null device for one that is not there."""
+    if file == os.devnull:
+        return ""
+    return read_bytes(file, read_process_sandbox()).decode("utf-8-sig", errors="replace")

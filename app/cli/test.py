@@ -76,7 +76,7 @@ def test(
     from ..regression.report import check_report, write_report
     from ..regression.results import as_json as for_machines
 
-    check_report(report, junit)
+    check_report(report, junit, sandbox=sandbox)
     options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
     session = run_cases(
         cases,

@@ -1,11 +1,52 @@
-"""The files that a color config reads besides itself: with `--root` they must lie inside of the folder too."""
+"""The files that OpenColorIO reads: tables, and what tables and configs name. It is given bytes, and no paths to open.
+
+A table in Academy Common LUT Format can refer to other files (`<Reference path="...">`), and a config names tables
+through search paths and variables. So whatever such a file names is opened by `SandboxedFiles`, which OpenColorIO asks
+in place of the disk. It checks the sandbox, and refuses what is no regular file: OpenColorIO would wait for a FIFO.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
 from typing import Any
 
+from ..errors import InputError
+from ..resources.input_files import check_file, fingerprint, open_file, read_bytes
 from ..resources.sandbox import Sandbox
+
+_ARCHIVE = b"PK"
+"""How a zip file begins (PKWARE APPNOTE): OpenColorIO reads what an archive names from the archive alone."""
+
+_PROLOG = 4096
+"""Bytes in which the first "<" of an XML file is looked for: before it there may be white space only."""
+
+_BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
+"""White space and marks of byte order (XML 1.0, section 2.3 and appendix F), with the zeros of UTF-16 and UTF-32."""
+
+
+_NO_TEXT = "\N{REPLACEMENT CHARACTER}"
+
+
+def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:
+    """The config in a file, and what opens its tables: keep that for as long as the config, which does not.
+
+    Without the second, None for an archive, OpenColorIO opens files itself. Raises InputError for a file that cannot be
+    read, OpenColorIO's Exception for no config.
+    """
+    check_file(source, sandbox)
+    content = read_bytes(source, sandbox)
+    if content.startswith(_ARCHIVE):
+        return api.Config.CreateFromFile(source), None
+    text = content.decode(errors="replace")
+    config = api.Config.CreateFromStream(text)
+    if _NO_TEXT in text and _NO_TEXT in config.serialize():  # which leaves out comments
+        raise InputError(f"{source}: has names that are not UTF-8: save it as UTF-8")
+    config.setWorkingDir(str(Path(source).parent))
+    files = make_sandboxed_files(sandbox)
+    config.setConfigIOProxy(files)
+    return config, files
 
 
 def find_config_fault(config: Any, sandbox: Sandbox) -> str:
@@ -14,6 +55,60 @@ def find_config_fault(config: Any, sandbox: Sandbox) -> str:
         if reason := sandbox.fault(table):
             return f"its table {table} {reason}"
     return ""
+
+
+def may_name_files(path: str, sandbox: Sandbox) -> bool:
+    """True for a table that may refer to other files, whatever its name is: one that begins like XML.
+
+    Raises InputError for what is no regular file; OSError.
+    """
+    with open_file(path, sandbox) as file:
+        return file.read(_PROLOG).lstrip(_BLANK)[:1] in (b"<", b"")
+
+
+def make_sandboxed_files(sandbox: Sandbox) -> Any:
+    """The files of the disk as OpenColorIO may read them. `faults` are sentences about those that it may not."""
+    return _define_sandboxed_files()(sandbox)
+
+
+@cache
+def _define_sandboxed_files() -> type[Any]:
+    """The class, which needs OpenColorIO to be loaded."""
+    import PyOpenColorIO
+
+    api: Any = PyOpenColorIO
+
+    class SandboxedFiles(api.PyConfigIOProxy):
+        """What OpenColorIO asks in place of the disk."""
+
+        def __init__(self, sandbox: Sandbox) -> None:
+            super().__init__()
+            self._sandbox = sandbox
+            self.faults: list[str] = []
+
+        def getConfigData(self) -> str:
+            """The text of a config, which is given as it is."""
+            return ""
+
+        def getFastLutFileHash(self, path: str) -> str:
+            """A mark of the version of a file; "" for one that is not there or may not be read."""
+            if not self._sandbox.fault(path) and (Path(path).is_dir() or not Path(path).exists()):
+                return ""
+            try:
+                return fingerprint(path, self._sandbox)
+            except InputError as fault:
+                self.faults.append(str(fault))
+                return ""
+
+        def getLutData(self, path: str) -> list[int]:
+            """The bytes of a file."""
+            try:
+                return list(read_bytes(path, self._sandbox))
+            except InputError as fault:
+                self.faults.append(str(fault))
+                return []
+
+    return SandboxedFiles
 
 
 def _find_tables(config: Any) -> Iterator[str]:

@@ -15,6 +15,7 @@ from ..glsl import parse
 from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
 from ..resources.sandbox import Sandbox
+from .config_files import make_sandboxed_files, may_name_files
 from .display import make_display_processor
 from .management import ColorManager, OcioColorSpace, describe_ocio_error, get_color_manager, load_ocio, ocio_errors
 
@@ -94,11 +95,17 @@ def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
     api = load_ocio()
     if not Path(change.path).is_file():
         raise InputError(f"{change.path}: there is no such file: choose a table (.cube, .3dl, .clf, ...)")
+    config, files = api.Config.CreateRaw(), None
+    if may_name_files(change.path, sandbox):
+        files = make_sandboxed_files(sandbox)
+        config.setConfigIOProxy(files)
     api.ClearAllCaches()  # files that have changed are to be read again; a config would remember them, too
     direction = api.TRANSFORM_DIR_INVERSE if change.inverse else api.TRANSFORM_DIR_FORWARD
     transform = api.FileTransform(change.path, interpolation=api.INTERP_BEST, direction=direction)
     try:
-        return api.Config.CreateRaw().getProcessor(transform)
+        return config.getProcessor(transform)
     except ocio_errors() as error:
+        if files is not None and files.faults:
+            raise InputError(f"{change.path}: names a file that may not be read: {files.faults[-1]}") from error
         reason = describe_ocio_error(error)
         raise InputError(f"{change.path}: is no color table that can be read: {reason}") from error

@@ -28,7 +28,7 @@ from msgspec import Struct
 from ..errors import GraphError, HalationError, InputError, UsageError
 from ..resources.input_files import content_hash
 from ..resources.sandbox import UNRESTRICTED, Sandbox
-from .config_files import find_config_fault
+from .config_files import find_config_fault, open_config
 
 BUILT_IN = "ocio://default"
 LINEAR_REC709 = "lin_rec709_scene"
@@ -66,6 +66,8 @@ class ColorManager:
         self.mark = f"{source} {version} {working}"
         """Changes when the config or the working space does."""
         self._error, self._working_name = fault, working
+        self._files: Any = None
+        """What opens the tables of the graph's own config."""
         self._spaces_by_name: dict[str, OcioColorSpace | None] = {}
 
     @property
@@ -223,7 +225,8 @@ class ColorManager:
         try:
             return make()
         except ocio_errors() as error:
-            raise self._error(f"{self.where}: {describe_ocio_error(error)}") from error
+            faults: list[str] = self._files.faults if self._files else []
+            raise self._error(f"{self.where}: {faults[-1] if faults else describe_ocio_error(error)}") from error
 
     def _read_config(self, source: str) -> Any:
         if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
@@ -233,16 +236,19 @@ class ColorManager:
             near = difflib.get_close_matches(Path(source).name, _list_names(folder), 1)
             raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
         try:
-            config = (
-                load_builtin_config(source)
-                if source.startswith("ocio://")
-                else load_ocio().Config.CreateFromFile(source)
-            )
-            if not source.startswith("ocio://") and not Path(source).read_bytes().isascii():
-                config.serialize()  # names that are no UTF-8 are found here, and not when one is asked for
-            if reason := find_config_fault(config, self._sandbox):
+            if source.startswith("ocio://"):
+                return load_builtin_config(source)
+            if self._error is UsageError:  # the config of $OCIO, which the user trusts
+                config = load_ocio().Config.CreateFromFile(source)
+                if not Path(source).read_bytes().isascii():
+                    config.serialize()  # names that are no UTF-8 are found here, and not when one is asked for
+                return config
+            config, self._files = open_config(load_ocio(), source, self._sandbox)
+            if self._files and (reason := find_config_fault(config, self._sandbox)):
                 raise self._error(f"{self._describe_source(source)}: {reason}")
             return config
+        except InputError as error:
+            raise self._error(f"{self._describe_source(source)}: {str(error).removeprefix(f'{source}: ')}") from None
         except ocio_errors() as error:
             reason = f"is no color config that can be read: {describe_ocio_error(error)}"
             if source.startswith("ocio://"):

@@ -17,7 +17,7 @@ from .model import Input, Port, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean, limited_suggestions, name_fault, pick
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
-from .values import coerce_numbers, value_fault
+from .values import coerce_numbers, sequence_fault, value_fault
 from .walk import describe_loop, find_loops
 
 _REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
@@ -191,6 +191,8 @@ def _ends(graph: Graph) -> Iterator[Problem]:
             yield Problem(INPUTS, name, fault, rules.BAD_NAME)
         elif fault := _default_fault(name, end):
             yield Problem(INPUTS, name, fault, rules.BAD_DEFAULT, f"inputs.{name}.default")
+        elif fault := sequence_fault(end.file):
+            yield Problem(INPUTS, name, f"input '{name}': {fault}", rules.BAD_VALUE, f"inputs.{name}.file")
     for name in graph.outputs:
         if fault := name_fault(name, "output"):
             yield Problem(OUTPUTS, name, fault, rules.BAD_NAME)

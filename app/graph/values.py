@@ -8,6 +8,9 @@ from typing import Any, cast
 
 from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, LightKind, Plain, Value
 
+from ..errors import UsageError
+from .frames import Pattern
+
 _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38
 
@@ -80,9 +83,7 @@ def value_fault(value: Value, setting: object) -> str | None:
     if plain is None:
         return f"{setting!r} does not fit: it takes {describe_type(value)}"
     if isinstance(plain, str):
-        return (
-            f"'{plain}' is not a choice: it takes {describe_type(value)}" if _is_unknown_choice(value, plain) else None
-        )
+        return _text_fault(value, plain)
     for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
         if isinstance(part, float) and not math.isfinite(part):
             return f"{part} is not a finite number"
@@ -93,6 +94,21 @@ def value_fault(value: Value, setting: object) -> str | None:
         if abs(part) > (_FLOAT32 if isinstance(part, float) else _INT32 - 1):
             return f"{setting!r} is too large for 32 bits"
     return _order_fault(value, plain) if isinstance(plain, tuple) else None
+
+
+def _text_fault(value: Value, text: str) -> str | None:
+    if _is_unknown_choice(value, text):
+        return f"'{text}' is not a choice: it takes {describe_type(value)}"
+    return sequence_fault(text) if value.type == "path" and value.pixels else None
+
+
+def sequence_fault(path: str) -> str | None:
+    """Why the path of a picture cannot stand for a sequence though it has a place for the frame number, or None."""
+    try:
+        Pattern.parse(path)
+    except UsageError as fault:
+        return str(fault)
+    return None
 
 
 def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:

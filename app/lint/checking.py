@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
@@ -76,12 +76,16 @@ class GraphChecker:
 
     sandbox: Sandbox
     off: frozenset[str] = frozenset()
-    around: surroundings.Surroundings = field(default_factory=surroundings.Surroundings)
 
     @cached_property
     def world(self) -> compiled.NotingProvider:
         """What is known of files that graphs name."""
         return compiled.NotingProvider(self.sandbox)
+
+    @cached_property
+    def around(self) -> surroundings.Surroundings:
+        """What is known of folders that graphs name."""
+        return surroundings.Surroundings(self.sandbox)
 
     @cached_property
     def types(self) -> Mapping[str, type[Node]]:

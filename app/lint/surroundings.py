@@ -12,6 +12,7 @@ from ..errors import UsageError
 from ..graph import Graph, Problem
 from ..graph.frames import Pattern
 from ..graph.rules import Rule
+from ..resources.sandbox import Sandbox
 from .rules.paths import is_absolute, named_paths, who
 from .sheet import bodies
 
@@ -35,6 +36,7 @@ RULES = (PATH_CASE, OUTSIDE_REPOSITORY)
 class Surroundings:
     """What was found out about folders, each looked at once."""
 
+    sandbox: Sandbox
     _names: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
     _spellings: dict[str, dict[str, list[str]]] = field(default_factory=dict[str, dict[str, list[str]]])
     _roots: dict[str, Path | None] = field(default_factory=dict[str, "Path | None"])
@@ -92,10 +94,11 @@ class Surroundings:
         return self._spellings[folder]
 
     def _in(self, folder: str) -> frozenset[str]:
-        """What is in a folder."""
+        """What is in a folder; nothing for one that may not be read."""
         if folder not in self._names:
             try:
-                self._names[folder] = frozenset(os.listdir(folder))  # noqa: PTH208
+                is_allowed = not self.sandbox.fault(folder)
+                self._names[folder] = frozenset(os.listdir(folder) if is_allowed else ())  # noqa: PTH208
             except OSError:
                 self._names[folder] = frozenset()
         return self._names[folder]

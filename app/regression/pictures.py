@@ -12,6 +12,7 @@ from ..color.transforms import to_three_channels
 from ..errors import OutputError
 from ..media.comparison.metrics import amplify_difference
 from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing, encode_png, write_difference
+from ..resources.atomic_write import write_bytes_atomically
 from ..resources.sandbox import Sandbox
 from .cases import Case
 from .comparison import Parts
@@ -48,6 +49,8 @@ def leave_pictures(
     Raises OutputError.
     """
     folder = folder / _UNSAFE.sub("_", case.suite.name.partition(".")[0]) / _UNSAFE.sub("_", case.name)
+    if reason := sandbox.fault(folder):
+        raise OutputError(f"{folder}: {reason}")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
@@ -67,7 +70,7 @@ def leave_pictures(
             data: bytes = getattr(check.views, word)
             if data:
                 files.append(folder / f"{stem}.{word}.view.png")
-                files[-1].write_bytes(data)
+                write_bytes_atomically(files[-1], data, sandbox)
     return replace(check, files=tuple(files))
 
 

@@ -8,8 +8,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..errors import UsageError
-from ..resources.atomic_write import write_text_atomically
+from ..errors import OutputError, UsageError
+from ..resources.atomic_write import check_replaceable, write_text_atomically
 from ..resources.sandbox import Sandbox
 from .cases import METRICS, format_number
 from .results import Outcome, PictureCheck, PictureViews, RegressionRun
@@ -19,13 +19,15 @@ _MOST = 200 * 2**20
 """Bytes of pictures; what fails after that is a row without pictures."""
 
 
-def check_report(*paths: Path | None) -> None:
-    """Refuse what could not be written, before anything is rendered. Raises UsageError."""
+def check_report(*paths: Path | None, sandbox: Sandbox) -> None:
+    """Refuse what cannot be written, before anything is rendered. Raises UsageError."""
     for path in paths:
         if path is None:
             continue
-        if path.is_dir():
-            raise UsageError(f"{path}: is a folder: add the name of a file")
+        try:
+            check_replaceable(path, sandbox)
+        except OutputError as fault:
+            raise UsageError(str(fault)) from None
         if not path.parent.is_dir():
             raise UsageError(f"{path}: there is no such folder: create it first")
 

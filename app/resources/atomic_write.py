@@ -129,11 +129,16 @@ def check_replaceable(path: str | Path, sandbox: Sandbox) -> None:
 
 def write_text_atomically(path: str | Path, text: str, sandbox: Sandbox) -> None:
     """Replace a file by a text in UTF-8. Raises OutputError, also for a file that is read-only."""
+    write_bytes_atomically(path, text.encode(), sandbox)
+
+
+def write_bytes_atomically(path: str | Path, content: bytes, sandbox: Sandbox) -> None:
+    """Replace a file by some bytes. Raises OutputError, also for a file that is read-only."""
     with replace_file(path, sandbox) as replacement:
         target = replacement.target
         if target.exists() and not target.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
             raise OutputError(f"{path}: the file is read-only: save under another name, or make it writable")
-        replacement.temporary.write_bytes(text.encode())
+        replacement.temporary.write_bytes(content)
         replacement.commit()
     remove_abandoned_files(target.parent, target.name)
 

@@ -86,6 +86,7 @@ def fingerprint(path: str | Path, sandbox: Sandbox) -> str:
         status = Path(path).stat()
     except (OSError, ValueError) as error:
         raise InputError(f"{make_path_printable(path)}: {_describe_missing(Path(path))}") from error
+    _check_regular(path, status)
     return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
 
 

@@ -64,7 +64,7 @@ class ContinuousRenderer:
         self._sandbox = sandbox
         self._path, self._bindings = path.absolute(), bindings
         self._load, self._render = load, render
-        self._watcher, self._nodes = FileWatcher(), NodeFiles()
+        self._watcher, self._nodes = FileWatcher(sandbox), NodeFiles()
         self._watched: tuple[tuple[Path, ...], ...] = ((), (), ())
         self._news: dict[Path, FileChange] = {}
 

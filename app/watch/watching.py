@@ -26,8 +26,11 @@ from typing import Literal
 from halation.nodes import Node
 from watchfiles import watch
 
+from ..errors import InputError
 from ..graph import Graph, Group, Port
 from ..media.layers import split_layer
+from ..resources.input_files import read_bytes
+from ..resources.sandbox import UNRESTRICTED, Sandbox
 
 Kind = Literal["graph", "group", "picture", "code", "shader", "node"]
 _Key = tuple[Kind, Path]
@@ -83,8 +86,8 @@ class _WakeSignal:
 class FileWatcher:
     """Watches files on a thread of its own; `poll` never waits. `fault` is set if the system sends no notifications."""
 
-    def __init__(self) -> None:
-        self.fault = ""
+    def __init__(self, sandbox: Sandbox) -> None:
+        self.fault, self._sandbox = "", sandbox
         self._watched = _WatchList()
         self._known: dict[_Key, _FileState] = {}
         self._listed: frozenset[_Key] = frozenset()
@@ -115,7 +118,7 @@ class FileWatcher:
         if watch_list == self._watched:
             return
         # What is there now, not a moment later, is what the caller has read.
-        fresh = {key: _inspect(key, None) for key in watch_list.files if key not in self._watched.files}
+        fresh = {key: _inspect(key, None, self._sandbox) for key in watch_list.files if key not in self._watched.files}
         with self._lock:
             self._watched = watch_list
             self._known |= fresh
@@ -138,7 +141,7 @@ class FileWatcher:
         """True if the graph file was changed by another program, and the change was not polled yet."""
         key: _Key = ("graph", path)
         with self._lock:
-            state, content = self._known.get(key), _content_mark(key, _file_stamp(path))
+            state, content = self._known.get(key), _content_mark(key, _file_stamp(path, self._sandbox), self._sandbox)
             if state is None or not content or content in self._expected.get(path, ()):
                 return False
             return content != state.content or key in self._news
@@ -146,7 +149,9 @@ class FileWatcher:
     def expect(self, path: Path) -> None:
         """Announce that this process wrote the file as it is now: that is no news."""
         with self._lock:
-            self._expected.setdefault(path, []).append(_content_mark(("graph", path), _file_stamp(path)))
+            self._expected.setdefault(path, []).append(
+                _content_mark(("graph", path), _file_stamp(path, self._sandbox), self._sandbox)
+            )
 
     def close(self) -> None:
         """Stop watching."""
@@ -206,7 +211,7 @@ class FileWatcher:
         folders = {parent for _, path in watched.files for parent in (path.parent, Path(os.path.realpath(path)).parent)}
         for _, top in watched.folders:
             folders |= {Path(folder) for folder, _, _ in os.walk(top)}
-        numbers = ((path, _file_stamp(path)) for path in folders)
+        numbers = ((path, _file_stamp(path, UNRESTRICTED)) for path in folders)
         return frozenset((path, stamp[2]) for path, stamp in numbers if stamp)
 
     def _settle(self) -> None:
@@ -226,7 +231,7 @@ class FileWatcher:
         # A file that a folder did not have when it was first looked at is news; all others are known from then on.
         old = {key: before.get(key) or (nothing if folder in listed else None) for key, folder in inside.items()}
         old |= {key: before.get(key) for key in (*watched.files, *removed)}
-        states = {key: _inspect(key, one) for key, one in old.items()}
+        states = {key: _inspect(key, one, self._sandbox) for key, one in old.items()}
         with self._lock:
             if watched is not self._watched:
                 return
@@ -282,20 +287,23 @@ def _keys(kind: Kind, paths: Iterable[Path]) -> Iterator[_Key]:
     return ((kind, path) for path in dict.fromkeys(paths))
 
 
-def _inspect(key: _Key, before: _FileState | None) -> _FileState:
+def _inspect(key: _Key, before: _FileState | None, sandbox: Sandbox) -> _FileState:
     """The state of a file now. Its content mark stays the old one until the file has rested."""
-    stamp, time_now = _file_stamp(key[1]), time.monotonic()
+    reach = UNRESTRICTED if key[0] in _ENDINGS else sandbox  # shaders and nodes are those of Halation
+    stamp, time_now = _file_stamp(key[1], reach), time.monotonic()
     if before is None:
-        return _FileState(stamp, _content_mark(key, stamp), time_now, False)
+        return _FileState(stamp, _content_mark(key, stamp, reach), time_now, False)
     if stamp != before.stamp:
         return replace(before, stamp=stamp, stamped_at=time_now, rests=False)
     if before.rests or time_now - before.stamped_at < _REST_SECONDS:
         return before
-    return _FileState(stamp, _content_mark(key, stamp), time_now, True)
+    return _FileState(stamp, _content_mark(key, stamp, reach), time_now, True)
 
 
-def _file_stamp(path: Path) -> tuple[int, int, int] | None:
-    """Time, size and number of a file; None if there is none."""
+def _file_stamp(path: Path, sandbox: Sandbox) -> tuple[int, int, int] | None:
+    """Time, size and number of a file; None if there is none that may be read."""
+    if sandbox.fault(path):
+        return None
     try:
         status = path.stat()
     except (OSError, ValueError):
@@ -303,12 +311,12 @@ def _file_stamp(path: Path) -> tuple[int, int, int] | None:
     return status.st_mtime_ns, status.st_size, status.st_ino
 
 
-def _content_mark(key: _Key, stamp: tuple[int, int, int] | None) -> bytes:
+def _content_mark(key: _Key, stamp: tuple[int, int, int] | None, sandbox: Sandbox) -> bytes:
     """What tells one content from another: of pictures, which are large, the stamp. b"" if there is no file."""
     kind, path = key
     if stamp is None or kind == "picture":
         return repr(stamp).encode() if stamp else b""
     try:
-        return blake2b(path.read_bytes(), digest_size=16).digest()
-    except OSError:
+        return blake2b(read_bytes(path, sandbox), digest_size=16).digest()
+    except InputError:
         return b""

@@ -26,7 +26,7 @@ def watcher(request, monkeypatch):
 
         monkeypatch.setattr(watching, "watch", refuse)
         monkeypatch.setattr(watching, "_POLL_SECONDS", 0.1)
-    made = FileWatcher()
+    made = FileWatcher(sandbox=UNRESTRICTED)
     yield made
     made.close()
     assert bool(made.fault) == (request.param == "compared") or not made._watched.files + made._watched.folders
@@ -185,7 +185,7 @@ def test_links_are_followed(watcher, path, tmp_path):
 
 
 def test_closing_ends_the_thread(path):
-    made = FileWatcher()
+    made = FileWatcher(sandbox=UNRESTRICTED)
     made.watch(path)
     made.close()
     assert not made._thread.is_alive() and made._thread not in threading.enumerate()

@@ -21,6 +21,7 @@ from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import PixelProbe
 from ...resources.sandbox import Sandbox
+from ...watch.watching import FileWatcher
 from ..actions import table
 from ..shared.action import Actions
 from ..shared.stage import DocumentStage
@@ -58,6 +59,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         PixelProbe(device),
         Interface(store),
         RenderQueue(sandbox),
+        FileWatcher(sandbox),
         renders,
         ColorFallback(sandbox),
         log,

@@ -48,10 +48,10 @@ class Editor:
     probe: PixelProbe
     interface: Interface
     exports: RenderQueue
+    watcher: FileWatcher
     renders: RenderOverviews
     coloring: ColorFallback
     log: Log = field(default_factory=Log)
-    watcher: FileWatcher = field(default_factory=FileWatcher)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)

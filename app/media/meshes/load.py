@@ -5,14 +5,14 @@ from __future__ import annotations
 import logging
 from functools import lru_cache
 from hashlib import blake2b
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 import numpy as np
 from halation.nodes import BuiltInScene, Scene
 
 from ...errors import InputError
-from ...resources.input_files import fingerprint
+from ...resources.input_files import fingerprint, open_file, read_bytes
 from ...resources.mesh import ATTRIBUTES, Mesh
 from ...resources.sandbox import Sandbox
 from .built_in import BUILT_IN, MeshPart
@@ -74,8 +74,10 @@ def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
     logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it reports what it does without
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
+    resolver, file_type = _make_resolver(path, sandbox), Path(path).suffix.removeprefix(".")
     try:
-        scene: Any = trimesh.load_scene(path, resolver=_make_resolver(path, sandbox=sandbox))
+        with open_file(path, sandbox) as file:
+            scene: Any = trimesh.load_scene(file, file_type=file_type, resolver=resolver)
         nodes = [_read_part(scene, name) for name in scene.graph.nodes_geometry]
     except InputError:
         raise
@@ -91,13 +93,22 @@ def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
 
 
 def _make_resolver(path: str, sandbox: Sandbox) -> Any:
-    """Finds the files that a mesh names, such as buffers and materials, as far as they may be read."""
+    """Finds the files that a mesh names, such as buffers and materials, as far as they may be read.
+
+    As trimesh does it, they lie in the folder of the mesh or below, and a name that leads nowhere is looked up in the
+    folder itself. trimesh would follow a link there, and wait for a FIFO.
+    """
     from trimesh.resolvers import FilePathResolver
 
     class SandboxedResolver(FilePathResolver):
         def get(self, name: str) -> bytes:
-            sandbox.check(Path(self.parent, name.strip()))
-            return super().get(name)
+            name, folder = name.strip(), Path(self.parent).resolve()
+            sandbox.check(Path(folder, name))
+            for candidate in dict.fromkeys((name, name.lstrip("/"), PurePath(name).name)):
+                asset = Path(folder, candidate)
+                if asset.resolve().is_relative_to(folder) and asset.exists():
+                    return read_bytes(asset, sandbox)
+            raise FileNotFoundError(name)
 
     return SandboxedResolver(path)
 

@@ -93,6 +93,8 @@ def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
     def copy(name: str) -> None:
         shutil.copyfile(source, name)
 
+    if reason := sandbox.fault(path):
+        raise OutputError(f"{path}: {reason}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as refusal:

@@ -12,6 +12,7 @@ from ...color.display import NO_VIEW, to_display
 from ...color.transforms import Array
 from ...errors import InputError
 from ...resources.atomic_write import write_atomically
+from ...resources.input_files import check_file
 from ...resources.sandbox import Sandbox
 from ..info import read_info
 from ..layers import find_layer
@@ -50,8 +51,8 @@ def list_readable_endings() -> frozenset[str]:
 
 def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
     """The bytes of an 8-bit RGB file, [h, w, 3] of uint8. Raises InputError."""
-    picture = oiio.ImageBuf(str(path))
-    pixels = picture.get_pixels(oiio.UINT8) if Path(path).is_file() and picture.read() else None
+    picture = oiio.ImageBuf(str(check_file(path, sandbox)))
+    pixels = picture.get_pixels(oiio.UINT8) if picture.read() else None
     if pixels is None or pixels.shape[2] != 3:
         picture.geterror()
         raise InputError(f"{path}: is no small picture")
