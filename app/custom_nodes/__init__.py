@@ -10,9 +10,9 @@ __all__ = ["Code", "CodeFault", "CustomNode", "Language", "node_type", "strip_pr
 def node_type(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes; the same class for equal code. Raises CodeFault."""
     if code.language == "isf":
-        from .isf import isf_node
+        from .isf import make_isf_class
 
-        return isf_node(code)
-    from .glsl import glsl_node
+        return make_isf_class(code)
+    from .glsl import make_glsl_class
 
-    return glsl_node(code)
+    return make_glsl_class(code)

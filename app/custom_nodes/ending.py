@@ -18,19 +18,23 @@ def add_ending(text: str, entry: GlslFunction, prefix: str) -> str:
     """
     outer, inner = f"{prefix}{entry.name}", f"{prefix[:-1]}x_{entry.name}"
     text = re.sub(rf"\b{outer}\b", inner, text)
-    taken = ", ".join(
+    parameters = ", ".join(
         [
             *(f"{glsl} {name}" for glsl, name in entry.parameters),
             *(f"out {glsl} {name}" for glsl, name in entry.outputs),
         ]
     )
-    given = ", ".join(name for _, name in (*entry.parameters, *entry.outputs))
-    call, made, back = f"{inner}({given});", entry.outputs, ""
-    if not made:
-        call, made, back = f"{entry.result} halation_made = {call}", ((entry.result, "halation_made"),), "halation_made"
-    spoilt = " ".join(f"{name} = {glsl}({_NAN});" for glsl, name in made)
+    arguments = ", ".join(name for _, name in (*entry.parameters, *entry.outputs))
+    call, results, returned = f"{inner}({arguments});", entry.outputs, ""
+    if not results:
+        call, results, returned = (
+            f"{entry.result} halation_made = {call}",
+            ((entry.result, "halation_made"),),
+            "halation_made",
+        )
+    fill_with_nan = " ".join(f"{name} = {glsl}({_NAN});" for glsl, name in results)
     return (
-        f'{text}\n#include "lib/rounds.glsl"\n{entry.result} {outer}({taken}) {{'
+        f'{text}\n#include "lib/rounds.glsl"\n{entry.result} {outer}({parameters}) {{'
         f" int halation_before = {COUNTER}; {COUNTER} = 0; {call}"
-        f" if ({COUNTER} > {MOST_ROUNDS}) {{ {spoilt} }} {COUNTER} = halation_before; return {back}; }}\n"
+        f" if ({COUNTER} > {MOST_ROUNDS}) {{ {fill_with_nan} }} {COUNTER} = halation_before; return {returned}; }}\n"
     )

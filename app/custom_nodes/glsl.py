@@ -6,22 +6,20 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from hashlib import blake2b
-from keyword import iskeyword
-from types import new_class
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Pointwise, Socket, Value, Vector
 from msgspec import Struct
 
 from ..glsl import COMMENT, GlslFunction, blank_comments, macro_name, parse, unify_lines, words
 from ..glsl.loops import guard_loops
-from .code import Code, CodeFault, CustomNode
+from .code import Code, CodeFault, CustomNode, make_class
 from .ending import add_ending
-from .notes import Note, read_note
-from .passes import make_passes
+from .notes import ParameterNote, read_note
+from .passes import PARAMETER, make_passes
 from .prefixes import prefix_names
 from .securing import check_length, expand_code, guard_code
-from .values import value_of
+from .values import make_value
 
 _FORBIDDEN = re.compile(
     r"\b(main|uniform|layout|buffer|shared|discard|barrier|texelFetch|texture\w*|gl_\w+"
@@ -30,8 +28,9 @@ _FORBIDDEN = re.compile(
     re.MULTILINE,
 )
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node", "muted", "code", "text", "title"})
-KEPT = 512
+_RESERVED = frozenset({"pixel", "extent", "frame", "proxy", "grid"})
+"""Names that code can use without declaring them."""
+MAX_CLASSES = 512
 
 
 class _Parameter(Struct, frozen=True):
@@ -41,11 +40,11 @@ class _Parameter(Struct, frozen=True):
     name: str
     out: bool
     line: int
-    note: Note
+    note: ParameterNote
 
 
-@lru_cache(KEPT)
-def glsl_node(code: Code) -> type[CustomNode]:
+@lru_cache(MAX_CLASSES)
+def make_glsl_class(code: Code) -> type[CustomNode]:
     """The class of the nodes that this code describes. Raises CodeFault."""
     check_length(code.text)
     source = unify_lines(code.text)
@@ -55,25 +54,29 @@ def glsl_node(code: Code) -> type[CustomNode]:
     if not text.all_functions:
         raise CodeFault(1, "there is no function in it: write one, such as vec4 tint(vec4 image) { return image; }")
     entry = text.all_functions[-1]
-    parameters = tuple(_parameters(source, plain, entry))
-    _check(entry, parameters)
-    inputs = {one.name: _socket(one) for one in parameters if not one.out and not one.note.default}
+    parameters = tuple(_read_parameters(source, plain, entry))
+    _check_parameters(entry, parameters)
+    inputs = {
+        parameter.name: _make_socket(parameter)
+        for parameter in parameters
+        if not parameter.out and not parameter.note.default
+    }
     values = {
-        one.name: value_of(one.glsl, one.name, one.note, one.line)
+        one.name: make_value(one.glsl, one.name, one.note, one.line)
         for one in parameters
         if not one.out and one.note.default
     }
-    outputs = {one.name: OutputSocket(_socket(one)) for one in parameters if one.out}
+    outputs = {one.name: OutputSocket(_make_socket(one)) for one in parameters if one.out}
     if not outputs:
-        outputs = {"out": OutputSocket(_picture(entry.result, Note(), entry.line, "the result"))}
+        outputs = {"out": OutputSocket(_make_picture_socket(entry.result, ParameterNote(), entry.line, "the result"))}
     types = _list_types(inputs, values)
     expanded = expand_code(source, _list_macros(values), types, may_include=True)
     _check_words(expanded)
     functions = parse("written", expanded).all_functions
     _check_entry(entry, functions)
-    looks = bool(words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size")})
-    names = {one.name for one in functions}
-    return _make_class(code, expanded, names, types, entry, parameters, inputs, values, outputs, looks)
+    reads_neighbors = bool(words(expanded) & {f"{name}_{way}" for name in inputs for way in ("at", "near", "size")})
+    names = {function.name for function in functions}
+    return _make_class(code, expanded, names, types, entry, parameters, inputs, values, outputs, reads_neighbors)
 
 
 def _make_class(
@@ -86,47 +89,40 @@ def _make_class(
     inputs: Mapping[str, Socket],
     values: Mapping[str, Value],
     outputs: Mapping[str, OutputSocket],
-    looks: bool,
+    reads_neighbors: bool,
 ) -> type[CustomNode]:
     source = unify_lines(code.text)
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"
     function = prefix + entry.name
-    edges = {one.note.edge for one in parameters if one.note.edge}
+    edges = {parameter.note.edge for parameter in parameters if parameter.note.edge}
     if len(edges) > 1:
         raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
     renamed = prefix_names(expanded, functions, prefix)
-    looped = guard_loops(renamed)
-    guarded = guard_code(looped, types)
-    divides = guarded != looped
-    renamed = add_ending(guarded, entry, prefix) if looped != renamed else guarded
-    if divides:
+    with_loop_guards = guard_loops(renamed)
+    with_guards = guard_code(with_loop_guards, types)
+    has_division_guards = with_guards != with_loop_guards
+    renamed = add_ending(with_guards, entry, prefix) if with_loop_guards != renamed else with_guards
+    if has_division_guards:
         renamed += '\n#include "lib/whole.glsl"\n'
-    body: dict[str, Any] = {"__module__": __name__, "__doc__": _doc(source, entry), "__annotations__": {}}
-    for one in parameters:
-        if one.name in inputs:
-            body[one.name] = inputs[one.name]
-        elif one.name in values:
-            body[one.name] = values[one.name].default
-            body["__annotations__"][one.name] = _hint(values[one.name])
-    body |= outputs
-    if looks:
-        renamed += _entries(function, parameters, inputs, values, outputs)
+    methods: dict[str, Any] = {"__doc__": _find_doc(source, entry)}
+    if reads_neighbors:
+        renamed += _write_entry_functions(function, parameters, inputs, values, outputs)
         edge = cast("Edge", next(iter(edges), "clamp"))
 
         def passes(self: Filter, draw: Draw) -> Mapping[str, Drawn]:
             return make_passes(self, draw, function, edge)
 
-        body["passes"] = passes
-    base = Filter if looks else Pointwise
-    node_class = cast(
-        "type[CustomNode]", new_class(entry.name, (CustomNode, base), {}, lambda space: space.update(body))
-    )
+        methods["passes"] = passes
+    elif len(results := [parameter for parameter in parameters if parameter.out]) == 1:
+        renamed += _add_return(function, parameters, results[0])
+        function += "_out"
+    base = Filter if reads_neighbors else Pointwise
+    order = (parameter.name for parameter in parameters if not parameter.out)
+    node_class = make_class(code, entry.name, base, inputs, values, outputs, order, methods)
     name = f"written/{digest}"
-    node_class.id, node_class.category = "glsl", "code"
-    node_class.values = dict(values)
     node_class.function, node_class.shader = function, name
-    node_class.code, node_class.title = code, entry.name.replace("_", " ")
+    node_class.title = entry.name.replace("_", " ")
     node_class.text = parse(name, renamed, code.file or f"the code of '{entry.name}'")
     return node_class
 
@@ -166,37 +162,41 @@ def _list_types(inputs: Mapping[str, Socket], values: Mapping[str, Value]) -> di
     return types | {name: value.glsl for name, value in values.items() if value.glsl}
 
 
-def _parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Parameter]:
+def _read_parameters(source: str, plain: str, entry: GlslFunction) -> Iterator[_Parameter]:
     """The parameters of the function in order, each with the comments that stand beside it."""
-    opened = plain.index("(", entry.start)
-    closed = plain.index(")", opened)
-    begins = [opened + 1, *(at + 1 for at in range(opened, closed) if plain[at] == ",")]
-    if not plain[opened + 1 : closed].strip() or plain[opened + 1 : closed].strip() == "void":
+    opening = plain.index("(", entry.start)
+    closing = plain.index(")", opening)
+    starts = [opening + 1, *(at + 1 for at in range(opening, closing) if plain[at] == ",")]
+    if not plain[opening + 1 : closing].strip() or plain[opening + 1 : closing].strip() == "void":
         return
-    for number, begin in enumerate(begins):
-        last = number + 1 == len(begins)
-        end = closed if last else begins[number + 1] - 1
-        said = plain[begin:end].split()
+    for number, begin in enumerate(starts):
+        is_last = number + 1 == len(starts)
+        end = closing if is_last else starts[number + 1] - 1
+        declaration = plain[begin:end].split()
         line = plain.count("\n", 0, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip())) + 1
-        words = [word for word in said if word not in ("in", "const", "highp", "mediump", "lowp")]
+        words = [word for word in declaration if word not in ("in", "const", "highp", "mediump", "lowp")]
         out = bool(words) and words[0] == "out"
         words = words[1:] if out else words
         if len(words) != 2 or not _NAME.fullmatch(words[1]):
-            raise CodeFault(line, f"'{' '.join(said)}' is no parameter that a node can have: write a type and a name")
+            raise CodeFault(
+                line, f"'{' '.join(declaration)}' is no parameter that a node can have: write a type and a name"
+            )
         stop = source.find("\n", end)
-        beside = COMMENT.search(source, end, len(source) if stop < 0 else stop)
-        within = COMMENT.search(source, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip()), end)
-        comment = within or (beside if beside and not plain[end + 1 : beside.start()].strip(" \t){") else None)
-        yield _Parameter(words[0], words[1], out, line, read_note(comment[0], line) if comment else Note())
+        comment_after = COMMENT.search(source, end, len(source) if stop < 0 else stop)
+        comment_inside = COMMENT.search(source, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip()), end)
+        comment = comment_inside or (
+            comment_after if comment_after and not plain[end + 1 : comment_after.start()].strip(" \t){") else None
+        )
+        yield _Parameter(words[0], words[1], out, line, read_note(comment[0], line) if comment else ParameterNote())
 
 
-def _check(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> None:
+def _check_parameters(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> None:
     names = set[str]()
-    for one in parameters:
-        if one.name in names or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
-            why = "is there twice" if one.name in names else "means something else here"
-            raise CodeFault(one.line, f"the name '{one.name}' {why}: choose another")
-        names.add(one.name)
+    for parameter in parameters:
+        if parameter.name in names or parameter.name in _RESERVED:
+            why = "is there twice" if parameter.name in names else "means something else here"
+            raise CodeFault(parameter.line, f"the name '{parameter.name}' {why}: choose another")
+        names.add(parameter.name)
     outputs = [one for one in parameters if one.out]
     if outputs and entry.result != "void":
         raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
@@ -206,11 +206,11 @@ def _check(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -> None:
         raise CodeFault(entry.line, f"'{entry.name}' makes nothing: return a vec4, or write an out parameter")
 
 
-def _socket(parameter: _Parameter) -> Socket:
-    return _picture(parameter.glsl, parameter.note, parameter.line, f"'{parameter.name}'")
+def _make_socket(parameter: _Parameter) -> Socket:
+    return _make_picture_socket(parameter.glsl, parameter.note, parameter.line, f"'{parameter.name}'")
 
 
-def _picture(glsl: str, note: Note, line: int, what: str) -> Socket:
+def _make_picture_socket(glsl: str, note: ParameterNote, line: int, subject: str) -> Socket:
     """What a picture of this GLSL type is to links."""
     if glsl == "vec4" and not note.vector:
         return Image(note.optional, doc=note.doc)
@@ -219,33 +219,34 @@ def _picture(glsl: str, note: Note, line: int, what: str) -> Socket:
     if glsl in ("vec2", "vec3", "vec4"):
         return Vector(note.optional, width=int(glsl[-1]), doc=note.doc)
     if glsl in ("int", "bool"):
-        raise CodeFault(line, f"{what} is a {glsl}, which no picture holds: give it a default, such as // = 1")
-    raise CodeFault(line, f"{what} has the type {glsl}: pictures are vec4, vec3, vec2 or float")
+        raise CodeFault(line, f"{subject} is a {glsl}, which no picture holds: give it a default, such as // = 1")
+    raise CodeFault(line, f"{subject} has the type {glsl}: pictures are vec4, vec3, vec2 or float")
 
 
-def _hint(value: Value) -> Any:
-    """The Python type of a value."""
-    if value.type == "choice":
-        return Literal[value.choices]
-    if value.type in ("color", "vector"):
-        return tuple[(float,) * value.length]
-    return {"float": float, "int": int, "bool": bool}[value.type]
-
-
-def _doc(source: str, entry: GlslFunction) -> str:
+def _find_doc(source: str, entry: GlslFunction) -> str:
     """The comment right above the function, else a sentence."""
     lines = source.split("\n")[: entry.line - 1]
-    found: list[str] = []
+    doc_lines: list[str] = []
     while lines and lines[-1].strip().startswith("//"):
-        found.insert(0, lines.pop().strip().lstrip("/").strip())
-    if not found and lines and lines[-1].strip().endswith("*/"):
+        doc_lines.insert(0, lines.pop().strip().lstrip("/").strip())
+    if not doc_lines and lines and lines[-1].strip().endswith("*/"):
         block = "\n".join(lines)
         start = block.rfind("/*")
-        found = [line.strip(" *\t") for line in block[start + 2 : -2].split("\n")] if start >= 0 else []
-    return "\n".join(found).strip() or "Code of this graph."
+        doc_lines = [line.strip(" *\t") for line in block[start + 2 : -2].split("\n")] if start >= 0 else []
+    return "\n".join(doc_lines).strip() or "Code of this graph."
 
 
-def _entries(
+def _add_return(function: str, parameters: tuple[_Parameter, ...], result: _Parameter) -> str:
+    """A function that returns the only output, which pointwise nodes need."""
+    declarations = ", ".join(
+        f"{parameter.glsl} {PARAMETER}{parameter.name}" for parameter in parameters if not parameter.out
+    )
+    arguments = ", ".join(f"{PARAMETER}{parameter.name}" for parameter in parameters)
+    local = f"{PARAMETER}{result.name}"
+    return f"\n{result.glsl} {function}_out({declarations}) {{ {result.glsl} {local}; {function}({arguments}); return {local}; }}\n"
+
+
+def _write_entry_functions(
     function: str,
     parameters: tuple[_Parameter, ...],
     inputs: Mapping[str, Socket],
@@ -253,15 +254,21 @@ def _entries(
     outputs: Mapping[str, OutputSocket],
 ) -> str:
     """For each output a function that is drawn: it reads its own pixel of every picture and calls the user's."""
-    value_list = ", ".join(f"{values[one.name].glsl} {one.name}" for one in parameters if one.name in values)
-    argument_list = [f"{one.name}_at(pixel)" if one.name in inputs else one.name for one in parameters if not one.out]
+    value_list = ", ".join(
+        f"{values[parameter.name].glsl} {PARAMETER}{parameter.name}"
+        for parameter in parameters
+        if parameter.name in values
+    )
+    argument_list = [
+        f"{one.name}_at(pixel)" if one.name in inputs else f"{PARAMETER}{one.name}" for one in parameters if not one.out
+    ]
     if "out" in outputs:
         glsl = outputs["out"].socket.glsl
         return f"\n{glsl} {function}_out({value_list}) {{ return {function}({', '.join(argument_list)}); }}\n"
     results = [one for one in parameters if one.out]
-    declared = " ".join(f"{one.glsl} {one.name};" for one in results)
+    locals = " ".join(f"{one.glsl} {one.name};" for one in results)
     call = f"{function}({', '.join([*argument_list, *(one.name for one in results)])});"
     return "".join(
-        f"\n{one.glsl} {function}_{one.name}({value_list}) {{ {declared} {call} return {one.name}; }}\n"
+        f"\n{one.glsl} {function}_{one.name}({value_list}) {{ {locals} {call} return {one.name}; }}\n"
         for one in results
     )

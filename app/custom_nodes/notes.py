@@ -19,13 +19,13 @@ _RANGE = re.compile(rf"({_NUMBER})\s*\.\.\s*({_NUMBER})")
 _LIMIT = re.compile(rf"(>=|<=)\s*({_NUMBER})")
 _OPTIONAL = re.compile(rf"optional(?:\s+({_NUMBER}))?")
 _TOKENS = re.compile(r'"[^"]*"|\([^)]*\)|[^,"(:]+|[,:"(]')
-HELP = (
+NOTE_HELP = (
     'a default (= 0.5), a range (0..1), limits (>= 0, <= 10), choices (one of a | b), a "Label", a unit '
     f"({', '.join(UNITS)}), {', '.join(WORDS)} or an edge ({', '.join(EDGES)})"
 )
 
 
-class Note(Struct):
+class ParameterNote(Struct):
     """What was said; `default` is text, empty for a picture."""
 
     default: str = ""
@@ -44,10 +44,10 @@ class Note(Struct):
     optional: float | None = None
 
 
-def read_note(comment: str, line: int) -> Note:
+def read_note(comment: str, line: int) -> ParameterNote:
     """A comment's meaning. One that does not begin as a note does is all sentence. Raises CodeFault."""
     text = comment.removeprefix("//").removeprefix("/*").removesuffix("*/").strip()
-    note, items = Note(), list[str]()
+    note, items = ParameterNote(), list[str]()
     current = ""
     tokens = _TOKENS.findall(text)
     for number, token in enumerate(tokens):
@@ -62,14 +62,14 @@ def read_note(comment: str, line: int) -> Note:
     items.append(current)
     items = [item.strip() for item in items]
     for number, item in enumerate(items):
-        if not _read(item, note):
+        if not _read_item(item, note):
             if number == 0 and not item.startswith(("=", '"', ">", "<")):
-                return Note(doc=text)
-            raise CodeFault(line, f"'{item}' says nothing of a parameter: write {HELP}")
+                return ParameterNote(doc=text)
+            raise CodeFault(line, f"'{item}' says nothing of a parameter: write {NOTE_HELP}")
     return note
 
 
-def _read(item: str, note: Note) -> bool:
+def _read_item(item: str, note: ParameterNote) -> bool:
     """Note one item; False if it is none."""
     if item.startswith("="):
         note.default = item[1:].strip()

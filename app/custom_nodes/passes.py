@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from halation.nodes import Draw, Drawn, Edge, Filter
+
+PARAMETER = "halation_"
+"""The prefix of parameters in functions that are drawn: without it a value named `size` or `edge` would be taken for an
+option of the draw. Code of users cannot use such names."""
 
 
 def make_passes(node: Filter, draw: Draw, function: str, edge: Edge) -> Mapping[str, Drawn]:
     """One draw for each output."""
     pictures = tuple(node.inputs.values())
-    values = {name: getattr(node, name) for name in node.values}
+    values: dict[str, Any] = {f"{PARAMETER}{name}": node.setting(name) for name in node.values}
     return {
         name: draw(f"{function}_{name}", *pictures, edge=edge, result=output.socket, **values)
         for name, output in node.outputs.items()

@@ -8,17 +8,17 @@ from typing import Any, cast
 from halation.nodes import Plain, Unit, Value
 
 from .code import CodeFault
-from .notes import Note
+from .notes import ParameterNote
 
 _GLSL = {"float": 1, "int": 1, "bool": 1, "vec2": 2, "vec3": 3, "vec4": 4}
 
 
-def value_of(glsl: str, name: str, note: Note, line: int) -> Value:
+def make_value(glsl: str, name: str, note: ParameterNote, line: int) -> Value:
     """The value that a parameter with a default is. Raises CodeFault."""
     if glsl not in _GLSL:
         raise CodeFault(line, f"'{name}' has the type {glsl}: values are {', '.join(_GLSL)}")
     unit = cast("Unit", note.unit) or None
-    found: dict[str, Any] = {
+    fields: dict[str, Any] = {
         "name": name,
         "doc": note.doc,
         "label": note.label,
@@ -30,30 +30,30 @@ def value_of(glsl: str, name: str, note: Note, line: int) -> Value:
     if glsl == "int" and note.choices:
         if note.default not in note.choices:
             raise CodeFault(line, f"the default of '{name}' is '{note.default}', which is none of its choices")
-        return Value(**{**found, "type": "choice", "choices": note.choices, "default": note.default})
+        return Value(**{**fields, "type": "choice", "choices": note.choices, "default": note.default})
     if note.choices:
         raise CodeFault(line, f"'{name}' has choices, so it is an int, not a {glsl}")
     if note.color and length < 3:
         raise CodeFault(line, f"'{name}' is a color, so it is a vec4 or vec3, not a {glsl}")
     if note.handle and length != 2:
         raise CodeFault(line, f"'{name}' has a handle in the viewer, so it is a vec2, not a {glsl}")
-    default = _default(glsl, name, note.default, line)
+    default = _parse_default(glsl, name, note.default, line)
     if length > 1:
         kind = "color" if note.color else "vector"
-        found |= {"type": kind, "length": length, "handle": note.handle}
+        fields |= {"type": kind, "length": length, "handle": note.handle}
     else:
-        found |= {"type": glsl}
-    low, high = _range(glsl, default, note)
+        fields |= {"type": glsl}
+    low, high = _choose_range(glsl, default, note)
     if low > high or not note.minimum <= note.maximum:
         raise CodeFault(line, f"the range of '{name}' is empty")
     if glsl != "bool" and not note.color:
-        found |= {"low": low, "high": high}
+        fields |= {"low": low, "high": high}
     if any(not note.minimum <= number <= note.maximum for number in _numbers(default)):
         raise CodeFault(line, f"the default of '{name}' lies beyond its limits")
-    return Value(**{**found, "default": default})
+    return Value(**{**fields, "default": default})
 
 
-def _default(glsl: str, name: str, text: str, line: int) -> Plain:
+def _parse_default(glsl: str, name: str, text: str, line: int) -> Plain:
     words = {"true": True, "on": True, "false": False, "off": False}
     if glsl == "bool":
         if text not in words:
@@ -61,7 +61,7 @@ def _default(glsl: str, name: str, text: str, line: int) -> Plain:
         return words[text]
     length = _GLSL[glsl]
     parts = re.sub(r"^(?:vec\d)?\(|\)$", "", text).replace(",", " ").split()
-    numbers = tuple(_number(part) for part in parts)
+    numbers = tuple(_parse_number(part) for part in parts)
     if len(numbers) == 1 and length > 1:
         numbers *= length
     if len(numbers) != length or not all(abs(number) < 3.4e38 for number in numbers):
@@ -74,7 +74,7 @@ def _default(glsl: str, name: str, text: str, line: int) -> Plain:
     return numbers[0] if length == 1 else numbers
 
 
-def _number(text: str) -> float:
+def _parse_number(text: str) -> float:
     """What a word means; NaN if it is no number."""
     try:
         return float(text.removesuffix("f"))
@@ -87,7 +87,7 @@ def _numbers(default: Plain) -> tuple[float, ...]:
     return default if isinstance(default, tuple) else (float(default),)
 
 
-def _range(glsl: str, default: Plain, note: Note) -> tuple[float, float]:
+def _choose_range(glsl: str, default: Plain, note: ParameterNote) -> tuple[float, float]:
     """The soft range: as it is said, else one that the default lies well inside of."""
     if note.low is not None and note.high is not None:
         return note.low, note.high

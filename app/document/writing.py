@@ -123,7 +123,7 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
         found = {name: _value(id, known[name], plain) for name, plain in item.values.items() if name in known}
         values = {**kept, **item.values, **found}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
-    set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
+    set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
     what = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}

@@ -384,7 +384,7 @@ def find_value(item: Item, name: str, id: str) -> Value:
 
 def _find_setting(item: Item, name: str) -> Value | None:
     if isinstance(item, Node) and name in item.values:
-        return structs.replace(item.values[name], default=getattr(item, name))
+        return structs.replace(item.values[name], default=item.setting(name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
         return structs.replace(value, default=item.values.get(name, value.default))
     return None

@@ -68,7 +68,7 @@ def _change_graph(graph: Graph, folder: str, change: Change) -> Graph:
 def _change_item(item: Item, folder: str, change: Change) -> Item:
     paths = _path_values(item)
     if isinstance(item, Node):
-        new_paths: dict[str, Plain] = {name: change(getattr(item, name)) for name in paths}
+        new_paths: dict[str, Plain] = {name: change(str(item.setting(name))) for name in paths}
         return _change_code_file(item.with_values(**new_paths) if new_paths else item, change)
     if isinstance(item, Group):
         values = {
@@ -86,13 +86,13 @@ def _change_code_file(item: Node, change: Change) -> Node:
     if not isinstance(item, CustomNode) or not item.code.file:
         return item
     kind = node_type(structs.replace(item.code, file=change(item.code.file)))
-    return kind(**{name: getattr(item, name) for name in item.values})
+    return kind(**{name: item.setting(name) for name in item.values})
 
 
 def _inline_item(item: Item, folder: str) -> Item:
     if isinstance(item, CustomNode) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
         kind = node_type(structs.replace(item.code, file=""))
-        return kind(**{name: getattr(item, name) for name in item.values})
+        return kind(**{name: item.setting(name) for name in item.values})
     if not isinstance(item, Group):
         return item
     # A path that a control sets is relative to the file of the control, so it is set before the body leaves that file.

@@ -176,7 +176,10 @@ def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Proble
 def _values(id: str, item: Item) -> Iterator[Problem]:
     values = signature(item).values
     for name, value in values.items():
-        setting = item.values.get(name, value.default) if isinstance(item, Group) else getattr(item, name)
+        if isinstance(item, Node):
+            setting = item.setting(name)
+        else:
+            setting = item.values.get(name, value.default) if isinstance(item, Group) else value.default
         if setting is not value.default and (fault := value_fault(value, setting)):
             yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE)
     for name in item.values if isinstance(item, Group) else ():

@@ -57,5 +57,5 @@ def _same_role(new: Node, old: Node) -> bool:
     if has_trait(new, Trait.RESAMPLES):  # hints name their numbers
         return False
     texts = (name for name, value in new.values.items() if value.type in ("path", "text", "choice"))
-    same = type(new) is type(old) and all(getattr(new, name) == getattr(old, name) for name in texts)
+    same = type(new) is type(old) and all(new.setting(name) == old.setting(name) for name in texts)
     return same and (new.identity() is None) == (old.identity() is None)

@@ -252,7 +252,7 @@ def find_pictures(graph: Graph, bindings: Mapping[str, object] | None = None) ->
                 linked = (name for name in item.graph.inputs if Port(id, name) in body.links)
                 todo.append((item.body(), frozenset(linked)))
             elif isinstance(item, Node):
-                named = (str(getattr(item, value.name)) for value in item.values.values() if value.type == "path")
+                named = (str(item.setting(value.name)) for value in item.values.values() if value.type == "path")
                 paths += [Path(body.folder, path) for path in named if path]
     return tuple(dict.fromkeys(path.absolute() for path in paths))
 

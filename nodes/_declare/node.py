@@ -54,11 +54,12 @@ class Node:
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
     """Where a proxy of half the size does not look like the whole picture made smaller."""
 
-    def __init_subclass__(cls, **kwargs: Any) -> None:
+    def __init_subclass__(cls, abstract: bool = False, **kwargs: Any) -> None:
+        """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses."""
         super().__init_subclass__(**kwargs)
+        if abstract:
+            return
         body = vars(cls)
-        if cls.__module__ == __name__ and "__annotations__" not in body:
-            return  # a kind of node, of which there are no instances
         name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
         cls.id, cls.function, cls.shader = name, name, f"{cls.category}/{name}"
@@ -80,6 +81,10 @@ class Node:
             for field in sorted(_fields(cls), key=lambda field: field.name not in body)
         }
         cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
+
+    def setting(self, name: str) -> Any:
+        """What the value of this name is set to."""
+        return getattr(self, name)
 
     def identity(self) -> str | None:
         """The input that passes through unchanged at these values, or None. It is not called while a value is wired."""
@@ -107,18 +112,18 @@ class Node:
         for name, value in self.values.items():
             factor = unit_factor(value.unit, scale, height)
             if factor != 1.0:
-                stored: float | tuple[float, ...] = getattr(self, name)
+                stored: float | tuple[float, ...] = self.setting(name)
                 converted[name] = (
                     tuple(part * factor for part in stored) if isinstance(stored, tuple) else stored * factor
                 )
         return self.with_values(**converted) if converted else self
 
-    def with_values(self, **values: Any) -> Self:
+    def with_values(self, /, **values: Any) -> Self:
         """The same node with other values."""
-        return type(self)(**({name: getattr(self, name) for name in self.values} | values))
+        return type(self)(**({name: self.setting(name) for name in self.values} | values))
 
 
-class Pointwise(Node):
+class Pointwise(Node, abstract=True):
     """An output pixel needs only the same pixel of each input, so neighbors fuse into one pass.
 
     `shaders/<category>/<id>.glsl` holds a function named like the node whose parameters are the sockets and
@@ -126,7 +131,7 @@ class Pointwise(Node):
     """
 
 
-class Filter(Node):
+class Filter(Node, abstract=True):
     """Anything that looks at other pixels or takes several passes."""
 
     def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn | CameraModel]:
@@ -134,7 +139,7 @@ class Filter(Node):
         raise NotImplementedError
 
 
-class Source(Filter):
+class Source(Filter, abstract=True):
     """Makes pixels from outside the graph."""
 
 
@@ -149,7 +154,7 @@ class Reader(Source):
     ] = "error"
 
 
-class Temporal(Filter):
+class Temporal(Filter, abstract=True):
     """A filter that owns history: `draw.history` gives what `draw.remember` kept of the frame before.
 
     The first frame of the graph's range has none, nor has any before it. It is never neutral: values may be keyed, and

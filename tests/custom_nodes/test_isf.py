@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import Run
 from halation import document
+from halation.custom_nodes import CustomNode
 from halation.errors import InputError, ShaderError
 from halation.graph import Output, Port
 from halation.nodes import Kind
@@ -260,7 +261,8 @@ def test_a_document_keeps_it(tmp_path: Path) -> None:
     graph = document.load(tmp_path / "graph.json", sandbox=UNRESTRICTED)
     saved = document.dumps(graph)
     assert '"file": "a.fs"' in saved and '"k": 0.75' in saved and "gl_FragColor" not in saved
-    assert getattr(document.loads(saved, folder=str(tmp_path), sandbox=UNRESTRICTED).nodes["a"], "k") == 0.75  # noqa: B009
+    node = document.loads(saved, folder=str(tmp_path), sandbox=UNRESTRICTED).nodes["a"]
+    assert isinstance(node, CustomNode) and node.setting("k") == 0.75
 
 
 @pytest.mark.parametrize(

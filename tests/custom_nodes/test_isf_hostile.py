@@ -119,4 +119,4 @@ def test_any_head_makes_a_node_or_a_sentence(raw: dict[str, Any]) -> None:
     except CodeFault as fault:
         assert fault.sentence and fault.line == 1
     else:
-        assert kind().light == "display"  # type: ignore[attr-defined]
+        assert kind().setting("light") == "display"

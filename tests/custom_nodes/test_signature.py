@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import FrozenInstanceError
+
+import numpy as np
 import pytest
 from halation.custom_nodes import Code, CodeFault, CustomNode, node_type
+from halation.document import dumps, loads
+from halation.graph import Graph, Port
 from halation.nodes import Field, Filter, Image, Pointwise, Value, Vector
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
 from hypothesis import strategies as some
 
@@ -101,7 +107,7 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
         ("vec4 f(vec4 pixel) { return pixel; }", 1, "'pixel' means something else here"),
         *(
             (f"vec4 f(vec4 {name}) {{ return {name}; }}", 1, f"'{name}' means something else here")
-            for name in ("values", "inputs", "lambda", "id", "passes", "version", "code", "with_values")
+            for name in ("extent", "frame", "proxy", "grid")
         ),
         ("void f(vec4 a) {}", 1, "'f' makes nothing"),
         ("vec4 f(vec4 a, out float b) { return a; }", 1, "returns a vec4 and has out parameters"),
@@ -146,3 +152,52 @@ def test_numbers_come_as_they_are_written(default: float, below: float, above: f
     kind = glsl(f"float f(float x, // = {default!r}, {low!r}..{high!r}\n float y) {{ return x; }}")
     value = kind.values["x"]
     assert (value.default, value.low, value.high) == (default, low, high)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *(
+            "traits",
+            "proxy_notes",
+            "with_values",
+            "to_working_units",
+            "required_package",
+            "setting",
+            "values",
+            "inputs",
+        ),
+        *("outputs", "order", "id", "passes", "version", "code", "title", "text", "node", "muted", "lambda", "self"),
+        *("size", "edge", "result", "overlap", "draw", "identity", "times", "category"),
+    ],
+)
+@pytest.mark.parametrize("body", ["image * {}", "image_at(pixel) * {}"])
+def test_parameters_may_have_the_names_of_attributes(run, name: str, body: str) -> None:
+    result = body.format(name)
+    node_class = glsl(f"vec4 f(vec4 image, float {name} /* = 0.5, 0..4 */) {{ return {result}; }}")
+    node = node_class(**{name: 2.0})
+    assert node.setting(name) == 2.0 and node_class().setting(name) == 0.5
+    assert node == node_class(**{name: 2.0}) != node_class() and hash(node) == hash(node_class(**{name: 2.0}))
+    assert node.with_values(**{name: 3.0}).setting(name) == 3.0
+    graph = Graph().add("a", node)
+    text = dumps(graph)
+    assert loads(text, sandbox=UNRESTRICTED).nodes["a"] == node
+    assert graph.set(Port("a", name), 1.5).value(Port("a", name)) == 1.5
+    picture = np.full((2, 2, 4), 0.25, np.float32)
+    assert (run(node, {"image": picture}) == 0.5).all()
+
+
+@pytest.mark.parametrize("name", ["traits", "inputs", "id", "lambda", "size"])
+def test_pictures_may_have_the_names_of_attributes(run, name: str) -> None:
+    picture = np.full((2, 2, 4), 0.25, np.float32)
+    for read in (name, f"{name}_at(pixel)"):
+        node = glsl(f"void f(vec4 {name}, out vec4 order) {{ order = {read} * 2.0; }}")()
+        assert (run(node, {name: picture}, output="order") == 0.5).all()
+
+
+def test_a_node_of_code_cannot_be_changed() -> None:
+    node = glsl(TINT)(amount=1.0)
+    with pytest.raises(FrozenInstanceError):
+        node.amount = 2.0
+    with pytest.raises(TypeError, match="has no value missing"):
+        glsl(TINT)(missing=1.0)

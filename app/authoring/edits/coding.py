@@ -177,7 +177,7 @@ def _changed_values(item: Item) -> Mapping[str, Any]:
         return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
     if isinstance(item, Group):
         return {}
-    values = {name: (getattr(item, name), value.default) for name, value in item.values.items()}
+    values = {name: (item.setting(name), value.default) for name, value in item.values.items()}
     return {name: plain for name, (plain, default) in values.items() if plain != default}
 
 

@@ -16,7 +16,7 @@ from .expand import make_zero
 def check_values(path: str, node: Node) -> None:
     """Raise GraphError for an invalid value."""
     for name, value in node.values.items():
-        setting = getattr(node, name)
+        setting = node.setting(name)
         if setting is not value.default and (fault := value_fault(value, setting)):
             raise GraphError(f"{path}.{name}: {fault}")
 

@@ -209,7 +209,7 @@ class NodeLowering:
             if isinstance(wire, UniformConstant):
                 return Parameter(glsl, constants.limit_wire(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)
-        setting = getattr(node, value.name)
+        setting = node.setting(value.name)
         if value.type == "choice":
             return Parameter(glsl, Choice(value.choices.index(setting)))
         knots = {"curve": curve_knots, "ramp": ramp_knots}.get(value.type)

@@ -32,8 +32,8 @@ class ReferencedPictures:
                 yield picture, f"{port}"
         for path, node in self._flat.nodes.items():
             for value in node.values.values() if isinstance(node, Source) else ():
-                if value.pixels and getattr(node, value.name):
-                    yield Picture(self.locate(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
+                if value.pixels and node.setting(value.name):
+                    yield Picture(self.locate(str(node.setting(value.name)), path), "", Kind.IMAGE, 4), path
 
     def find_bound(self, port: Port, socket: Input) -> Picture | None:
         """The picture bound to a graph input, else its default file; None for objects such as cameras."""
@@ -98,7 +98,7 @@ def find_path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     }
     for path, node in flat.nodes.items():
         for value in node.values.values():
-            if value.type == "path" and (text := getattr(node, value.name)):
+            if value.type == "path" and (text := str(node.setting(value.name))):
                 texts[f"{path}.{value.name}"] = text, str(PurePath(flat.folders[path], text))
     config = graph.settings.color.config
     if config and not config.startswith(BUILT_IN):

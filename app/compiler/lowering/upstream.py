@@ -83,7 +83,7 @@ class UpstreamHashes:
 
     def _hash_node(self, path: str) -> None:
         node = self._flat.nodes[path]
-        values = {name: getattr(node, name) for name in node.values}
+        values = {name: node.setting(name) for name in node.values}
         read = [f"{source} {self._hash_source(source)}" if source else "-" for source in self._reads[path]]
         self.hashes[path] = _hash(node.shader, values, path in self._flat.muted, self._settings, *read)
 

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from .node import isf_node
+from .node import make_isf_class
 
-__all__ = ["isf_node"]
+__all__ = ["make_isf_class"]

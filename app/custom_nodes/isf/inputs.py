@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import keyword
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal
 
-from halation.nodes import Field, Image, Plain, Socket, Temporal, Uniform, Value
+from halation.nodes import Field, Image, Plain, Socket, Uniform, Value
 
 from .header import IsfInput
 
@@ -16,27 +15,53 @@ LIGHT = "light"
 REQUIRED = ("inputImage", "startImage", "endImage")
 """Pictures without which a filter or a transition has nothing to do. All others may stay unlinked."""
 
-_TAKEN = frozenset({*dir(Temporal), LIGHT, "code", "title", "text", "inputs", "outputs", "values", "order", "out"})
+_RENAMED_INPUTS = frozenset(
+    [
+        "category",
+        "changed",
+        "code",
+        "function",
+        "id",
+        "identity",
+        "inputs",
+        "light",
+        "order",
+        "out",
+        "output_size",
+        "outputs",
+        "passes",
+        "shader",
+        "text",
+        "times",
+        "title",
+        "upgrade",
+        "values",
+        "version",
+        "working",
+    ]
+)
+"""Names of inputs that get a `_` at the end. Only `light` is taken, but graphs that were saved when the others were
+taken, too, have them with the `_`: so the list stays as it is."""
 
 
-def attributes(entries: Iterable[IsfInput]) -> dict[str, str]:
+def choose_input_names(entries: Iterable[IsfInput]) -> dict[str, str]:
     """What the node calls each input: its name, with a `_` where that is taken."""
     names = [entry.name for entry in entries]
     attribute_names: dict[str, str] = {}
     for name in names:
-        called = name.lstrip("_") or name
+        node_name = name.lstrip("_") or name
         while (
-            called in _TAKEN
-            or keyword.iskeyword(called)
-            or called in attribute_names.values()
-            or (called != name and called in names)
+            node_name in _RENAMED_INPUTS
+            or keyword.iskeyword(node_name)
+            or node_name in attribute_names.values()
+            or (node_name != name and node_name in names)
         ):
-            called += "_"
-        attribute_names[name] = called
+            node_name += "_"
+        attribute_names[name] = node_name
     return attribute_names
 
 
-def socket_of(entry: IsfInput) -> Socket:
+def make_isf_socket(entry: IsfInput) -> Socket:
     """The socket of a picture or of sound."""
     if entry.type != "image":
         content = "its spectrum" if entry.type == "audioFFT" else "its samples"
@@ -47,37 +72,34 @@ def socket_of(entry: IsfInput) -> Socket:
     return Image(0.0, own_size=True, doc=entry.label)
 
 
-def value_of(entry: IsfInput, name: str) -> tuple[Value, Any]:
-    """The value that an input is, and its Python type."""
+def make_isf_value(entry: IsfInput, name: str) -> Value:
+    """The value of the node for an input that is no picture."""
     label = entry.label or entry.name.replace("_", " ")
     if entry.choices:
         labels = tuple(label for _, label in entry.choices)
         by_number = dict(reversed(entry.choices))
         default = by_number.get(int(entry.default[0]) if entry.default else entry.choices[0][0], labels[0])
-        return Value(name, "choice", default, choices=labels, label=label), Literal[labels]
-    first = _default(entry)
+        return Value(name, "choice", default, choices=labels, label=label)
+    first = _choose_default(entry)
     if entry.type in ("bool", "event"):
         doc = "True for as long as it is on: key it for single frames." if entry.type == "event" else ""
-        return Value(name, "bool", first[0] > 0.5, doc=doc, label=label), bool
+        return Value(name, "bool", first[0] > 0.5, doc=doc, label=label)
     if entry.type == "color":
         rgba = (*(_decode_light(part) for part in first[:3]), first[3])
-        return Value(name, "color", rgba, length=4, label=label), tuple[float, float, float, float]
+        return Value(name, "color", rgba, length=4, label=label)
     if entry.type == "point2D":
         if is_position(entry):
             place = (first[0], 1.0 - first[1])
-            return (
-                Value(name, "vector", place, length=2, low=0.0, high=1.0, handle=True, label=label),
-                tuple[float, float],
-            )
+            return Value(name, "vector", place, length=2, low=0.0, high=1.0, handle=True, label=label)
         low, high = min(entry.low or (-1.0,)), max(entry.high or (1.0,))
-        return Value(name, "vector", first, length=2, low=low, high=high, label=label), tuple[float, float]
+        return Value(name, "vector", first, length=2, low=low, high=high, label=label)
     low, high = (entry.low or (min(0.0, first[0]),))[0], (entry.high or (max(1.0, first[0]),))[0]
     if entry.type == "long":
-        return Value(name, "int", int(first[0]), low=low, high=max(high, low + 1), unit="count", label=label), int
-    return Value(name, "float", first[0], low=low, high=high, unit="ratio", label=label), float
+        return Value(name, "int", int(first[0]), low=low, high=max(high, low + 1), unit="count", label=label)
+    return Value(name, "float", first[0], low=low, high=high, unit="ratio", label=label)
 
 
-def uniform_of(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
+def make_uniform(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
     """What the shader is given for a value of the node."""
     if entry.choices:
         return next(number for number, label in entry.choices if label == plain)
@@ -90,7 +112,7 @@ def uniform_of(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
     return bool(plain) if entry.type in ("bool", "event") else plain
 
 
-def number_of(uniform: Uniform) -> float:
+def uniform_as_number(uniform: Uniform) -> float:
     """What a formula of a size reads."""
     return 0.0 if isinstance(uniform, tuple) else float(uniform)
 
@@ -106,13 +128,13 @@ def is_position(entry: IsfInput) -> bool:
     )
 
 
-def doc_of(doc: str, called: Mapping[str, str]) -> str:
+def write_isf_doc(doc: str, names: Mapping[str, str]) -> str:
     """What the node says of itself."""
-    others = [f"{name} is called {now}" for name, now in called.items() if name != now]
-    return "\n".join([doc, *(f"{', '.join(others)}." for _ in others[:1])])
+    renamed = [f"{name} is called {node_name}" for name, node_name in names.items() if name != node_name]
+    return "\n".join([doc, *(f"{', '.join(renamed)}." for _ in renamed[:1])])
 
 
-def _default(entry: IsfInput) -> tuple[float, ...]:
+def _choose_default(entry: IsfInput) -> tuple[float, ...]:
     """As the head says, else the middle of what is allowed for points, black, or the least."""
     if entry.default:
         return entry.default

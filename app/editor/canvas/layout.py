@@ -243,7 +243,7 @@ def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values
     for name, value in values.items():
         kind = find_value_kind(value) if name in facts.linked_ins or _is_wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
-        plain = getattr(item, name) if isinstance(item, Node) else graph.value(Port(id, name))
+        plain = item.setting(name) if isinstance(item, Node) else graph.value(Port(id, name))
         linked, label = name in facts.linked_ins, value.label or spell_out(name)
         rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, texts=_make_field_texts(value, plain)))
     return rows

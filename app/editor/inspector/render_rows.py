@@ -69,7 +69,7 @@ class RenderRows:
         """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
         uses = seen.uses if isinstance(seen, RenderOverview) else {}
         there = {role for role, use in uses.items() if use.layer or use.is_open or use.fault}
-        there |= {Role(value.role) for value in roles if getattr(item, value.name) != value.default}
+        there |= {Role(value.role) for value in roles if item.setting(value.name) != value.default}
         shown = [value for value in roles if Role(value.role) in there]
         rest = [value for value in roles if Role(value.role) not in there]
         if shown:
@@ -98,7 +98,7 @@ class RenderRows:
             if use.rule and not has_choice:
                 rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
-            chosen = getattr(item, value.name) != FOUND
+            chosen = item.setting(value.name) != FOUND
             words = f"chosen by hand; found: {use.rule.words}" if chosen else rule_words(use.rule, kind_shown=True)
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)

@@ -174,7 +174,7 @@ class ValueRows:
             index = choose(self.fields, key, now, words, width, mixed=mixed)
             return None if index is None else Edit(declaration.choices[index])
         item = rows.context.session.graph.nodes.get(port.node)
-        file = str(getattr(item, declaration.file)) if isinstance(item, Node) else ""
+        file = str(item.setting(declaration.file)) if isinstance(item, Node) else ""
         return self.files.layer(rows, key, file, value, width, first_words(use), bool(use and use.fault))
 
     def _mark(self, rows: Rows, port: Port, control: str) -> None:

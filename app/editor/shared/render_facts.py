@@ -56,8 +56,10 @@ def overview_of(context: RenderContext, id: str) -> RenderOverview | str | None:
 
 def named_layers(item: object) -> Mapping[str, str]:
     """The layers that a node names, by the roles that they are to have."""
-    values = item.values.values() if isinstance(item, Node) else ()
-    return {value.role: str(getattr(item, value.name)) for value in values if value.role and value.type == "text"}
+    if not isinstance(item, Node):
+        return {}
+    values = item.values.values()
+    return {value.role: str(item.setting(value.name)) for value in values if value.role and value.type == "text"}
 
 
 def use_of(context: RenderContext, port: Port, declaration: Value) -> RoleUse | None:

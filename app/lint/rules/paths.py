@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import PurePosixPath, PureWindowsPath
 
+from halation.nodes import Node
+
 from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Graph, Group, Problem, signature
 from ...graph.color import BUILT_IN
@@ -40,7 +42,8 @@ def named_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
         elif isinstance(item, CustomNode) and item.code.file:
             yield id, "", f"nodes.{id}.file", item.code.file
         for name, value in signature(item).values.items():
-            given = getattr(item, name, "") if not isinstance(item, Group) else item.values.get(name, "")
+            given = item.setting(name) if isinstance(item, Node) else ""
+            given = item.values.get(name, "") if isinstance(item, Group) else given
             if value.type == "path" and isinstance(given, str) and given:
                 yield id, name, f"nodes.{id}.values.{name}", given
 
