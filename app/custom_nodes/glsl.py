@@ -243,7 +243,8 @@ def _add_return(function: str, parameters: tuple[_Parameter, ...], result: _Para
     )
     arguments = ", ".join(f"{PARAMETER}{parameter.name}" for parameter in parameters)
     local = f"{PARAMETER}{result.name}"
-    return f"\n{result.glsl} {function}_out({declarations}) {{ {result.glsl} {local}; {function}({arguments}); return {local}; }}\n"
+    call = f"{function}({arguments})"
+    return f"\n{result.glsl} {function}_out({declarations}) {{ {result.glsl} {local}; {call}; return {local}; }}\n"
 
 
 def _write_entry_functions(
