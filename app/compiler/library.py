@@ -1,4 +1,4 @@
-"""The GLSL library: shader texts by name, and what they include."""
+"""The GLSL library: shader files by name, what they include, and what their functions cost."""
 
 from __future__ import annotations
 
@@ -24,16 +24,19 @@ _LOOP_WORDS = frozenset({"for", "while", "do"})
 _EXPENSIVE_WORDS = _LOOP_WORDS | frozenset({"pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
 
 PASS_UNIFORMS = frozenset({"proxy", "frame"})
-"""The uniforms that functions may ask for."""
+"""The uniforms that a function may read without declaring them."""
 
 Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
-"""Lines of the files that a pass includes before and after its own functions; the files; words that matter in them."""
+"""Lines of the files that a pass includes before and after its own functions, the names of the files, and which of
+`PASS_UNIFORMS` they read."""
 
 MAX_REMEMBERED_PASSES = 1024
-"""Passes of which the files that they include are known."""
+"""Passes whose included lines are kept: many times the programs of a large graph. Chosen by judgement; each takes some
+kilobytes."""
 
 MAX_DERIVED_LIBRARIES = 8
-"""Libraries kept that hold code of graphs as well: more than are open at once."""
+"""Libraries that are kept with the code of graphs: one for each graph with custom nodes and each version of its code.
+Chosen by judgement: more than a user has open at once."""
 
 
 class Library(Record, frozen=True):
@@ -53,18 +56,18 @@ class Library(Record, frozen=True):
     )
 
     def with_texts(self, texts: Iterable[Text]) -> Library:
-        """This library with the code of a graph, whose names say what it holds."""
+        """This library with the code of a graph. Names of texts contain a hash, so equal names are equal code."""
         added = {text.name: text for text in texts}
         if not added:
             return self
         return self._derive(added, frozenset(added))
 
     def with_replacement(self, text: Text, mark: str) -> Library:
-        """This library with another file in place of the one of that name; `mark` says what it holds."""
+        """This library with another text in place of a file; `mark` identifies the content."""
         return self._derive({text.name: text}, frozenset({text.name, mark}))
 
     def file_name(self, shader: str) -> str:
-        """What messages call a file."""
+        """The name of a file in messages."""
         return self.texts[shader].file if shader in self.texts else f"shaders/{shader}.glsl"
 
     def function(self, shader: str, name: str, asker: str) -> GlslFunction:
@@ -75,7 +78,7 @@ class Library(Record, frozen=True):
         return text.functions[name]
 
     def closure(self, names: tuple[str, ...], asker: str) -> tuple[Text, ...]:
-        """The files and all they include, each once, includes first. `asker` is named in a ShaderError."""
+        """The files and all that they include, each once, includes first. A ShaderError names the node `asker`."""
         if names not in self._closures:
             texts: dict[str, Text] = {}
             for name in names:
@@ -84,11 +87,11 @@ class Library(Record, frozen=True):
         return self._closures[names]
 
     def uses(self, shader: str, words: frozenset[str], asker: str) -> bool:
-        """True if the file or anything it includes says one of `words`."""
+        """True if the file or anything that it includes contains one of `words`."""
         return any(words & text.words for text in self.closure((shader,), asker))
 
     def remember_lines(self, key: Hashable, find: Callable[[], Lines]) -> Lines:
-        """The lines of files for a pass, which `find` finds the first time. `key` is all that they depend on."""
+        """The included lines of a pass, which `find` makes the first time. `key` is everything that they depend on."""
         if key not in self._lines:
             if len(self._lines) >= MAX_REMEMBERED_PASSES:
                 self._lines.pop(next(iter(self._lines)))
@@ -96,16 +99,16 @@ class Library(Record, frozen=True):
         return self._lines[key]
 
     def is_light(self, shader: str, function: str, asker: str) -> bool:
-        """True for a function that reads pictures itself, without loops, of a file that holds nothing but functions.
+        """True for a function without loops that reads pictures, in a file that holds nothing but functions.
 
-        It costs little, and may stand in a pass several times under different names.
+        It costs little, and a pass can include it several times under different names.
         """
         if (shader, function) not in self._light:
             self._light[shader, function] = self._is_light(shader, function, asker)
         return self._light[shader, function]
 
     def find_uniforms(self, shader: str, function: str, asker: str) -> frozenset[str]:
-        """The uniforms that a function asks for; so may macros, which come with files of which it calls nothing."""
+        """Those of `PASS_UNIFORMS` that a function reads, with all that it calls and all macros of its files."""
         if (shader, function) not in self._uniforms:
             needed = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):
@@ -114,14 +117,14 @@ class Library(Record, frozen=True):
         return self._uniforms[shader, function]
 
     def digest(self, names: tuple[str, ...], asker: str) -> str:
-        """A hash of files and all they include."""
+        """A hash of files and all that they include."""
         if names not in self._digests:
             bodies = "\0".join(text.body for text in self.closure(names, asker))
             self._digests[names] = blake2b(bodies.encode(), digest_size=16).hexdigest()
         return self._digests[names]
 
     def is_cheap(self, shader: str, function: str, asker: str) -> bool:
-        """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
+        """True for a function without loops and transcendental functions: it costs less than to store a picture."""
         return self._find_words(shader, function, asker).isdisjoint(_EXPENSIVE_WORDS)
 
     def is_straight(self, shader: str, function: str, asker: str) -> bool:
@@ -137,7 +140,7 @@ class Library(Record, frozen=True):
         return self._words[shader, function]
 
     def _find_words_by_file(self, shader: str, function: str, asker: str) -> Iterator[tuple[str, frozenset[str]]]:
-        """The files that a function may need, its own first, and the words of what it needs of each."""
+        """The files that a function may need, its own first, with the words of the functions that it needs of each."""
         needed = frozenset({function})
         for text in reversed(self.closure((shader,), asker)):
             words = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
@@ -151,7 +154,7 @@ class Library(Record, frozen=True):
         return not any(_ACCESSOR.fullmatch(word) for words in included_words for word in words)
 
     def _derive(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
-        """This library with other files over its own, known by what `key` says of them."""
+        """This library with texts added or replaced; `key` identifies them."""
         if key not in self._derived:
             if len(self._derived) >= MAX_DERIVED_LIBRARIES:
                 self._derived.pop(next(iter(self._derived)))
@@ -164,7 +167,7 @@ class Library(Record, frozen=True):
         return self.texts[name]
 
     def _include(self, name: str, asker: str, trail: tuple[str, ...], texts: dict[str, Text]) -> None:
-        """Add a file to `done`, after all that it includes. `trail` are the files that led to it."""
+        """Add a file to `texts`, after all that it includes. `trail` are the files that include it."""
         if name in texts:
             return
         text = self._find_text(name, asker)
@@ -178,7 +181,7 @@ class Library(Record, frozen=True):
 
 
 class OverlaidTexts(Mapping[str, Text]):
-    """Texts over others, which are still only read when they are asked for."""
+    """Texts that hide those of the same name in another mapping, which is still read lazily."""
 
     def __init__(self, above: Mapping[str, Text], below: Mapping[str, Text]) -> None:
         self._above, self._below = above, below
@@ -197,9 +200,10 @@ class OverlaidTexts(Mapping[str, Text]):
 
 
 class ShaderFolder(Mapping[str, Text]):
-    """Shader files of a folder by name; each is read when it is asked for.
+    """Shader files of a folder by name; each is read when it is first used.
 
-    Those of a plug-in have its namespace in front, and so have all their functions: any two nodes may share a pass.
+    Files of a plug-in begin with its namespace. So must their functions, because two nodes of any origin may share a
+    pass.
     """
 
     def __init__(self, folder: Path, namespace: str = "") -> None:
@@ -238,7 +242,7 @@ class ShaderFolder(Mapping[str, Text]):
 
 
 class InstalledTexts(Mapping[str, Text]):
-    """The shader files of Halation, and those of plug-ins, which are looked for only when one is asked for."""
+    """The shader files of Halation and of plug-ins, which are only searched for names that Halation does not have."""
 
     def __init__(self) -> None:
         self._own = ShaderFolder(folder())

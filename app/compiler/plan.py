@@ -20,10 +20,11 @@ from .tiling.tiles import Tiling
 
 Depth = Literal["f2", "f4"]
 FIRST_TABLE = 16
-"""Texture units below are for pictures: no stage has more."""
+"""The first texture unit for tables. Pictures use the units below: OpenGL 4.1 guarantees 16 for each shader stage."""
 
 LINES_PER_FILE = 10_000
-"""Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
+"""Line n of file f of a program is line f * LINES_PER_FILE + n, because not all drivers report file numbers. No file
+has as many lines."""
 
 
 def texture_format(channels: int, half: bool) -> str:
@@ -32,16 +33,16 @@ def texture_format(channels: int, half: bool) -> str:
 
 
 def texture_bytes(size: Size, texel: str) -> int:
-    """What a texture of this size and format takes."""
+    """The bytes of a texture of this size and format."""
     letters, bits = texel[:-3], int(texel[-3:-1])
     return size[0] * size[1] * len(letters) * bits // 8
 
 
 class Surface(Struct, frozen=True):
-    """A picture on the device. `key` is equal only where the pixels are; `slot` is the texture it lives in.
+    """A picture on the device. Equal `key`s mean equal pixels; `slot` is the number of its texture.
 
-    Three channels are stored as four: nothing else is sure to be renderable. `first` and `last` are the passes
-    that make it and read it last; `last` is beyond all passes for what is kept.
+    Three channels are stored as four, because not every device can render to three. `first` and `last` are the passes
+    that make it and that read it last; `last` is beyond all passes for a picture that is kept.
     """
 
     key: str
@@ -53,7 +54,7 @@ class Surface(Struct, frozen=True):
     first: int
     last: int
     window: Region | None = None
-    """The part of its picture that it holds, where that is not all."""
+    """The part of its picture that it holds; None for all of it."""
 
     @property
     def components(self) -> int:
@@ -65,7 +66,7 @@ class Surface(Struct, frozen=True):
 
     @property
     def texel(self) -> str:
-        """Format as GLSL image layouts spell it."""
+        """The format, as GLSL image layouts spell it."""
         return texture_format(self.channels, self.depth == "f2")
 
 
@@ -79,22 +80,22 @@ class Shader(Struct, frozen=True):
     vertex: str = ""
     """The vertex shader of a pass that draws meshes, or a strip of its own; others cover the whole picture."""
     foreign: bool = False
-    """True if it has names of its own for its textures, to which uniforms are set, and reads them filtered."""
+    """True for a program of another format: it names its own samplers and reads them interpolated."""
 
     def locate(self, line: int) -> tuple[str, int]:
-        """The file and line that a driver means by `line`."""
+        """The file and line that a driver reports as `line`."""
         number, row = divmod(line, LINES_PER_FILE)
         return (self.files[number], row) if number < len(self.files) else (self.files[0], line)
 
 
 class Upload(Struct, frozen=True):
-    """Pixels from outside go into a surface."""
+    """A picture whose pixels are uploaded into a surface."""
 
     surface: int
     picture: Picture
     node: str
     whole: Size
-    """The size of the picture, of which the surface may hold a part."""
+    """The size of the whole picture, of which the surface may hold a part."""
 
 
 class Pass(Record, frozen=True):
@@ -121,7 +122,7 @@ class Pass(Record, frozen=True):
 
 
 class Plan(Struct, frozen=True):
-    """What to upload, what to run in which order, and what to hand back by name."""
+    """All that a renderer does for one frame: uploads, passes in order, and outputs by name."""
 
     target: Target
     surfaces: tuple[Surface, ...]
@@ -131,25 +132,26 @@ class Plan(Struct, frozen=True):
     results: Mapping[Port, int]
     """The surface of every output of a node or group, and input of a graph, whose pixels the plan makes.
 
-    Nodes are paths such as `glow/bloom`; the inputs of a group are `glow/inputs`. What was fused away is not there.
+    Nodes are paths such as `glow/bloom`; the inputs of a group are `glow/inputs`. Pictures that are never stored,
+    because their operation shares a pass with its reader, are missing.
     """
     cameras: Mapping[Port, CameraModel]
-    """What inputs of nodes that take a camera were given."""
+    """The cameras that reach inputs of nodes."""
     memories: Mapping[Port, Memory]
-    """What temporal nodes will want of this frame, by node and name."""
+    """What temporal nodes store of this frame for the next one, by node and name."""
     slots: tuple[int, ...]
     """Bytes of each texture that the plan needs at the same time."""
     tiling: Tiling | None = None
-    """How it is run where it does not fit: then surfaces and passes say what is computed, but cannot be run."""
+    """The stages and tiles of a plan that does not fit. Its surfaces and passes then only describe what is computed."""
 
     @property
     def remembering(self) -> tuple[str, ...]:
-        """The nodes that remember, as paths through groups."""
+        """The paths of temporal nodes that store something."""
         return tuple(dict.fromkeys(port.node for port in self.memories))
 
     @property
     def remembered(self) -> tuple[int, ...]:
-        """The surfaces that the next frame will want."""
+        """The surfaces that the next frame may read."""
         keys = {memory.key for memory in self.memories.values()}
         return tuple(number for number, surface in enumerate(self.surfaces) if surface.key in keys)
 
@@ -160,7 +162,6 @@ class Plan(Struct, frozen=True):
 
     @property
     def held_bytes(self) -> int:
-        """What a frame takes at once, of which the memory of the target is enough: textures, and the pictures that are
-        read and made."""
+        """Bytes that a frame takes at once: textures, and the pictures that are read and made."""
         outside = {*(upload.surface for upload in self.uploads), *self.outputs.values()}
         return self.peak_bytes + sum(self.surfaces[number].nbytes for number in outside)

@@ -1,4 +1,10 @@
-"""From graph to plan: the stages in a row, and what of the last plans holds for the next."""
+"""Compiles a graph to a plan: runs all stages, and reuses results of earlier plans.
+
+A planner remembers its last plans with the records of each stage. The next plan follows one of them if nothing but the
+graph, the frame and the region differ. Then each stage first tries to change the record of before: lowering lowers only
+the nodes that changed (`lowering.incremental`), and scheduling rewrites only the passes whose numbers changed
+(`scheduling.reschedule`). A stage that cannot do that starts again. The result is the same in any case.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +38,8 @@ from .tiling.tiling import plan_tiling
 from .working import library_for
 
 MAX_REMEMBERED_PLANS = 4
-"""Plans that a planner remembers: someone who works on a graph looks at few things in turn."""
+"""Plans that a planner remembers, one for each set of options: the viewer's two pictures, the thumbnails and a region.
+Chosen by judgement; with fewer, two viewers that take turns would compile everything each time."""
 
 
 class PlanOptions(Struct, frozen=True):
@@ -49,19 +56,19 @@ class PlanOptions(Struct, frozen=True):
 
 
 class PlanRecord(Struct, frozen=True):
-    """A plan of whole pictures, how it came to be, and the plan of the last region."""
+    """A plan of whole pictures, the records of its stages, and the plan of the last region."""
 
     options: PlanOptions
     lowered: LoweringRecord
     scheduled: ScheduleRecord
     may_need_tiles: bool
-    """False where it is known to fit."""
+    """False if it is known to fit."""
     region: ScheduleRecord | None
 
 
 @contextmanager
 def _pause_collection() -> Generator[None]:
-    """Stop looking for garbage: most of what a plan is made of lives on, and a search goes through all plans."""
+    """Stop the garbage collector: most objects of a plan live on, and each collection would visit all plans."""
     was_enabled = gc.isenabled()
     gc.disable()
     try:
@@ -72,9 +79,9 @@ def _pause_collection() -> Generator[None]:
 
 
 class Planner:
-    """Compiles graphs one after the other. What still holds of the plans before is not found again.
+    """Compiles graphs one after the other and reuses results of earlier plans.
 
-    The plan is always the one that `compile_graph` makes. Bound pixels are not held on to.
+    The plan is always the same as that of `compile_graph`. Bound pixels are not kept.
     """
 
     def __init__(self) -> None:
@@ -95,10 +102,10 @@ class Planner:
     ) -> Plan:
         """Compile what `request` asks of `graph` for `target`: see `compile_graph`.
 
-        `there` are the keys of pictures that need not be made: for a region they are read as they are.
+        `cached_keys` are keys of pictures on the device: a plan for a region reads them whole.
 
-        Each stage first tries to follow the plan before, and is done from the start where that fails. Whether a plan
-        needs tiles depends on sizes and formats alone, so what fitted before still fits if only numbers changed.
+        Each stage first tries to follow the plan before, and starts again if that fails. Whether a plan needs tiles
+        depends only on sizes and formats, so a plan that fitted before still fits if only numbers changed.
         """
         library, precision = graph_library(graph, provider, library), precision or target.precision
         options = PlanOptions(
@@ -131,7 +138,7 @@ class Planner:
     def _lower(
         self, options: PlanOptions, graph: Graph, request: Request, provider: ResourceProvider, library: Library
     ) -> tuple[PlanRecord | None, LoweringRecord]:
-        """The plan that this one follows, which is forgotten, and the lowered graph; no plan if it follows none."""
+        """The record of the plan that this one follows, or None, and the lowered graph. The record is removed."""
         for record in self._records:
             if record.options == options and record.lowered.library is library:
                 lowered = lower_again(record.lowered, graph, request, provider)
@@ -156,7 +163,7 @@ def _schedule_region(
     cached_keys: Container[str],
     library: Library,
 ) -> ScheduleRecord:
-    """The passes of a plan for a region. Which part of a picture is read may depend on numbers, so it is found anew."""
+    """Schedule a region of a plan. Which part of a picture is read may depend on numbers, so it is found each time."""
     cached_refs = {ref for ref, key in whole.keys.items() if key in cached_keys}
     program = focus_program(whole.program, whole.passes, region, cached_refs)
     has_same_windows = before and before.passes is whole.passes and before.program.windows == program.windows
@@ -188,7 +195,7 @@ def compile_graph(
     library: Library | None = None,
     fusion: bool = True,
 ) -> Plan:
-    """Compile what `request` wants of `graph` for `target`.
+    """Compile the requested outputs of `graph` for `target`.
 
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
@@ -197,7 +204,7 @@ def compile_graph(
 
 
 def examine(graph: Graph, request: Request, provider: ResourceProvider, target: Target = NULL) -> None:
-    """Raise what `compile_graph` would raise, in half of the time: no program is written."""
+    """Raise the errors of `compile_graph` in half of its time: no program is written."""
     library = graph_library(graph, provider)
     program = lower(graph, request, library, provider).program
     passes, precision = fuse(program, target), target.precision
@@ -206,13 +213,13 @@ def examine(graph: Graph, request: Request, provider: ResourceProvider, target: 
 
 
 def graph_library(graph: Graph, provider: ResourceProvider, library: Library | None = None) -> Library:
-    """The shaders that a graph can use: the installed ones for its working space, and its own."""
+    """The shaders that a graph can use: the installed ones for its working space, and those of its custom nodes."""
     working = provider.find_working_space(color_settings(graph)) if graph.settings.color.working else None
     return library_for(library or installed_library(), working).with_texts(find_custom_texts(graph))
 
 
 def _fill_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
-    """A plan that has the pixels that are bound to inputs."""
+    """The plan with the arrays that are bound to inputs."""
     pixels = {item.path: item.pixels for item in bindings.values() if item.in_memory}
 
     def fill_picture(picture: Picture) -> Picture:

@@ -1,4 +1,4 @@
-"""The texts of passes that read more than their own pixel: accessors, convolutions, reductions."""
+"""Writes the GLSL of passes that read more than their own pixel: accessors, convolutions, reductions."""
 
 from __future__ import annotations
 
@@ -8,16 +8,20 @@ from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
 from .names import ShaderNames
 
 LONG_STRIP = 8
-"""Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
+"""Pixels that one invocation of a long convolution makes; each texel is loaded once for all of them. Eight RGBA sums
+and their weights take 40 registers. More would exceed those of a processor, and fewer load texels more often."""
 
 SHORT_STRIP = 4
-"""Those of a short one. Eight would be hardly faster, and take the driver long to compile."""
+"""The same for a short convolution, whose taps are written out. Eight are hardly faster, and the text, which the driver
+must compile, is twice as long."""
 
 UNROLLED_TAPS = (9, 17, 25, 33)
-"""Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
+"""Lengths of convolutions that are written out without a loop; a shorter one is padded with zeros to the next of these,
+so that a slider for sigma compiles four programs at most. Longer ones take the driver too long to compile."""
 
 MAX_LOOPED_PIXELS = 2**18
-"""Pixels of pictures that are convolved in loops: writing taps out takes the driver longer than is ever saved."""
+"""Pictures up to so many pixels, 512x512, are convolved in loops: compiling a text without a loop takes longer than it
+saves on them. Chosen by judgement."""
 
 
 def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
@@ -49,7 +53,7 @@ def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
 
 
 def write_convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
-    """The accessor, the weights and the uniforms that all forms of a convolution share."""
+    """Declare the accessor, the weights and the uniforms that all forms of a convolution share."""
     names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
     names.uniform("int", op.origin, "origin")
     if names.form == "fragment" or not is_unrolled(op):
@@ -80,7 +84,7 @@ def is_unrolled(op: Convolve) -> bool:
 
 
 def count_pixels(op: Convolve) -> int:
-    """How many pixels one invocation makes. Those of a decimation by four have little in common."""
+    """How many pixels one invocation makes. Neighbors of a decimation by four share few texels, so fewer there."""
     return LONG_STRIP if len(op.weights) > UNROLLED_TAPS[-1] else max(2 * SHORT_STRIP // max(op.stride, 2), 1)
 
 
@@ -98,7 +102,7 @@ def write_strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
 
 
 def _write_unrolled(op: Convolve, count: int) -> list[str]:
-    """No loop, and every weight is where it is needed."""
+    """A convolution without a loop, with every weight in its place."""
     taps, lines = _count_unrolled_taps(op), list[str]()
     for tap in range((count - 1) * op.stride + taps):
         sums = [
@@ -111,7 +115,7 @@ def _write_unrolled(op: Convolve, count: int) -> list[str]:
 
 
 def _write_sliding(count: int) -> list[str]:
-    """A loop. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
+    """A convolution as a loop: texel j is added to pixel k with weight j - k. The last weights stay in registers."""
     lines = [
         f"float {', '.join(f'w{k} = 0.0' for k in range(count))};",
         "vec4 four;",
@@ -126,14 +130,14 @@ def _write_sliding(count: int) -> list[str]:
 
 
 def _count_unrolled_taps(op: Convolve) -> int:
-    """How many taps are written out: those of a class of lengths, so that lengths share programs."""
+    """How many taps are written out: see `UNROLLED_TAPS`."""
     if op.stride > 1:
         return len(op.weights)
     return next(size for size in UNROLLED_TAPS if size >= len(op.weights))
 
 
 def pad_weights(op: Convolve, form: str) -> tuple[float, ...]:
-    """The uniform block's contents: strips run past the last weight, where zeros must lie."""
+    """The contents of the uniform block, with zeros after the last weight, where strips read on."""
     count = len(op.weights)
     if form == "compute":
         count = _count_unrolled_taps(op) if is_unrolled(op) else -(-(count + LONG_STRIP - 1) // LONG_STRIP) * LONG_STRIP
@@ -141,7 +145,7 @@ def pad_weights(op: Convolve, form: str) -> tuple[float, ...]:
 
 
 def write_source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> list[str]:
-    """`source_at`: a pixel of what is reduced, computed on the spot where its producers joined the pass."""
+    """Write `source_at`: a pixel of the reduced picture, computed here if its producers joined the pass."""
     shape = names.shape(root.image)
     names.uniform("ivec2", shape.size, "source_size")
     return [
@@ -154,7 +158,7 @@ def write_source(names: ShaderNames, root: Reduce, body: list[str], value: str) 
 
 
 def write_reduction(names: ShaderNames, root: Reduce) -> list[str]:
-    """Every invocation folds one block; the blocks at the far edges are smaller."""
+    """Write the loop in which every invocation folds one block; blocks at the far edges are smaller."""
     glsl = glsl_type(names.shape(root.image).channels)
     fold = "result + c" if root.operation == "sum" else "max(result, c)"
     return [

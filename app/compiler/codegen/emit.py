@@ -1,4 +1,4 @@
-"""One GLSL program per pass, as a fragment or as a compute shader."""
+"""Writes the GLSL program of a pass, as a fragment or as a compute shader."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .rasterize import write_raster
 
 
 class EmittedProgram(Struct, frozen=True):
-    """A program, what its uniforms and weights are set to, and how many work groups run."""
+    """A program, the values of its uniforms and weights, and its work groups."""
 
     shader: Shader
     uniforms: tuple[tuple[str, Uniform], ...]
@@ -31,7 +31,7 @@ class EmittedProgram(Struct, frozen=True):
 
 
 class _PassRequest(Struct, frozen=True):
-    """A pass to write, for a target. `formats` are those of what it reads and writes."""
+    """A pass to write, for a target. `formats` are those of the pictures that it reads and writes."""
 
     program: LoweredProgram
     group: PassGroup
@@ -41,14 +41,14 @@ class _PassRequest(Struct, frozen=True):
 
     @property
     def halves(self) -> list[bool]:
-        """Which of the pictures that it writes are stored as half floats."""
+        """For each picture that it writes, whether it is stored as half floats."""
         return [self.formats[ref].endswith("16f") for ref in self.group.writes]
 
 
 def emit(
     program: LoweredProgram, group: PassGroup, library: Library, target: Target, formats: Mapping[Ref, str]
 ) -> EmittedProgram:
-    """Write the program of one pass. `formats` are those of what it reads and writes."""
+    """Write the program of one pass. `formats` are those of the pictures that it reads and writes."""
     return _emit_root(program.ops[group.root], _PassRequest(program, group, library, target, formats))
 
 
@@ -110,7 +110,7 @@ def _(root: ExternalProgram, asked: _PassRequest) -> EmittedProgram:
 
 
 def _name_windows(names: ShaderNames, group: PassGroup) -> None:
-    """Name the places of pictures of which only a part is on the device."""
+    """Declare the windows of pictures of which only a part is on the device."""
     windows = names.program.windows
     for number, ref in enumerate(group.reads):
         if ref in windows:
@@ -120,7 +120,7 @@ def _name_windows(names: ShaderNames, group: PassGroup) -> None:
 
 
 def _write_preamble(target: Target) -> list[str]:
-    """Fragment passes keep to what macOS has; Mesa lends them the functions that round to half floats.
+    """The head of a program. Fragment passes use the GLSL 4.10 of macOS, with an extension for half floats of Mesa.
 
     Compute passes may be dispatched in bands: `first_row` is the row of work groups that a band starts with.
     """
@@ -151,7 +151,10 @@ def _declare_targets(names: ShaderNames, group: PassGroup, target: Target, forma
 
 
 def _write_half_rounding(target: Target, halves: list[bool]) -> list[str]:
-    """Halves saturate instead of overflowing; the software rasterizer would also truncate them, and lose NaN."""
+    """Write `as_half`: half floats saturate in place of overflowing. The software rasterizer needs rounding, too.
+
+    It would truncate stored halves and lose NaN.
+    """
     if not any(halves):
         return []
     clamped, rounded = "clamp(c, -65504.0, 65504.0)", "c"
@@ -162,13 +165,13 @@ def _write_half_rounding(target: Target, halves: list[bool]) -> list[str]:
 
 
 def _write_fragment_main(names: ShaderNames, body: list[str], texels: list[str]) -> list[str]:
-    """The entry point of a fragment pass, which makes one pixel."""
+    """Write the entry point of a fragment pass, which makes one pixel."""
     start = f" + {names.start}" if names.start else ""
     stores = (f"o{number} = {texel};" for number, texel in enumerate(texels))
     return ["void main() {", f"pixel = ivec2(gl_FragCoord.xy){start}; extent = grid;", *body, *stores, "}"]
 
 
 def _write_texel(shape: PictureShape, result: str, half: bool) -> str:
-    """What is stored of a result; unused channels are zero."""
+    """The vec4 that is stored of a result; unused channels are zero."""
     texel = result if shape.channels == 4 else f"vec4({result}, {', '.join(['0.0'] * (4 - shape.channels))})"
     return f"as_half({texel})" if half else texel

@@ -1,4 +1,4 @@
-"""The pass of a program that is no function of ours."""
+"""Writes the pass of a program that users wrote in another format."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from .names import uniform_value
 def write_external(
     root: ExternalProgram, group: PassGroup, rounding: list[str]
 ) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
-    """Its program, and what its uniforms are set to: samplers to the places of their pictures among those read.
+    """The program and the values of its uniforms: samplers get the texture units of their pictures.
 
-    `rounding` is the function `as_half`, where the result is stored in half floats.
+    `rounding` is the text of `as_half`, if the result is stored in half floats.
     """
     fragment, vertex = root.text.fragment, root.text.vertex
     color = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
@@ -39,7 +39,7 @@ def write_external(
 
 
 def _write_stage(stage: ShaderStage, file: int) -> str:
-    # The second extension lets functions return whole numbers as floats, which older GLSL did everywhere.
+    # The second extension lets functions that return floats return integers, as older GLSL does.
     top = (
         "#version 410 core",
         "#extension GL_ARB_shading_language_packing : enable",

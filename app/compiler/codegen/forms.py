@@ -1,8 +1,8 @@
-"""What one invocation of a compute pass makes: a pixel, or several in a row that share what they read.
+"""Writes the entry points of compute passes, whose invocations make one pixel, or several that share what they read.
 
-Loads are what a pass costs. Several pixels of a function that looks around are written one after another: neighbors
-want the same texels, at places that the driver's compiler can tell are the same, and it reads them once. A convolution
-is written so that each texel is read once and goes to all pixels at once.
+Most of the time of a pass is loads. If an invocation makes several pixels of a function that reads neighbors, these
+need many of the same texels; the driver's compiler sees that their positions are equal, and loads them once. A
+convolution is written so that each texel is loaded once and added to all pixels.
 """
 
 from __future__ import annotations
@@ -17,28 +17,30 @@ from .names import ShaderNames
 from .pass_parts import PassContext
 
 LOCAL_SIZE = 64
-"""Invocations of a work group: neighbors across the row of pixels that each makes."""
+"""Invocations of a work group, side by side across the pixels that each one makes. 64 is a multiple of the width at
+which all common GPUs execute (32 at NVIDIA, 32 or 64 at AMD); a smaller group would leave lanes idle."""
 
 ROWS = 2
-"""Pixels of a column that one invocation makes. Four would be a tenth faster, and take the driver long to compile."""
+"""Pixels of a column that one invocation makes. On the software rasterizer four are a tenth faster, but take the driver
+much longer to compile."""
 
 BLOCK = 8
-"""Work groups side by side whose columns are convolved before those of the next block: what a strip reads again of the
-rows that the one above it has read is then still in the nearest cache.
-"""
+"""Work groups side by side whose columns are convolved before those of the next block, so that rows which the strip
+above has read are still in the cache. 8 groups are 512 pixels, 8 KiB in a row of RGBA floats; the 65 rows of a long
+strip take half a MiB, which fits into the second cache of a processor core. Chosen by this estimate."""
 
 
 def count_rows(context: PassContext) -> int:
-    """How many pixels of a column an invocation of a compute pass makes. Functions with loops share nothing.
+    """How many pixels of a column an invocation of a compute pass makes. Functions with loops share no loads.
 
-    Where several functions look around, what two rows share is lost again, since so much does not fit into registers.
+    If several functions read neighbors, their texels do not fit into registers, and two rows would gain nothing.
     """
     gathers = sum(bool(op.files) and not op.is_pointwise and op.is_inlinable for op in context.members)
     return ROWS if gathers < 2 and all(op.is_straight(context.library) for op in context.members) else 1
 
 
 def count_groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
-    """Work groups that cover a picture: side by side across the rows of pixels, along them, and blocks of those."""
+    """Work groups that cover a picture: in a block across the axis, along the axis, and the number of blocks."""
     axis = convolve.axis if convolve else 1
     along, across = -(-size[axis] // count), -(-size[1 - axis] // LOCAL_SIZE)
     block = across if convolve is None else min(across, BLOCK) if axis == 1 else 1
@@ -50,11 +52,11 @@ def write_main(
 ) -> list[str]:
     """The entry point of a compute pass.
 
-    What is made beyond the edges is stored nowhere. To leave before it is made would have the software rasterizer mask
-    everything, which is a tenth slower and takes a sixth longer to compile.
+    Pixels beyond the edges are computed and not stored. If invocations returned before, the software rasterizer would
+    mask every instruction, which is a tenth slower and takes a sixth longer to compile.
 
-    `body` are the statements that make one pixel, `texels` what is stored of it. With a convolution, its value of that
-    pixel is called `convolved`, and pixels are made `along` its axis.
+    `body` are the statements that compute one pixel, `texels` the expressions that are stored. With a convolution, its
+    value at the pixel is called `convolved`, and pixels follow each other along its axis.
     """
     lines = [
         "void main() {",
@@ -93,5 +95,5 @@ def write_main(
 
 
 def _write_place(along: str, across: str, convolve: Convolve | None) -> str:
-    """A pixel by where it is along its row of pixels, and across; both axes of a convolution share a program."""
+    """The position of a pixel from its places along and across the axis; both axes of a convolution share a program."""
     return f"along * ({along}) + along.yx * {across}" if convolve else f"ivec2({across}, {along})"

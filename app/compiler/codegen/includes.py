@@ -1,4 +1,4 @@
-"""The shader files that a pass includes: only the functions that it needs, in an order in which they compile.
+"""Includes shader files in a pass: only the functions that it needs, in an order in which they compile.
 
 A file is cut to the functions that the pass calls, directly or through others. Files that read a picture through an
 accessor (`image_at`) come after the accessors of the pass, all others before. The macros of a node's choices are
@@ -45,7 +45,7 @@ def select_texts(context: PassContext, parts: PassParts) -> tuple[Text, ...]:
     files = context.library.closure(tuple(dict.fromkeys((*parts.shaders, *included))), context.root.owner)
     programs = dict.fromkeys(program for op in context.members for program in op.color_programs)
     for text in reversed((*files, *(program.text for program in programs))):
-        # What an inlined gather needs of its own file comes with it.
+        # The own file of an inlined gather is included with the gather.
         cut_text = text.only(needed if text.name in inlined_files else needed | inlined_words)
         needed |= cut_text.words
         selected.append(cut_text)
@@ -62,7 +62,7 @@ def split_by_accessors(texts: tuple[Text, ...], parts: PassParts) -> tuple[list[
 
 
 def find_macros(text: Text, context: PassContext) -> list[tuple[str, int]]:
-    """The macros of a node's choices that its file asks for."""
+    """The macros of a node's choices that its file uses, and their numbers."""
     choices = next((op.choices for op in context.functions if op.shader == text.name), ())
     macros = ((macro_name(name, choice), number) for name, names in choices for number, choice in enumerate(names))
     return [(name, number) for name, number in macros if name in text.words]
@@ -79,7 +79,7 @@ def _find_lines(context: PassContext, parts: PassParts) -> Lines:
 
 
 def _include_inlined(gather: InlinedGather, files: list[str], context: PassContext) -> list[str]:
-    """The file of an inlined gather, under names of its own."""
+    """The file of an inlined gather, with its prefix for names."""
     return [
         *(f"#define {word} {gather.prefix}{word}" for word in gather.renamed_words),
         *_include(gather.text, files, context),

@@ -1,4 +1,4 @@
-"""Expressions of a pass: textures and uniforms are named as its text asks for them."""
+"""Names textures and uniforms of a pass, and writes the expressions that read them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ..target import Form
 
 _FLOAT32 = 3.4e38
 _INT32 = 2**31
-"""Numbers that GLSL can hold. A float this large is infinite for every purpose."""
+"""The limits of numbers in GLSL: just below the largest float (3.403e38), and one above the largest int."""
 
 
 class ShaderNames(Struct):
-    """Hands out textures and uniforms as the text of a pass asks for them."""
+    """Declares uniforms as the text of a pass asks for them, and writes expressions that read pictures."""
 
     program: LoweredProgram
     textures: dict[Ref, int]
@@ -28,12 +28,12 @@ class ShaderNames(Struct):
     """Whether fused functions are kept apart: see primitive/settled.glsl."""
 
     start: str = ""
-    """The first pixel that is written, where that is not the first one of the picture."""
+    """The uniform with the first pixel that is written, if only a window of the picture is."""
     room: str = "grid"
-    """How many pixels are written, across and down."""
+    """The uniform with the size of what is written."""
 
     def declare_window(self, region: Region) -> None:
-        """Only a region is written, and of some pictures only parts are there."""
+        """Write only a region of the picture."""
         self.start = self.uniform("ivec2", region.start, "window_start")
         self.room = self.uniform("ivec2", region.size, "window_size")
 
@@ -47,7 +47,7 @@ class ShaderNames(Struct):
         return self.program.ops[ref.op].shapes[ref.output]
 
     def load(self, ref: Ref, where: str) -> str:
-        """Read one pixel; a single pixel stands for every position."""
+        """The expression that reads one pixel; a 1x1 picture has the same pixel everywhere."""
         shape = self.shape(ref)
         where = "ivec2(0)" if shape.size == (1, 1) else where
         name = f"t{self.textures[ref]}"
@@ -57,11 +57,11 @@ class ShaderNames(Struct):
         return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
 
     def load_as(self, ref: Ref, where: str, glsl: str) -> str:
-        """Read one pixel as another type."""
+        """The expression that reads one pixel as another type."""
         return convert(self.load(ref, where), self.shape(ref).channels, glsl)
 
     def constant(self, item: UniformConstant, glsl: str) -> str:
-        """A uniform within the range of its type; one of another type is converted like a picture would be."""
+        """A uniform with a constant, limited to the range of its type, and converted like a picture's channels."""
         if isinstance(item.value, tuple):
             value = tuple(_float32(part) for part in item.value)
             if glsl.endswith("]"):
@@ -91,14 +91,14 @@ class ShaderNames(Struct):
 
 
 def uniform_value(item: UniformConstant) -> Uniform:
-    """A constant as a uniform of its own type can hold it."""
+    """The value of a constant within the range of its own type."""
     if isinstance(item.value, tuple):
         return tuple(_float32(part) for part in item.value)
     return _float32(item.value) if isinstance(item.value, float) else int(_int32(item.value))
 
 
 def convert(text: str, channels: int, glsl: str) -> str:
-    """An expression with this many channels as another GLSL type: the lossless conversions between sockets."""
+    """Convert an expression with this many channels to another GLSL type, as sockets are converted."""
     if glsl == glsl_type(channels):
         return text
     if channels == 1:

@@ -16,10 +16,10 @@ from . import bodies
 from .names import ShaderNames, convert, glsl_channels
 
 ACCESSORS = ("raw", "at", "near", "size")
-"""The functions for a picture that is read anywhere: `image_at` and so on."""
+"""The endings of the functions that read a picture anywhere: `image_at` and so on."""
 
 NO_SEAM = (0, 0, 0, 0)
-"""What a seam between fused functions does to the bits: nothing. See primitive/settled.glsl."""
+"""The uniform of a seam between fused functions, which changes no bit: see primitive/settled.glsl."""
 
 
 class PassContext(Struct, frozen=True):
@@ -46,7 +46,7 @@ class PassContext(Struct, frozen=True):
 
 
 class InlinedGather(Struct, frozen=True):
-    """An operation that looks around within a pass of pointwise ones: what its file needs, under names of its own."""
+    """A gather inside a pass of pointwise operations: the part of its file that it needs, with a prefix for names."""
 
     op: Gather
     text: Text
@@ -54,12 +54,12 @@ class InlinedGather(Struct, frozen=True):
 
     @property
     def accessors(self) -> list[Accessor]:
-        """Its pictures, by the names that they have in the pass."""
+        """Its pictures with the names that they have in the pass."""
         return [structs.replace(item, name=self.prefix + item.name) for item in self.op.accessors]
 
     @property
     def renamed_words(self) -> list[str]:
-        """The words of its file that mean something else in the pass."""
+        """The words of its file that get the prefix."""
         reads = [f"{item.name}_{way}" for item in self.op.accessors for way in ACCESSORS]
         return [word for word in (*self.text.functions, *reads) if word in self.text.words]
 
@@ -80,7 +80,7 @@ class PassParts(Struct, frozen=True):
 
 
 def write_parts(context: PassContext) -> PassParts:
-    """What a pass does, in pieces."""
+    """The pieces of a pass's text."""
     return _write_root(context.root, context)
 
 
@@ -158,7 +158,7 @@ def _write_calls(context: PassContext) -> tuple[list[str], dict[Ref, str]]:
     names, group = context.names, context.group
     lines: list[str] = []
     values: dict[Ref, str] = {}
-    # A root that reduces reads its picture at every pixel; what looks around reads through its accessors.
+    # Only pointwise operations and reductions load their own pixel; gathers read through their accessors.
     loaded = {ref for op in context.members if op.takes_producers for ref in op.reads()}
     for number, ref in enumerate(group.reads):
         if ref not in loaded:
@@ -186,7 +186,7 @@ def _write_calls(context: PassContext) -> tuple[list[str], dict[Ref, str]]:
 
 
 def _write_gather(op: FunctionOp, arguments: list[str], library: Library, prefix: str = "") -> str:
-    """The expression for what an operation that looks around makes of a pixel."""
+    """The expression that calls the function of a gather for one pixel."""
     returned = library.function(op.shader, op.function, op.owner).result
     call = f"{prefix}{op.function}({', '.join(arguments)})"
     return convert(call, glsl_channels(returned), glsl_type(op.shapes[0].channels))

@@ -1,4 +1,4 @@
-"""The program of a pass that draws meshes."""
+"""Writes the program of a pass that draws meshes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..raster import CHANNELS, write_fragment_lines, write_vertex_text
 def write_raster(
     program: LoweredProgram, root: Raster, group: PassGroup, library: Library
 ) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
-    """The vertex and fragment shader that write the channels that are read, and what their uniforms are set to."""
+    """The vertex and fragment shader that write the channels that are read, and the values of their uniforms."""
     text = library.closure(root.files, root.owner)[0]
     channels = [tuple(CHANNELS)[ref.output] for ref in group.writes]
     lines = write_fragment_lines(text.body, channels)

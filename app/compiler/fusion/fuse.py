@@ -1,8 +1,8 @@
-"""Second stage: which operations share a pass.
+"""Second stage: decides which operations share a pass.
 
-A pointwise operation joins its reader when nothing else reads it, both have the same size, and the pass stays
-within the device's limits. Reductions take their producer in too: they read every pixel exactly once. So does an
-operation that looks around, if it is light, join a pointwise reader; what it reads itself must be a texture.
+A pointwise operation joins its reader if nothing else reads it, both have the same size, and the pass stays within the
+device's limits. A reduction takes in its producer too, because it reads every pixel exactly once. An operation that
+reads neighbors joins a pointwise reader if it is light; the pictures that it reads itself must be textures.
 """
 
 from __future__ import annotations
@@ -15,14 +15,17 @@ from ..ir import LoweredProgram, Op, Ref
 from ..target import Target
 
 MAX_MEMBERS = 48
-"""Longer passes would save nothing more, and take the driver long to compile."""
+"""Operations of a pass. The largest pass of the presets has 20, so more would save nothing there; with 16 or 8 the
+presets have 1 and 21 passes more. Compile times grow faster than passes: llvmpipe takes 2 s for 192 pointwise
+operations in passes of 48, 5 s in passes of 96, and 15 s in one pass."""
 
 MAX_UNIFORMS = 512
-"""Floats that the values of a pass may take as uniforms: GL promises no more to a compute shader."""
+"""Floats of uniforms of a pass: the least that OpenGL 4.3 guarantees for compute shaders
+(MAX_COMPUTE_UNIFORM_COMPONENTS; 1024 for fragment shaders). Twice as many would save no pass of the presets."""
 
 
 class PassGroup(Struct, frozen=True):
-    """Operations of one pass in order, the root last; what it reads from textures and what it writes."""
+    """Operations of one pass in order, the root last; the pictures that it reads from textures and those it writes."""
 
     members: tuple[int, ...]
     reads: tuple[Ref, ...]
@@ -38,7 +41,10 @@ def fuse(
 ) -> tuple[PassGroup, ...]:
     """Group the operations of `program` into passes, in order.
 
-    `enabled=False` leaves every one alone, `gathers=False` those that look around.
+    `enabled=False` gives each operation a pass of its own, `gathers=False` only those that read neighbors.
+
+    Operations are visited from the last to the first, so that the pass of every reader is known before its producer is
+    considered: one visit decides. The other direction would have to merge whole passes.
     """
     ops = program.ops
     live = _find_live(program)
@@ -103,12 +109,12 @@ def _find_readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
 
 
 def _are_read_at_own_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
-    """True if all that read these pictures want each pixel for one of their own."""
+    """True if all readers of these pictures read each pixel for the same pixel of their own."""
     return all(ops[reader].takes_producers for ref in outputs for reader in readers.get(ref, ()))
 
 
 def _join_reads(outer: Iterable[Ref], outputs: list[Ref], op: Op) -> dict[Ref, None]:
-    """What a pass reads once `op` is part of it."""
+    """What a pass reads after `op` has joined it."""
     return dict.fromkeys([*(ref for ref in outer if ref not in outputs), *op.reads()])
 
 
@@ -127,6 +133,6 @@ def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: 
 
 
 def _find_writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept_refs: set[Ref]) -> list[Ref]:
-    """The root's outputs that somebody wants."""
+    """The outputs of the root that another pass reads, or that are kept."""
     outputs = [Ref(root, number) for number in range(ops[root].outputs)]
     return [ref for ref in outputs if ref in readers or ref in kept_refs]

@@ -1,4 +1,4 @@
-"""What all rewrites ask of a pass: whether a device can run it, and in what order it computes."""
+"""What all rewrites must know of a pass: whether a device can run it, and the order of its operations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables
 
 
 def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
-    """True if a pass of pointwise operations is within the limits of a device, and still reads the fast way."""
+    """True if a pass of pointwise operations is within the limits of a device, and can still load from images."""
     reads, writes = len(group.reads), len(group.writes)
     if target.loads_images and reads + writes > target.max_images:
         return False
@@ -24,7 +24,7 @@ def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
 
 
 def order_members(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
-    """The operations of several passes as those of one. What looks around reads textures only, so it comes first."""
+    """The operations of several passes in one order. Those that read neighbors, from textures alone, go first."""
     indices = {index for group in members for index in group}
     return tuple(sorted(indices, key=lambda index: (ops[index].is_pointwise, index)))
 

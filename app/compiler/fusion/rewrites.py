@@ -1,6 +1,7 @@
-"""What is done to passes once operations are fused: each a function of passes that gives passes for the same pixels.
+"""The rewrites of passes after fusion. Each takes passes and returns others that make the same pixels.
 
-They are never undone by each other: what is computed again is not stored, so only what is stored is merged.
+A later rewrite never reverses an earlier one: `recompute` removes pictures, and `merge` only joins the passes that
+remain.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from .recompute import recompute
 __all__ = ["REWRITES", "rewrite_passes", "split_by_result"]
 
 REWRITES = (recompute, merge)
-"""In this order."""
+"""All rewrites, in the order in which they run."""
 
 
 def rewrite_passes(
     program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
-    """Fewer passes, or such that read and write less."""
+    """Apply all rewrites: the result has fewer passes, or passes that read and write less."""
     for rewrite in REWRITES:
         passes = rewrite(program, passes, target, library)
     return passes

@@ -21,16 +21,18 @@ from .operation import Op, SourceOp
 from .values import Accessor, Parameter, Ref, UniformConstant
 
 EDGES = "primitive/edges"
-"""The shader file that all passes include that look around."""
+"""The shader file that all passes include which read neighbors."""
 
 BLOCK = 16
-"""Pixels along each side of the blocks that a reduction folds."""
+"""Pixels along each side of the blocks that a reduction folds. A picture of 3840x2160 needs three passes with 16. With
+larger blocks, the last passes have too few invocations; smaller ones need more passes. Chosen by judgement."""
 
 MAX_WEIGHTS = 4096
-"""Floats in the uniform block of a convolution: GL promises 16 KB."""
+"""Floats in the uniform block of a convolution: OpenGL guarantees 16 KiB (MAX_UNIFORM_BLOCK_SIZE)."""
 
 MAX_TAPS = MAX_WEIGHTS - 15
-"""Weights of a convolution: an odd number that leaves room for zeros past the last one, where eight pixels slide."""
+"""Weights of a convolution: an odd number that leaves room for the zeros after the last one, which strips of eight
+pixels read."""
 
 
 class Read(SourceOp, frozen=True):

@@ -1,7 +1,7 @@
-"""Separable blurs as operations: decimations, exact convolutions at the small size, enlargements.
+"""Adds separable blurs: decimations, exact convolutions at the small size, enlargements.
 
-`gaussian` plans each axis. Decimations come first, so that all else works on fewer pixels; x comes before y throughout,
-and enlargements in the opposite order.
+`gaussian` plans each axis. Decimations come first, so that everything after works on fewer pixels. x comes before y,
+and enlargements come in the opposite order.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ class BlurBuilder:
     def blur(self, image: Ref, axes: Sequence[gaussian.BlurAxis], edge: Edge) -> Ref:
         """Blur along x and y, as `axes` say.
 
-        A decimated picture may reach beyond the edges of the full one, as far as the edge mode matters: `firsts` are
-        where its first pixels lie.
+        A decimated picture may extend beyond the edges of the full one, as far as the edge mode matters: `firsts` are
+        the positions of its first pixels.
         """
         picture, full = image, self._builder.shape(image).size
         firsts = [0, 0]

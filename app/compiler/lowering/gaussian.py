@@ -1,8 +1,11 @@
-"""Gaussian blur at a cost that hardly depends on sigma.
+"""Plans Gaussian blurs whose cost hardly depends on sigma.
 
-Small sigmas are convolved as they are. Large ones are decimated with a Gaussian of 0.8 times the step (a box would
-move small highlights by up to half a block), convolved exactly at the small size, and enlarged with a cubic B-spline,
-whose own variance of a third of a small pixel squared is taken off first (Unser 1999). Relative error below 3e-4.
+Small sigmas are convolved directly. For large ones the picture is decimated with a Gaussian of 0.8 times the step (a
+box would move small highlights by up to half a block), convolved exactly at the small size, and enlarged with a cubic
+B-spline. The variances of all steps add up, so the convolution gets what the others leave: the B-spline has a third of
+a small pixel squared (Unser 1999). A blurred pixel differs from the exact one by 3e-4 of its peak at most.
+
+The constants were compared on impulses at all positions of a block, for sigmas from 7 to 64.
 """
 
 from __future__ import annotations
@@ -13,16 +16,19 @@ from halation.nodes import Edge
 from msgspec import Struct
 
 DIRECT_BELOW = 7.0
-"""Up to this sigma the direct convolution is both exact and no slower."""
+"""Up to this sigma blurs are convolved directly, which is exact. At 7 that takes 57 reads for each axis, and decimation
+takes 20 and 4 more to enlarge, but in two more passes, which write and read the picture once more each."""
 
 _DECIMATION_SIGMA = 0.8
-"""Sigma of a decimation, in steps."""
+"""Sigma of a decimation, in steps. The largest error is 3e-3 with 0.6 (aliasing), 4e-4 with 0.7, 2e-4 with 0.8, and no
+smaller with 1.0, which reads an eighth more."""
 
 _MIN_SMOOTH_REACH = 36
 """How many pixels of the small size other weights must reach: the error is then below 1e-3 of what a pixel becomes."""
 
 _MIN_REST = 1.8
-"""Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
+"""Sigma, in small pixels, that must be left for the convolution at the small size. The largest error is 2e-3 with 1.0,
+1e-3 with 1.4 and 2e-4 with 1.8; less than that shows the grid of the small picture."""
 
 
 class BlurAxis(Struct, frozen=True):
@@ -34,7 +40,7 @@ class BlurAxis(Struct, frozen=True):
 
 
 def plan_axis(sigma: float) -> BlurAxis:
-    """Split `sigma`, in pixels, into decimations and an exact rest."""
+    """Split `sigma`, in pixels, into decimations and a convolution at the small size."""
     if sigma < DIRECT_BELOW:
         return BlurAxis((), 1, gaussian_weights(sigma) if sigma > 0.0 else ())
     steps: list[int] = []
@@ -55,9 +61,10 @@ def plan_axis(sigma: float) -> BlurAxis:
 
 
 def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
-    """The same for an odd number of weights that fall off as smoothly as three boxes spread by each other do.
+    """The same for an odd number of weights that fall off as smoothly as three boxes convolved with each other.
 
-    Samples of them are sharpened by what decimating and enlarging blur them, but nowhere made negative.
+    The weights at the small size are samples of these. They are sharpened by as much as decimation and enlargement
+    blur, but never made negative.
     """
     reach = len(smooth) // 2
     steps: list[int] = []
@@ -79,11 +86,11 @@ def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
 
 
 def find_spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
-    """The first pixel and the length of what each step of a row of `length` makes, in its own pixels; its edge mode.
+    """The first pixel and the length of the row that each decimation makes, in its own pixels; and the edge mode.
 
-    A small picture reaches beyond the row far enough for the edge mode to mean what it does at full size. What is
-    clamped or black comes to an end there, and its last pixels stand for all that follow. What repeats in whole blocks
-    does so at any size. All else goes on as far as is ever read.
+    A small picture extends beyond the row far enough that its edge mode means the same as at full size. With `clamp`
+    and `black` it ends where pixels no longer change, and its last pixel stands for all that follow. A row of whole
+    blocks can be reflected or repeated at any size. In all other cases it is extended as far as is ever read.
     """
     spans: list[tuple[int, int]] = []
     if edge in ("clamp", "black"):
@@ -137,5 +144,5 @@ def _normalize(weights: list[float]) -> tuple[float, ...]:
 
 
 def _measure_variance(weights: tuple[float, ...]) -> float:
-    """Of normalized weights around their middle."""
+    """The variance of normalized weights around their middle."""
     return math.fsum(weight * (i - len(weights) // 2) ** 2 for i, weight in enumerate(weights))

@@ -1,4 +1,4 @@
-"""Whether two programs differ in numbers alone: uniforms, which decide neither what passes there are nor their text."""
+"""Tells whether two programs differ only in numbers: uniforms, on which neither the passes nor their texts depend."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from ..ir import LoweredProgram, Op
 
 
 def find_changed_numbers(before: LoweredProgram, after: LoweredProgram) -> set[int] | None:
-    """The operations that changed, where two programs differ in numbers alone; None where they differ in more."""
+    """The operations that changed, if two programs differ only in numbers; None if they differ in more."""
     same_structure = (
         len(before.ops) == len(after.ops)
         and before.outputs == after.outputs
@@ -22,7 +22,7 @@ def find_changed_numbers(before: LoweredProgram, after: LoweredProgram) -> set[i
 
 
 def differ_in_numbers(first: Op, second: Op) -> bool:
-    """True if two operations differ in numbers alone."""
+    """True if two operations differ only in numbers."""
     return (
         type(first) is type(second)
         and first.owners == second.owners

@@ -1,4 +1,4 @@
-"""Last stage: formats, keys, lives and slots; the plan."""
+"""Last stage: finds formats, keys, lifetimes and textures of pictures, and makes the plan."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .fingerprints import Fingerprint, PassFingerprints, find_keys, update_keys
 
 
 class ScheduleRecord(Struct, frozen=True):
-    """A plan, and what it was made of."""
+    """A plan, and the results of scheduling that the next plan may use."""
 
     program: LoweredProgram
     passes: tuple[PassGroup, ...]
@@ -41,7 +41,7 @@ def schedule(
     precision: Precision,
     halves: frozenset[str] = frozenset(),
 ) -> ScheduleRecord:
-    """Write the program of every pass, and find a texture for everything it makes.
+    """Write the program of every pass, and assign a texture to every picture.
 
     `halves` are outputs that will be rounded to half floats.
     """
@@ -83,10 +83,10 @@ def schedule(
 
 
 def reschedule(before: ScheduleRecord, program: LoweredProgram, library: Library) -> ScheduleRecord | None:
-    """The plan of a program that differs from the known one in numbers alone, else None.
+    """The plan of a program that differs from that of `before` only in numbers; None if it differs in more.
 
-    The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
-    again, and keys found of all that comes after them.
+    The same passes make the same pictures in the same textures. Only passes with changed numbers are written again, and
+    new keys are found for everything after them.
     """
     changed = find_changed_numbers(before.program, program)
     if changed is None:
@@ -148,7 +148,7 @@ def choose_formats(
 
 
 def _find_textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict[Ref, None]:
-    """Everything that passes read and write, and what must be there at the end."""
+    """The pictures that passes read and write, and those that are kept at the end."""
     needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
     return needed | dict.fromkeys(program.kept_refs)
 
@@ -184,7 +184,7 @@ def _choose_format(program: LoweredProgram, ref: Ref, precision: Precision) -> s
 def _find_rounded(
     program: LoweredProgram, passes: Sequence[PassGroup], target: Target, halves: frozenset[str]
 ) -> frozenset[Ref]:
-    """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
+    """Outputs that are stored as half floats because nothing reads more of them, neither a pass nor the next frame."""
     if not target.rounds_halves:
         return frozenset()
     rounded = {ref for name, ref in program.outputs.items() if name in halves}
@@ -201,7 +201,7 @@ def _find_depth(format: str) -> Depth:
 def _find_lifetimes(program: LoweredProgram, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
     """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
 
-    What was remembered of the frame before is there from the first pass to the last.
+    Memories of the frame before exist from the first pass to the last.
     """
     first: dict[Ref, int] = {}
     last: dict[Ref, int] = {}

@@ -1,7 +1,7 @@
-"""Which part of every picture is needed for a part of the outputs.
+"""Finds the part of every picture that is needed for a part of the outputs.
 
-Everything that an operation reads for a rectangle of its own pixels lies in a rectangle too, known before anything
-runs; what reads anywhere needs all. So a picture can be made tile by tile, each with just the overlap that it needs.
+For a rectangle of its own pixels an operation reads a rectangle of each input, which is known before anything runs; one
+that reads anywhere needs the whole input. So a picture can be made tile by tile, each with only the overlap it needs.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ def find_regions(
     requested: Mapping[Ref, Region],
     cached_refs: Set[Ref] = frozenset(),
 ) -> dict[Ref, Region]:
-    """The region of every texture of these passes, so that the regions `wanted` can be made.
+    """The region of every texture of these passes from which the `requested` regions can be made.
 
-    A pass makes the same region of all that it writes. What is `there` stays whole, as does all that it was made of:
-    so it is still what it was.
+    A pass makes the same region of all pictures that it writes. Those in `cached_refs` stay whole, and so does
+    everything upstream of them, because their keys are those of whole pictures.
     """
     regions = dict(requested)
     for fused in reversed(passes):
@@ -49,10 +49,9 @@ def find_regions(
 def focus_program(
     program: LoweredProgram, passes: Sequence[PassGroup], region: Region, cached_refs: Set[Ref] = frozenset()
 ) -> LoweredProgram:
-    """The same program, which makes only a region of its outputs, as far as that lies in them.
+    """The same program, which makes only a region of its outputs, as far as it lies in them.
 
-    The parts that it makes may be larger, where something else reads an output. What is remembered is whole, and so is
-    what is `there` already.
+    It makes a larger part of an output that another operation reads. Memories are whole, and so are `cached_refs`.
     """
     requested: dict[Ref, Region] = {}
     for ref in program.outputs.values():
@@ -71,7 +70,7 @@ def focus_program(
 
 
 def _find_reads(program: LoweredProgram, fused: PassGroup, region: Region) -> dict[Ref, Region]:
-    """What a pass reads to write a region."""
+    """The regions that a pass reads to write a region."""
     inner = dict.fromkeys(fused.writes, region)
     for index in reversed(fused.members):
         op = program.ops[index]

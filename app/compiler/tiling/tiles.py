@@ -1,4 +1,4 @@
-"""How a program is run tile by tile: see `tiling`."""
+"""The stages and tiles in which a program is run: see `tiling`."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from ..target import Precision, Target
 
 
 class TileStage(Struct, frozen=True):
-    """Pictures of one size that are made together, and the passes that make them of what the stages before made.
+    """Pictures of one size that are made together, and their passes, which read results of earlier stages.
 
-    `windows` are the regions of everything for each of the `tiles`; what is not there is whole.
+    `windows` has, for each of the `tiles`, the regions of all pictures that are not whole.
     """
 
     outputs: Mapping[str, Ref]
@@ -26,10 +26,10 @@ class TileStage(Struct, frozen=True):
 
 
 class Tiling(Struct, frozen=True):
-    """What is made before, because something may read all of it for one pixel, and at last the outputs.
+    """The stages of a program: first pictures that some operation may read anywhere, then the outputs.
 
-    `nbytes` is what textures and pictures take at once, at most. `why` says in a sentence what does not fit. Outputs
-    `by_rows` are handed over whenever all tiles of some rows are made.
+    `nbytes` are the bytes that textures and pictures take at once, at most. `why` says in a sentence what does not fit.
+    Outputs in `by_rows` are handed over whenever all tiles of some rows are made.
     """
 
     program: LoweredProgram

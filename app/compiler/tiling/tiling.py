@@ -1,8 +1,8 @@
-"""Pictures that the device, or the memory that may be used, cannot hold are made tile by tile.
+"""Plans pictures that the device, or the allowed memory, cannot hold: they are made tile by tile.
 
-A tile needs the parts of what it reads that lie around it, and no more: see `regions`. What is read anywhere must be
-whole: it is made before, tile by tile as well, and put together. So the plan of a large picture is a row of stages,
-each with many small plans, which share their programs.
+A tile needs only the parts of its inputs that lie around it: see `regions`. A picture that is read anywhere must be
+whole, so it is made in an earlier stage, tile by tile as well, and assembled in memory. So the plan of a large picture
+is a row of stages, each with many small plans, which share their programs.
 """
 
 from __future__ import annotations
@@ -28,21 +28,25 @@ from .regions import find_regions
 from .tiles import TileStage, Tiling
 
 MIN_TILE = 8
-"""Pixels across a tile, at least: smaller ones would be all overlap."""
+"""The smallest side of a tile in pixels. A blur of sigma 1 already reads 4 pixels on each side, so that a tile of 8
+reads four times the pixels that it makes; smaller ones would be nearly all overlap."""
 
 SMALL_FRACTION = 16
-"""What has so many times fewer pixels than the largest picture is made whole, even if it need not be: blurs and glows
-look far around in small pictures, and tiles of the large ones then need little around them."""
+"""A picture with so many times fewer pixels than the largest one is made whole, even if it need not be. Blurs and glows
+read far around in pictures that were decimated, by 4 along each side at least; once these are whole, tiles of large
+pictures need little overlap. A larger number keeps more of them in tiles, which saves memory and repeats work."""
 
 USUAL_BYTES = 2**31
-"""Bytes of textures for a tile where nobody says how much memory may be used; more, where much of it is needed for a
-single pixel."""
+"""Bytes of textures for a tile if the user sets no limit; more, if a single pixel needs much of it. Chosen by
+judgement: nearly every GPU has as much. With less, tiles are smaller and more of their work is overlap."""
 
 MAX_TILES = 2**16
-"""Of a picture: more are so small that they would be mostly overlap."""
+"""Tiles of a picture: 256 along each side. Chosen by judgement: every tile is planned and runs all passes, so that more
+would take hours, and tiles as small as that are mostly overlap."""
 
 MAX_PIXELS = 2**32
-"""Of a picture. It is put together in memory: a larger one is a mistake."""
+"""Pixels of a picture: 65536x65536, which takes 64 GiB as RGBA floats. It is assembled in memory, so a larger size is
+taken for a mistake."""
 
 
 def plan_tiling(
@@ -56,11 +60,11 @@ def plan_tiling(
     keys: Mapping[Ref, str] = MappingProxyType({}),
     by_rows: frozenset[str] = frozenset(),
 ) -> Tiling | None:
-    """How to run passes tile by tile, None where they fit as they are.
+    """The stages and tiles of these passes; None if they fit as they are.
 
-    `texels` and `keys` are the formats and the keys of all pictures. The outputs `by_rows` need not be put together.
+    `texels` and `keys` are the formats and the keys of all pictures. The outputs `by_rows` need not be assembled.
 
-    Raises DeviceError where they do not fit that way either.
+    Raises DeviceError if they do not fit in tiles either.
     """
     why = _find_excess(program, passes, texels, target)
     if not why:
@@ -82,7 +86,7 @@ def plan_tiling(
 
 
 def plan_tile(tiling: Tiling, stage: TileStage, number: int, stored: Mapping[int, StoredResult]) -> Plan:
-    """How a tile of a stage is made; `made` is what the stages before made, by operation."""
+    """The plan of one tile of a stage; `stored` are the results of earlier stages by operation."""
     ops = tuple(stored.get(index, op) for index, op in enumerate(tiling.program.ops))
     program = replace(
         tiling.program,
@@ -98,7 +102,7 @@ def plan_tile(tiling: Tiling, stage: TileStage, number: int, stored: Mapping[int
 def _find_excess(
     program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target
 ) -> str:
-    """What cannot be held, in a sentence; "" if all can."""
+    """A sentence on what does not fit; "" if all pictures do."""
     for ref in texels:
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
@@ -119,25 +123,25 @@ def _find_excess(
 
 
 def _count_memory_bytes(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
-    """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
+    """Bytes of memories beyond those that the plan reads: they exist twice, of this frame and of the one before."""
     kept_bytes = sum(_count_bytes(program, texels, ref) for ref in program.memories.values())
     read = sum(_count_bytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
     return max(kept_bytes - read, 0)
 
 
 def _find_outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[Ref]:
-    """What is not only on the device: pictures that are read from files, and outputs."""
+    """The pictures that also take memory of the processor: those read from files, and outputs."""
     reads = {ref for fused in passes for ref in fused.reads if program.ops[ref.op].find_upload(ref.output)}
     return reads | set(program.outputs.values())
 
 
 def _count_bytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -> int:
-    """What a whole picture takes."""
+    """The bytes of a whole picture."""
     return texture_bytes(program.shape(ref).size, texels[ref])
 
 
 def _check_whole_pictures(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
-    """Raise DeviceError for what must be whole and does not fit, and for what remembers frames."""
+    """Raise DeviceError for a picture that must be whole and does not fit, and for nodes with memories."""
     for fused in passes:
         for op in (program.ops[index] for index in fused.members):
             refs = [
@@ -184,14 +188,14 @@ class _StagePlanner:
         self.nbytes = 0
 
     def plan_before(self) -> tuple[TileStage, ...]:
-        """What is made whole before it is read."""
+        """The stages of pictures that must be whole before they are read."""
         return tuple(
             self._plan_stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused)
             for fused in self.whole_passes
         )
 
     def plan_last(self) -> tuple[TileStage, ...]:
-        """The outputs that are not made by then, by size."""
+        """The stages of all other outputs, one for each size."""
         sizes: dict[Size, dict[str, Ref]] = {}
         for name, ref in self.program.outputs.items():
             if ref not in self.whole_refs:
@@ -201,7 +205,7 @@ class _StagePlanner:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _is_made_whole(self, fused: PassGroup) -> bool:
-        """True for a pass whose pictures are made as a whole before others read them."""
+        """True for a pass whose pictures are made whole before others read them."""
         if any(op.is_made_first for op in self._find_ops(fused)):
             return True
         if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
@@ -218,12 +222,12 @@ class _StagePlanner:
         return SMALL_FRACTION * _count_pixels(self.program.shape(ref).size) <= self.largest
 
     def _is_light(self, fused: PassGroup) -> bool:
-        """True for a pass whose pictures leave room for much else."""
+        """True for a pass whose pictures take little of the allowed memory, an eighth at most."""
         nbytes = sum(_count_bytes(self.program, self.texels, ref) for ref in fused.writes)
         return not self.target.memory or 8 * nbytes <= self.target.memory
 
     def _stays_small(self, fused: PassGroup) -> bool:
-        """True for a pass between small pictures: it is made together with those that shrink or enlarge."""
+        """True for a pass that reads small pictures and is read by passes of small pictures: its readers are cut."""
         readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
         return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
 
@@ -263,7 +267,7 @@ class _StagePlanner:
     def _measure_textures(
         self, passes: Sequence[PassGroup], outputs: dict[str, Ref], size: Size, tile: Size
     ) -> tuple[list[dict[Ref, Region]], int]:
-        """The windows of tiles of this size, and what textures take at most."""
+        """The windows of tiles of this size, and the bytes that textures take at most."""
         windows = [self._find_windows(passes, outputs.values(), region) for region in _sample_tiles(size, tile)]
         programs = (
             replace(self.program, windows=tile_windows, outputs=outputs, memories={}) for tile_windows in windows
@@ -271,7 +275,7 @@ class _StagePlanner:
         return windows, max(count_peak_bytes(program, passes, self.texels) for program in programs)
 
     def _find_passes(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
-        """The passes that make pictures of what stages before made; `own` is the stage's own one."""
+        """The passes that make pictures from results of earlier stages; `own` is the pass that the stage is for."""
         numbers_found: set[int] = set()
         todo = list(refs)
         numbers = {id(fused): number for number, fused in enumerate(self.passes)}
@@ -294,10 +298,10 @@ class _StagePlanner:
         windows_by_tile: Sequence[Mapping[Ref, Region]],
         tile: Size,
     ) -> int:
-        """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
+        """Bytes of the pictures in memory during a stage: inputs, results of earlier stages, and its own results.
 
-        Of files that are read by rows, and outputs that are handed over by rows, those of a tile: of outputs twice,
-        since they are encoded.
+        Files that are read by rows, and outputs that are handed over by rows, count with the rows of a tile; outputs
+        count twice, since an encoded copy exists while they are written.
         """
         held_refs = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.whole_refs}
         rows = {
@@ -313,12 +317,12 @@ class _StagePlanner:
         return total
 
     def _fits(self, windows: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
-        """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
+        """Whether tiles with so many bytes of textures, and of textures and pictures, are within the limits."""
         fits = nbytes <= self.target.memory if self.target.memory else textures <= usual
         return fits and self._find_too_long_sides(windows) == (False, False)
 
     def _find_too_long_sides(self, windows_by_tile: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
-        """Whether a window is wider, or higher, than the device can hold."""
+        """Whether some window is wider, and whether one is higher, than the device can hold."""
         most = self.target.max_size
         regions = [region for windows in windows_by_tile for region in windows.values()]
         return any(region.width > most for region in regions), any(region.height > most for region in regions)
@@ -356,7 +360,7 @@ def _split_into_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
 
 
 def _sample_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
-    """Of the tiles of a grid, those in corners, along edges and in the middle: all others are like one of these."""
+    """The tiles of a grid in its corners, along its edges and in the middle: each other tile is like one of these."""
     across, down = (
         sorted({0, (length - 1) // step // 2 * step, (length - 1) // step * step})
         for length, step in zip(size, tile, strict=True)
@@ -365,7 +369,7 @@ def _sample_tiles(size: Size, tile: Size) -> tuple[Region, ...]:
 
 
 def _halve_tile(tile: Size, too_wide: tuple[bool, bool]) -> Size:
-    """Half as many pixels: of what is too long for the device, else of the longer side."""
+    """A tile of half as many pixels: the side that is too long for the device is halved, else the longer one."""
     width, height = tile
     across = too_wide[0] if any(too_wide) and min(tile) > MIN_TILE else width > height
     return (max(-(-width // 2), MIN_TILE), height) if across else (width, max(-(-height // 2), MIN_TILE))
@@ -374,7 +378,7 @@ def _halve_tile(tile: Size, too_wide: tuple[bool, bool]) -> Size:
 def _select_parts(
     program: LoweredProgram, windows_by_tile: Sequence[Mapping[Ref, Region]]
 ) -> tuple[Mapping[Ref, Region], ...]:
-    """The regions of what is not whole for every tile."""
+    """The regions of all pictures that are not whole, for every tile."""
     parts = {
         ref for windows in windows_by_tile for ref, region in windows.items() if region.size != program.shape(ref).size
     }
