@@ -65,11 +65,12 @@ class DeviceError(HalationError):
 
 
 class ShaderError(DeviceError):
-    """A driver refused a shader. `node`, `file` and `line` say where."""
+    """A driver refused a shader. `node`, `file` and `line` say where; line 0 stands for the whole file."""
 
     def __init__(self, node: str, file: str, line: int, fault: str) -> None:
         self.file, self.line, self.fault = file, line, fault
-        super().__init__(f"node '{node}': {file}, line {line}: {fault}", node=node)
+        place = f"{file}, line {line}" if line else file
+        super().__init__(f"node '{node}': {place}: {fault}", node=node)
 
 
 class RenderError(HalationError):

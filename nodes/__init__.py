@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator, Mapping
 from functools import cache, cached_property
 from pathlib import Path
@@ -10,9 +9,9 @@ from pathlib import Path
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
 from ._declare import Node
-from ._plugins import Plugin, find_class, list_files, plugins
+from ._plugins import NodeImportError, Plugin, import_node, list_files, plugins, refuse_double_ids
 
-__all__ = ["Plugin", "built_in_nodes", "catalogue", "plugins", "reload_catalogue"]
+__all__ = ["NodeImportError", "Plugin", "built_in_nodes", "catalogue", "plugins", "reload_catalogue"]
 __all__ += _declare.__all__
 
 
@@ -28,11 +27,14 @@ class BuiltInNodes(Mapping[str, type[Node]]):
     @cached_property
     def menus(self) -> dict[str, str]:
         """The menu of every node."""
-        return {id: menu for menu, id in list_files(Path(__file__).parent)}
+        files = list(list_files(Path(__file__).parent))
+        refuse_double_ids(files, "nodes")
+        return {id: menu for menu, id in files}
 
     def __getitem__(self, id: str) -> type[Node]:
         if id not in self._loaded:
-            self._loaded[id] = find_class(importlib.import_module(f".{self.menus[id]}.{id}", __package__), id)
+            module = f"{__package__}.{self.menus[id]}.{id}"
+            self._loaded[id] = import_node(module, id, Path(__file__).parent, "nodes")
         return self._loaded[id]
 
     def __iter__(self) -> Iterator[str]:

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import importlib
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.util import find_spec
@@ -87,6 +87,44 @@ def find_class(module: ModuleType, id: str) -> type[Node]:
     raise TypeError("there is no node in this file")
 
 
+class NodeImportError(ImportError):
+    """A file of a node cannot be imported, or does not declare the node that its name promises."""
+
+
+def import_node(module: str, id: str, folder: Path, label: str) -> type[Node]:
+    """The node class of a module. Raises NodeImportError, which names the file and the line at fault.
+
+    `folder` holds the code of the package, which messages call `label`.
+    """
+    try:
+        return find_class(importlib.import_module(module), id)
+    except (Exception, SystemExit) as fault:
+        reason = fault.msg if isinstance(fault, SyntaxError) else str(fault)
+        place = _locate_fault(fault, folder, label) or f"{module.removeprefix('halation.').replace('.', '/')}.py"
+        raise NodeImportError(f"{place}: {type(fault).__name__}: {reason}") from fault
+
+
+def _locate_fault(fault: BaseException, folder: Path, label: str) -> str:
+    """The file and the line of a package at which an import failed: the last one that ran; "" if none did.
+
+    The declarations of Halation, which check a class while it is made, are never at fault.
+    """
+    places: list[tuple[str, int | None]] = []
+    step = fault.__traceback__
+    while step is not None:
+        places.append((step.tb_frame.f_code.co_filename, step.tb_lineno))
+        step = step.tb_next
+    if isinstance(fault, SyntaxError) and fault.filename:
+        places.append((fault.filename, fault.lineno))
+    own_folder = Path(__file__).parent
+    for name, line in reversed(places):
+        path = Path(name)
+        is_declaration = path.parent == own_folder or path.is_relative_to(own_folder / "_declare")
+        if path.is_relative_to(folder) and not is_declaration:
+            return f"{label}/{path.relative_to(folder).as_posix()}, line {line}"
+    return ""
+
+
 def _load(point: EntryPoint) -> Plugin:
     """The plug-in of an entry point. Whatever goes wrong in its code becomes its fault."""
     distribution = point.dist
@@ -104,21 +142,32 @@ def _load(point: EntryPoint) -> Plugin:
             Path(spec.submodule_search_locations[0]),
         )
         return replace(plugin, folder=folder, nodes=_load_nodes(plugin, folder / "nodes"))
+    except NodeImportError as fault:
+        return replace(plugin, fault=str(fault))
     except (Exception, SystemExit) as fault:
         return replace(plugin, fault=f"{type(fault).__name__}: {fault}")
 
 
 def _load_nodes(plugin: Plugin, folder: Path) -> dict[str, type[Node]]:
+    files = list(list_files(folder)) if folder.is_dir() else []
+    refuse_double_ids(files, f"{plugin.namespace}/nodes")
     nodes: dict[str, type[Node]] = {}
-    for menu, name in list_files(folder) if folder.is_dir() else ():
+    for menu, name in files:
         module = f"{plugin.namespace}.nodes.{menu}.{name}"
-        try:
-            node = find_class(importlib.import_module(module), f"{plugin.namespace}.{name}")
-        except (Exception, SystemExit) as fault:
-            raise ImportError(f"nodes/{menu}/{name}.py: {type(fault).__name__}: {fault}") from fault
+        node = import_node(module, f"{plugin.namespace}.{name}", folder.parent, plugin.namespace)
         node.required_package = plugin.requirement
         nodes[node.id] = node
     return nodes
+
+
+def refuse_double_ids(files: Iterable[tuple[str, str]], folder: str) -> None:
+    """Raise NodeImportError if two files (menu and id) of a folder have the same id."""
+    menus: dict[str, str] = {}
+    for menu, id in files:
+        if id in menus:
+            paths = " and ".join(f"{folder}/{name}/{id}.py" for name in (menus[id], menu))
+            raise NodeImportError(f"{paths} both make the node '{id}': rename one of them")
+        menus[id] = menu
 
 
 def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:

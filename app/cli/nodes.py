@@ -31,7 +31,7 @@ def nodes(
 
     The description has its sockets, values, ranges and units, and the passes that it compiles to.
     """
-    from halation.nodes import catalogue
+    from halation.nodes import catalogue, plugins
 
     from ..errors import UsageError
     from ..graph import did_you_mean
@@ -40,6 +40,9 @@ def nodes(
     if id.endswith((".fs", ".glsl")):
         classes = {id: _load_code(id, sandbox=sandbox)}
     if id and id not in classes:
+        for plugin in plugins():
+            if plugin.fault and "." in id and plugin.namespace == id.partition(".")[0]:
+                raise UsageError(f"there is no node '{id}': the plug-in {plugin} cannot be loaded: {plugin.fault}")
         raise UsageError(f"there is no node '{id}'{did_you_mean(id, classes)}")
     if markdown and (id or as_json):
         raise UsageError("--markdown prints the whole catalogue: leave out the node and --json")

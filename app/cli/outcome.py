@@ -85,6 +85,11 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
         text = str(format_message()).strip().rstrip(".")
         return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}; see {command} --help"
     text = " ".join(str(fault).split())
+    if isinstance(fault, ImportError):
+        from halation.nodes import NodeImportError
+
+        if isinstance(fault, NodeImportError):
+            return "NodeImportError", 1, text
     return "Bug", BUG, f"this is a bug in Halation ({type(fault).__name__}: {text}); HALATION_DEBUG=1 shows where"
 
 

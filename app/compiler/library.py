@@ -163,8 +163,16 @@ class Library(Record, frozen=True):
 
     def _find_text(self, name: str, asker: str) -> Text:
         if name not in self.texts:
-            raise ShaderError(asker, f"shaders/{name}.glsl", 1, "there is no such shader file")
+            raise self._missing_file(name, asker)
         return self.texts[name]
+
+    def _missing_file(self, name: str, asker: str) -> ShaderError:
+        """The error about a file that is not there; of a plug-in most often because its wheel was made without it."""
+        namespace, _, inner = name.partition("/")
+        if not any(plugin.namespace == namespace for plugin in plugins()):
+            return ShaderError(asker, f"shaders/{name}.glsl", 0, "there is no such shader file")
+        fault = "there is no such file; a package brings its shaders if [tool.setuptools.package-data] in its "
+        return ShaderError(asker, f"{namespace}/shaders/{inner}.glsl", 0, f"{fault}pyproject.toml names *.glsl")
 
     def _include(self, name: str, asker: str, trail: tuple[str, ...], texts: dict[str, Text]) -> None:
         """Add a file to `texts`, after all that it includes. `trail` are the files that include it."""

@@ -120,7 +120,12 @@ def _plugin_fault(item: Unknown) -> str:
     package = item.raw.get("package")
     wanted = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
     namespace = item.type.partition(".")[0]
-    installed = [plugin for plugin in plugins() if plugin.namespace == namespace] if "." in item.type else []
+    name = _normalize(wanted.partition("==")[0])
+    installed = [
+        plugin
+        for plugin in (plugins() if "." in item.type else ())
+        if plugin.namespace == namespace or _normalize(plugin.package) == name
+    ]
     for plugin in installed:
         if plugin.fault:
             return f"of the plug-in {plugin}, which cannot be loaded: {plugin.fault}"
@@ -128,6 +133,11 @@ def _plugin_fault(item: Unknown) -> str:
         return ""
     lack = f"the installed {installed[0]} does not have it" if installed else "which is not installed"
     return f"of the plug-in {wanted.replace('==', ' ')}, {lack}: pip install {wanted}"
+
+
+def _normalize(package: str) -> str:
+    """The name of a package as indexes compare it (PEP 503)."""
+    return re.sub(r"[-_.]+", "-", package).lower()
 
 
 def _animations(graph: Graph) -> Iterator[Problem]:

@@ -233,3 +233,18 @@ def test_too_little_memory(fails, graphs, monkeypatch):
 
     monkeypatch.setattr(job, "run_job", refuse)
     assert fails(1, "render", graphs()) == "there is not enough memory; render a smaller picture with --scale or --size"
+
+
+def test_a_node_that_cannot_be_imported_is_no_bug_of_halation(cli, monkeypatch):
+    """Whoever writes a node in a checkout is told the file and the line."""
+    from halation.nodes import NodeImportError, built_in_nodes
+
+    def fail(self, id):
+        raise NodeImportError("nodes/color/mine.py, line 38: SyntaxError: '(' was never closed")
+
+    monkeypatch.setattr(type(built_in_nodes()), "__getitem__", fail)
+    result = cli("nodes", "exposure")
+    assert (result.code, result.err) == (
+        1,
+        "halation: nodes/color/mine.py, line 38: SyntaxError: '(' was never closed\n",
+    )

@@ -96,16 +96,63 @@ def test_a_fault_costs_only_that_plugin(site: Site) -> None:
     forget()
     assert faults() == {
         "acme-tone": "",
-        "other-tone": "ImportError: nodes/tone/fade.py: ModuleNotFoundError: No module named 'no_such_library'",
+        "other-tone": "other_tone/nodes/tone/fade.py, line 1: ModuleNotFoundError: No module named 'no_such_library'",
     }
     assert "acme_tone.dim" in catalogue() and "other_tone.dim" not in catalogue()
+
+
+FADE = NODE.format(name="Fade")
+BROKEN = {
+    "a syntax error": (
+        "nodes/tone/fade.py",
+        "\nx = (\n",
+        "nodes/tone/fade.py, line 2: SyntaxError: '(' was never closed",
+    ),
+    "its own package": ("__init__.py", "a = 1\nimport no_such_library\n", "__init__.py, line 2: ModuleNotFoundError"),
+    "a helper": (
+        "nodes/tone/fade.py",
+        "from ..._sums import total\n" + FADE,
+        "_sums.py, line 3: ZeroDivisionError: division by zero",
+    ),
+    "a declaration": (
+        "nodes/tone/fade.py",
+        FADE.replace('factor: Annotated[float, Slider(0.0, 1.0, unit="ratio")] = 0.5', "factor: complex = 0.5"),
+        "nodes/tone/fade.py, line ",
+    ),
+    "another name": ("nodes/tone/fade.py", NODE.format(name="Gone"), "nodes/tone/fade.py: TypeError: the class Gone"),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_the_file_and_the_line_at_fault_are_named(site: Site, case: str) -> None:
+    name, text, sentence = BROKEN[case]
+    code = site.install("acme-tone", "1.0", ("Dim", "Fade"))
+    (code / "__init__.py").touch()
+    (code / "_sums.py").write_text("\n\ntotal = 1 / 0\n")
+    (code / name).write_text(text)
+    importlib.invalidate_caches()
+    forget()
+    assert faults()["acme-tone"].startswith(f"acme_tone/{sentence}")
+
+
+def test_an_id_in_two_menus_is_refused(site: Site) -> None:
+    code = site.install("acme-tone", "1.0")
+    (code / "nodes" / "glow").mkdir()
+    (code / "nodes" / "glow" / "dim.py").write_text(NODE.format(name="Dim"))
+    forget()
+    both = "acme_tone/nodes/glow/dim.py and acme_tone/nodes/tone/dim.py both make the node 'dim': rename one of them"
+    assert faults() == {"acme-tone": both}
 
 
 def test_an_entry_point_that_names_nothing_is_a_fault(site: Site) -> None:
     site.install("acme-tone", "1.0")
     (site.folder / "acme_tone-1.0.dist-info" / "entry_points.txt").write_text("[halation.nodes]\nx = acme_gone\n")
     forget()
-    assert faults() == {"acme-tone": "its entry point names the package 'acme_gone', which is not there"}
+    sentence = "its entry point names the package 'acme_gone', which is not there"
+    assert faults() == {"acme-tone": sentence}
+    unknown = Unknown("acme_tone.dim", {"type": "acme_tone.dim", "package": "Acme_Tone==1.0"})
+    problem, *_ = problems(Graph(nodes={"dim": unknown}))
+    assert problem.sentence.endswith(f"of the plug-in acme-tone 1.0, which cannot be loaded: {sentence}")
 
 
 def test_two_plugins_with_one_id_are_both_refused_by_name(site: Site) -> None:
@@ -128,6 +175,18 @@ def test_functions_of_shaders_have_its_name_in_front(site: Site) -> None:
     forget()
     with pytest.raises(ShaderError, match=r"acme_tone/shaders/tone/dim.glsl.*'dim'.*must begin with 'acme_tone_'"):
         installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "test")
+
+
+def test_a_wheel_without_shaders_says_what_it_lacks(site: Site) -> None:
+    site.install("acme-tone", "1.0")
+    with pytest.raises(ShaderError) as caught:
+        installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "node")
+    assert str(caught.value) == (
+        "node 'node': acme_tone/shaders/tone/dim.glsl: there is no such file; a package brings its shaders if "
+        "[tool.setuptools.package-data] in its pyproject.toml names *.glsl"
+    )
+    with pytest.raises(ShaderError, match=r"shaders/tone/nowhere\.glsl: there is no such shader file$"):
+        installed_library().function("tone/nowhere", "nowhere", "node")
 
 
 # --- graphs ----------------------------------------------------------------------------------------------------------

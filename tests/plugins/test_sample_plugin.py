@@ -91,9 +91,11 @@ def test_without_it_the_graph_names_the_package(site: Path, tmp_path: Path) -> N
 def test_one_that_fails_to_import_is_named(site: Path, tmp_path: Path) -> None:
     broken = shutil.copytree(site, tmp_path / "site")
     (broken / "acme_glow" / "nodes" / "glow" / "soft_glow.py").write_text("import no_such_library\n")
-    sentence = "the plug-in acme-glow 1.2.0 cannot be loaded: ImportError: nodes/glow/soft_glow.py"
+    sentence = "the plug-in acme-glow 1.2.0 cannot be loaded: acme_glow/nodes/glow/soft_glow.py, line 1: "
     nodes = halation(broken, "nodes")
     assert nodes.returncode == 0 and "  bloom " in nodes.stdout and sentence in nodes.stderr
+    page = halation(broken, "nodes", "acme_glow.soft_glow")
+    assert page.returncode == 2 and sentence in page.stderr
     graph = tmp_path / "plain.json"
     graph.write_text('{"halation": 1}\n')
     check = halation(broken, "check", graph)
