@@ -45,7 +45,7 @@ class Session(OpenDocument):
     """
 
     def __init__(self, types: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> None:
-        super().__init__(types, sandbox=self.sandbox)
+        super().__init__(types, sandbox=sandbox)
         self.revision = 0
         """Greater after every change of the document, the selection or the view."""
         self.code_files = CodeFiles(sandbox=self.sandbox)
