@@ -105,6 +105,18 @@ def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
             next(run)
 
 
+def test_a_slow_program_makes_way_once() -> None:
+    """Whoever has written a better text does not wait for the old one to time out."""
+    renderer = Renderer(trial_process=TrialProcess(timeout=30.0), sandbox=UNRESTRICTED)
+    slow = renderer.runner.start_run(renderer.compile(graph(SLOW), REQUEST), renderer.runner.create_lease())
+    assert not slow.is_ready
+    slow.close()
+    began = time.monotonic()
+    assert (renderer.render(effect(2.0), REQUEST)["out"] == 1.0).all()
+    assert time.monotonic() - began < 20.0
+    renderer.close()
+
+
 def test_faults_of_drivers_keep_their_lines(tried: Renderer) -> None:
     with pytest.raises(ShaderError, match=r"node 'user': the code of 'f', line 2: .*nothing"):
         tried.render(graph("vec4 f(vec4 image) {\n return nothing; }"), REQUEST)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from concurrent.futures import Future
-from contextlib import contextmanager
+from concurrent.futures import CancelledError, Future
+from contextlib import contextmanager, suppress
 from functools import partial
 
 import numpy as np
@@ -121,9 +121,11 @@ class Executor:
         return None if render_pass.shader in self.programs else self._trials.begin(plan, render_pass)
 
     def _await_trial(self, plan: Plan, render_pass: Pass) -> None:
-        trial = self.begin_trial(plan, render_pass)
-        if trial is not None and (fault := trial.result()):
-            raise fault
+        while trial := self.begin_trial(plan, render_pass):
+            with suppress(CancelledError):  # it made way for others, and is tried again
+                if fault := trial.result():
+                    raise fault
+                return
 
     @contextmanager
     def _watch(self, render_pass: Pass) -> Iterator[None]:

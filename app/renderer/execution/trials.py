@@ -15,7 +15,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from queue import Empty, SimpleQueue
 from threading import Thread
 from typing import Any
@@ -29,6 +29,9 @@ from ...resources.render_choices import DEFAULT_TIMEOUT
 
 MAX_TRIALS = 1024
 """Programs whose trials are remembered: twice those that a renderer keeps."""
+
+PATIENCE = 2.0
+"""Seconds that others wait for a slow program: a choice, about the time in which a user writes the next line."""
 
 CHECK_INTERVAL = 0.05
 """Seconds between two looks at the process: a compiler takes 0.2 GB of memory in that time, measured with Mesa 22.3."""
@@ -57,10 +60,13 @@ class TrialProcess:
         """Have the process ready."""
         self._do(self._find_process)
 
-    def submit(self, program: Mapping[str, Any], nodes: str) -> Future[DeviceError | None]:
-        """Begin to try a program: what comes of it is the error to raise, or None."""
+    def submit(self, program: Mapping[str, Any], nodes: str, *, may_yield: bool) -> Future[DeviceError | None]:
+        """Begin to try a program: what comes of it is the error to raise, or None.
+
+        With `may_yield` a slow one is cancelled when others wait: the user may have written another text meanwhile.
+        """
         outcome = Future[DeviceError | None]()
-        self._do(lambda: outcome.set_result(self._try(program, nodes)))
+        self._do(lambda: self._settle(outcome, program, nodes, may_yield))
         return outcome
 
     def close(self) -> None:
@@ -109,8 +115,16 @@ class TrialProcess:
             )
         return self._process
 
-    def _try(self, program: Mapping[str, Any], nodes: str) -> DeviceError | None:
-        """Try a program and wait for the answer."""
+    def _settle(
+        self, outcome: Future[DeviceError | None], program: Mapping[str, Any], nodes: str, may_yield: bool
+    ) -> None:
+        try:
+            outcome.set_result(self._try(program, nodes, may_yield))
+        except CancelledError:
+            outcome.cancel()
+
+    def _try(self, program: Mapping[str, Any], nodes: str, may_yield: bool) -> DeviceError | None:
+        """Try a program and wait for the answer. Raises CancelledError where it makes way for others."""
         try:
             process = self._find_process()
         except OSError:
@@ -132,15 +146,18 @@ class TrialProcess:
                 return _explain(self._end_process(), nodes)
             memory = resident_memory(process.pid)
             self._idle_memory = self._idle_memory or memory
-            sentence = ""
+            sentence, spent = "", time.monotonic() - began
+            yields = may_yield and spent > PATIENCE and not self._tasks.empty()
             if memory - self._idle_memory > limit:
                 sentence = f"takes more than {limit / 2**30:.1f} GiB of memory"
-            elif 0.0 < self._timeout < time.monotonic() - began:
+            elif 0.0 < self._timeout < spent:
                 sentence = f"has not been compiled and run after {self._timeout:g} seconds"
-            if sentence:
+            if sentence or yields:
                 process.kill()
                 reader.join()
                 self._end_process()
+                if not sentence:
+                    raise CancelledError
                 return DeviceError(f"node '{nodes}': its code {sentence}: make it smaller", node=nodes)
 
 
@@ -163,12 +180,15 @@ class Trials(Struct, eq=False):
     def begin(self, plan: Plan, render_pass: Pass) -> Future[DeviceError | None]:
         """What comes of the program of a pass; it is tried if it has not been."""
         shader = render_pass.shader
-        if shader not in self._known:
+        trial = self._known.get(shader)
+        if trial is None or trial.cancelled():
             if len(self._known) >= MAX_TRIALS:
                 self._known.pop(next(iter(self._known)))
             nodes = ", ".join(dict.fromkeys(render_pass.writers.values()))
-            self._known[shader] = self.process.submit(_describe(plan, render_pass), nodes)
-        return self._known[shader]
+            # What has made way once is waited for: two slow programs would make way for each other for ever.
+            trial = self.process.submit(_describe(plan, render_pass), nodes, may_yield=trial is None)
+            self._known[shader] = trial
+        return trial
 
 
 def _describe(plan: Plan, render_pass: Pass) -> dict[str, Any]:
