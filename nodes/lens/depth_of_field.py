@@ -158,38 +158,45 @@ class DepthOfField(Filter):
         looks: dict[str, Overlap] = {"image": tile, "kept": 0, "radius": tile, "reach": Reach.within(tile, tile)}
         stretch = (max(self.ratio, 1.0), max(1.0 / self.ratio, 1.0))
         bokeh = self._bokeh(draw, finest, stretch)
+        gathered: dict[str, Any] = {"image": image, "kept": sharp, "radius": radius, "reach": reach}
         if not levels:
-            out = draw(
-                "depth_of_field_alone", image=image, kept=sharp, radius=radius, reach=reach, overlap=looks, **bokeh
-            )
+            out = draw("depth_of_field_alone", **gathered, overlap=looks, **bokeh)
         else:
-            # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
-            widest = (_MIDDLE * finest) ** 2
-            across, down = (
-                math.sqrt((widest - _SOFTNESS) / max(widest / part**2 - _SOFTNESS, 0.25)) for part in stretch
-            )
-            smaller = self._bokeh(draw, finest, (across, down))
-            near, hidden = self._layers(draw, image, radius, smaller, levels, finest, -1.0)
-            far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
-            rest = self._rest(draw, image, radius, levels, finest)
-            looks |= dict.fromkeys(("near", "hidden", "far", "filled"), Reach.within(2, 2, 1))
-            looks["rest"] = Reach.within(2**levels, 2**levels, 1)
-            out = draw(
-                "depth_of_field",
-                image=image,
-                kept=sharp,
-                radius=radius,
-                reach=reach,
-                near=near,
-                hidden=hidden,
-                far=far,
-                filled=filled,
-                rest=rest,
-                overlap=looks,
-                **bokeh,
-                coarsest=2.0**levels,
-            )
+            out = self._gather_levels(draw, gathered, looks, bokeh, levels, finest, stretch)
         return {"out": out, "coc": draw.point("depth_of_field_coc", result=Field(), radius=radius)}
+
+    def _gather_levels(
+        self,
+        draw: Draw,
+        gathered: dict[str, Any],
+        looks: dict[str, Overlap],
+        bokeh: dict[str, Any],
+        levels: int,
+        finest: float,
+        stretch: tuple[float, float],
+    ) -> Drawn:
+        """The picture with small discs of full size and large ones of `levels` lower sizes."""
+        image, radius = gathered["image"], gathered["radius"]
+        # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
+        widest = (_MIDDLE * finest) ** 2
+        across, down = (math.sqrt((widest - _SOFTNESS) / max(widest / part**2 - _SOFTNESS, 0.25)) for part in stretch)
+        smaller = self._bokeh(draw, finest, (across, down))
+        near, hidden = self._layers(draw, image, radius, smaller, levels, finest, -1.0)
+        far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
+        rest = self._rest(draw, image, radius, levels, finest)
+        coarse = dict.fromkeys(("near", "hidden", "far", "filled"), Reach.within(2, 2, 1))
+        return draw(
+            "depth_of_field",
+            **gathered,
+            near=near,
+            hidden=hidden,
+            far=far,
+            filled=filled,
+            rest=rest,
+            overlap=looks | coarse | {"rest": Reach.within(2**levels, 2**levels, 1)},
+            **bokeh,
+            coarsest=2.0**levels,
+        )
 
     def _radius(self, draw: Draw, largest: float) -> Drawn:
         """Of the disc of every pixel, below 0 nearer than the focus."""
@@ -259,18 +266,12 @@ class DepthOfField(Filter):
     ) -> tuple[Drawn, Drawn]:
         """Discs that are made at lower sizes, the largest first: their light, and how much of each pixel they cover."""
         tile = math.ceil(finest) + 1
-        name = "depth_of_field_near" if side < 0.0 else "depth_of_field_far"
         light = draw("depth_of_field_nothing", size=(1, 1))
         cover = draw("depth_of_field_nothing", size=(1, 1), result=Field())
+        within = Reach.within(2, 2, 1)
         for level in range(levels, 0, -1):
             block = 2**level
             size = _blocks(draw.size, block)
-            bounds: dict[str, Any] = {
-                "block": block,
-                "side": side,
-                "low": finest * block / 2.0,
-                "high": finest * block if level < levels else _ENDLESS,
-            }
             own, extents = draw.several(
                 "depth_of_field_level",
                 (Image(), Vector(width=3)),
@@ -279,23 +280,17 @@ class DepthOfField(Filter):
                 size=size,
                 edge="reflect",
                 overlap=Reach.block(block, block),
-                **bounds,
+                block=block,
+                side=side,
+                low=finest * block / 2.0,
+                high=finest * block if level < levels else _ENDLESS,
             )
-            most = draw(
-                "depth_of_field_most",
-                extents=extents,
-                size=_blocks(size, tile),
-                overlap=Reach.block(tile, tile),
-                result=Field(),
-                tile=tile,
-            )
-            reach = draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())
             light, cover = draw.several(
-                name,
+                "depth_of_field_near" if side < 0.0 else "depth_of_field_far",
                 (Image(), Field()),
                 own=own,
                 extents=extents,
-                reach=reach,
+                reach=_measure_reach(draw, extents, tile),
                 light=light,
                 cover=cover,
                 size=size,
@@ -303,8 +298,8 @@ class DepthOfField(Filter):
                     "own": tile,
                     "extents": tile,
                     "reach": Reach.within(tile, tile),
-                    "light": Reach.within(2, 2, 1),
-                    "cover": Reach.within(2, 2, 1),
+                    "light": within,
+                    "cover": within,
                 },
                 **bokeh,
             )
@@ -339,3 +334,16 @@ class DepthOfField(Filter):
 
 def _blocks(size: Size, length: int) -> Size:
     return math.ceil(size[0] / length), math.ceil(size[1] / length)
+
+
+def _measure_reach(draw: Draw, extents: Drawn, tile: int) -> Drawn:
+    """For every tile of a lower size, the largest disc that reaches into it from there or from a tile beside it."""
+    most = draw(
+        "depth_of_field_most",
+        extents=extents,
+        size=_blocks(draw.size_of(extents), tile),
+        overlap=Reach.block(tile, tile),
+        result=Field(),
+        tile=tile,
+    )
+    return draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())

@@ -68,9 +68,7 @@ class MotionBlur(Filter):
         tile = max(math.ceil(reach), 1) + 1
         # Stops may lie half a step before and after the shutter is open; a parabola gets so much farther by then.
         looks = math.ceil(reach * (1.0 + 4.0 / self.samples + 2.0 / self.samples**2)) + 4
-        block, within = Reach.block(tile, tile), Reach.within(tile, tile)
-        width, height = draw.size
-        across, down = math.ceil(width / tile), math.ceil(height / tile)
+        within = Reach.within(tile, tile)
         layer = draw("motion_blur_layer", self.velocity, self.depth, overlap=2, result=Vector(width=2))
         velocity: Pixels = self.velocity
         fronts: Pixels = self.image
@@ -86,6 +84,29 @@ class MotionBlur(Filter):
             longest=self.max_length,
             reach=reach,
         )
+        around, variety = self._find_tiles(draw, paths, tile, times)
+        return draw(
+            "motion_blur",
+            self.image,
+            fronts=fronts,
+            layer=layer,
+            paths=paths,
+            around=around,
+            variety=variety,
+            overlap={"image": 0, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
+            times=times,
+            tile=tile,
+            samples=self.samples,
+        )
+
+    def _find_tiles(self, draw: Draw, paths: Drawn, tile: int, times: tuple[float, float]) -> tuple[Drawn, Drawn]:
+        """For every tile, the fastest path in it and around it, and how much the paths in it differ.
+
+        No path leads farther than a tile, so a pixel is only reached by what moves in its own tile or in one beside it.
+        """
+        vector = Vector(width=4)
+        width, height = draw.size
+        across, down = math.ceil(width / tile), math.ceil(height / tile)
         rows = draw(
             "motion_blur_fastest",
             paths=paths,
@@ -112,7 +133,7 @@ class MotionBlur(Filter):
             paths=paths,
             tiles=tiles,
             size=(across, down),
-            overlap={"paths": block, "tiles": 0},
+            overlap={"paths": Reach.block(tile, tile), "tiles": 0},
             result=Field(),
             tile=tile,
             times=times,
@@ -127,16 +148,4 @@ class MotionBlur(Filter):
             result=Field(),
             times=times,
         )
-        return draw(
-            "motion_blur",
-            self.image,
-            fronts=fronts,
-            layer=layer,
-            paths=paths,
-            around=around,
-            variety=variety,
-            overlap={"image": 0, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
-            times=times,
-            tile=tile,
-            samples=self.samples,
-        )
+        return around, variety

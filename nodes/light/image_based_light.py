@@ -76,18 +76,9 @@ class ImageBasedLight(Filter):
         skies = [mirror]
         for size in _LEVELS:
             skies.append(shrunk(draw, "image_based_light", skies[-1], size))
+        smaller = {f"level{number}": sky for number, sky in enumerate(skies[1:])}
         lobes = [
-            draw(
-                "image_based_light_lobe",
-                level0=skies[1],
-                level1=skies[2],
-                level2=skies[3],
-                level3=skies[4],
-                level4=skies[5],
-                size=size,
-                result=DATA,
-                roughness=roughness,
-            )
+            draw("image_based_light_lobe", **smaller, size=size, result=DATA, roughness=roughness)
             for roughness, size in _LOBES
         ]
         diffuse = draw(

@@ -1,7 +1,8 @@
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from .._declare import (
+    Argument,
     CameraSocket,
     Doc,
     Draw,
@@ -121,75 +122,64 @@ class ScreenReflections(Filter):
             linked=draw.is_linked(self.material),
             roughness=self.roughness,
         )
-        mirror = draw(
-            "screen_reflections_mirror",
-            surfaces=all_surfaces,
-            normal=normal,
-            result=_FOUND,
-            rows=rows,
-            rays=rays,
-            thickness=self.thickness,
-            longest=self.distance,
-            fade=self.fade,
-            border=self.border,
-            sky=self.sky,
-            steps=self.steps,
-        )
-        if draw.is_linked(self.material) or self.roughness > 0.0:
-            scattered = draw(
-                "screen_reflections_scattered",
-                self.image,
-                surfaces=all_surfaces,
-                normal=normal,
-                rough=rough,
-                mirror=mirror,
-                result=_FOUND,
-                rows=rows,
-                rays=rays,
-                thickness=self.thickness,
-                longest=self.distance,
-                fade=self.fade,
-                border=self.border,
-                sky=self.sky,
-                steps=self.steps,
-                count=_RAYS[self.quality],
-            )
-            light = draw(
-                "screen_reflections_denoise",
-                surfaces=all_surfaces,
-                normal=normal,
-                rough=rough,
-                mirror=mirror,
-                scattered=scattered,
-                result=_FOUND,
-                rays=rays,
-            )
-        else:
-            light = draw("screen_reflections_sharp", self.image, mirror=mirror, result=_FOUND)
-        reflection = draw.point(
-            "screen_reflections_light",
-            light=light,
-            normal=normal,
-            rough=rough,
-            material=self.material,
-            albedo=self.albedo,
-            mask=self.mask,
-            rays=rays,
-            reflectance=self.reflectance,
-            strength=self.strength,
-        )
-        out = draw.point(
-            "screen_reflections",
-            self.image,
-            light=light,
-            normal=normal,
-            rough=rough,
-            material=self.material,
-            albedo=self.albedo,
-            mask=self.mask,
-            rays=rays,
-            reflectance=self.reflectance,
-            strength=self.strength,
-        )
+        light = self._trace(draw, all_surfaces, normal, rough, rows, rays)
+        shading: dict[str, Argument] = {
+            "light": light,
+            "normal": normal,
+            "rough": rough,
+            "material": self.material,
+            "albedo": self.albedo,
+            "mask": self.mask,
+            "rays": rays,
+            "reflectance": self.reflectance,
+            "strength": self.strength,
+        }
+        reflection = draw.point("screen_reflections_light", **shading)
+        out = draw.point("screen_reflections", self.image, **shading)
         confidence = draw.point("screen_reflections_confidence", light=light, result=Field())
         return {"out": out, "reflection": reflection, "confidence": confidence}
+
+    def _trace(
+        self,
+        draw: Draw,
+        all_surfaces: Drawn,
+        normal: Drawn,
+        rough: Drawn,
+        rows: tuple[float, ...],
+        rays: tuple[float, ...],
+    ) -> Drawn:
+        """The light that every surface mirrors, and its confidence: along one ray, or of a rough surface along many."""
+        search: dict[str, Any] = {
+            "rows": rows,
+            "rays": rays,
+            "thickness": self.thickness,
+            "longest": self.distance,
+            "fade": self.fade,
+            "border": self.border,
+            "sky": self.sky,
+            "steps": self.steps,
+        }
+        mirror = draw("screen_reflections_mirror", surfaces=all_surfaces, normal=normal, result=_FOUND, **search)
+        if not draw.is_linked(self.material) and self.roughness <= 0.0:
+            return draw("screen_reflections_sharp", self.image, mirror=mirror, result=_FOUND)
+        scattered = draw(
+            "screen_reflections_scattered",
+            self.image,
+            surfaces=all_surfaces,
+            normal=normal,
+            rough=rough,
+            mirror=mirror,
+            result=_FOUND,
+            **search,
+            count=_RAYS[self.quality],
+        )
+        return draw(
+            "screen_reflections_denoise",
+            surfaces=all_surfaces,
+            normal=normal,
+            rough=rough,
+            mirror=mirror,
+            scattered=scattered,
+            result=_FOUND,
+            rays=rays,
+        )

@@ -9,6 +9,7 @@ from halation.graph import Graph
 from halation.inputs.provider import MediaProvider
 from halation.resources.picture import Picture
 from halation.resources.provider import PictureProbe
+from halation.resources.sandbox import Sandbox
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import SIZE, random_graph
@@ -18,7 +19,7 @@ class Outside(MediaProvider):
     """Pictures of one size, or none."""
 
     def __init__(self, lost: bool) -> None:
-        super().__init__()
+        super().__init__(sandbox=Sandbox(""))
         self.lost = lost
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
