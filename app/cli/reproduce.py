@@ -115,8 +115,8 @@ def _save_graph(recipe: Recipe, files: tuple[LocatedFile, ...], path: Path, sand
 
 
 def _print_reproduction(recipe: Recipe, files: tuple[LocatedFile, ...], reproduction: Reproduction) -> None:
-    proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
-    print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
+    proxy = f", scale {recipe.settings.scale:g}" if recipe.settings.scale != 1.0 else ""
+    print(f"{recipe.path}: frame {recipe.settings.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
     for item in reproduction.differences:
         print(f"  {item.name:<9} was {item.recorded}, is {item.current}")
     for item in files:
@@ -172,7 +172,7 @@ def _reproduction_facts(
         "picture": str(recipe.path),
         "same": reproduction.is_same,
         "tolerance": reproduction.tolerance,
-        "frame": recipe.frame,
+        "frame": recipe.settings.frame,
         "version": recipe.version,
         "renderer": recipe.renderer,
         "differences": [

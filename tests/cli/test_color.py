@@ -40,7 +40,7 @@ def test_rendering_into_a_space(cli, graphs, tmp_path):
     assert np.abs(read(log) - read(plain)).max() > 0.1
     assert header(dpx).get_int_attribute("oiio:BitsPerSample") == 10
     np.testing.assert_allclose(read(dpx), read(log)[..., :3], atol=2e-3)
-    assert "colorspace=ARRI LogC4" in header(log).get_string_attribute("halation:settings")
+    assert '"colorspace": "ARRI LogC4"' in header(log).get_string_attribute("halation:job")
 
 
 def test_a_graph_in_acescg_shows_the_same_picture(cli, graphs, tmp_path):

@@ -67,7 +67,7 @@ def test_all_frames_of_the_sequence(cli, movie, tmp_path):
     report = rendered(cli, movie(), "out.####.exr")
     assert report["frames"] == list(FRAMES) and len(report["written"]) == 8
     assert pixels(tmp_path, "out") == [frame / 8.0 for frame in FRAMES]
-    assert header(tmp_path / "out.0003.exr")["halation:settings"].split()[1] == "frame=3"
+    assert json.loads(header(tmp_path / "out.0003.exr")["halation:job"])["frame"] == 3
 
 
 def test_some_frames_in_any_order(cli, movie, tmp_path):

@@ -188,7 +188,7 @@ def test_frame_reaches_the_shaders(cli, graphs, out, monkeypatch):
     for words, expected in (((), 1.0), (("--frame", "37"), 37.0)):
         assert cli("render", graphs(), *words, "-o", out).code == 0
         assert read(out)[3, 3, 0] == expected
-    assert "frame=37" in header(out)["halation:settings"]
+    assert '"frame": 37' in header(out)["halation:job"]
 
 
 def test_precision_of_files_and_of_what_lies_between(cli, graphs, out):
@@ -280,7 +280,7 @@ def test_a_picture_says_how_to_make_it_again(cli, graphs, shot, tmp_path, ending
     assert graph.nodes["light"].stops == 2.5 and list(graph.inputs) == ["beauty"]
     assert spec["halation:renderer"] and spec["halation:renderer"] in result.err
     assert spec["halation:version"] == cli("--version").out.split()[1]
-    assert spec["halation:settings"].startswith("scale=0.5 frame=1")
+    assert json.loads(spec["halation:job"])["scale"] == 0.5
     digest = hashlib.sha256(shot.read_bytes()).hexdigest()
     assert spec["halation:input:inputs.beauty"] == f"shot.exr:Combined sha256:{digest}"
     assert spec["Camera"] == "Lens 50"

@@ -11,6 +11,10 @@ import OpenImageIO as oiio
 import pytest
 from exr_files import header, read, write_exr
 from halation.presets import paths as presets
+from halation.renderer.jobs.picture_settings import RecordedSettings
+from halation.renderer.provenance.recipe import read_recipe
+from halation.resources.sandbox import UNRESTRICTED
+from msgspec import structs
 
 PRESETS = {path.stem: path for path in presets()}
 TRAIL = {
@@ -256,6 +260,10 @@ def test_files_that_hold_no_graph(cli, graphs, shot, tmp_path):
     [
         ("halation:graph", "{"),
         ("halation:graph", '{"halation": 99}'),
+        ("halation:job", "{"),
+        ("halation:job", "[1]"),
+        ("halation:job", '{"frame": "soon"}'),
+        ("halation:job", '{"size": [3]}'),
         ("halation:settings", "frame=soon"),
         ("halation:settings", "size=3x"),
         ("halation:settings", "view='"),
@@ -265,16 +273,39 @@ def test_files_that_hold_no_graph(cli, graphs, shot, tmp_path):
 def test_damaged_headers_are_a_sentence(cli, graphs, tmp_path, name, text):
     picture, broken = render(cli, graphs(), tmp_path / "out.exr"), tmp_path / "broken.exr"
     buffer = oiio.ImageBuf(str(picture))
+    if name == "halation:settings":
+        buffer.specmod().erase_attribute("halation:job")
     buffer.specmod().attribute(name, text)
     assert buffer.write(str(broken))
     result = cli("reproduce", broken)
     assert result.code in (3, 4) and result.err.startswith(f"halation: {broken}") and result.err.count("\n") == 1
 
 
+def test_a_header_holds_the_settings_of_the_job_and_no_paths(cli, graphs, tmp_path):
+    picture = render(cli, graphs(), tmp_path / "out.exr", "--scale", "0.5", "--frame", "7", "--precision", "float")
+    text = header(picture).get_string_attribute("halation:job")
+    settings = RecordedSettings.from_json(text)
+    assert (settings.scale, settings.frame, settings.precision) == (0.5, 7, "float")
+    assert settings.to_json() == text and len(text) < 300 and str(tmp_path) not in text
+    assert RecordedSettings.from_json('{"frame": 3, "of_a_later_version": 1}').frame == 3
+
+
+def test_the_words_of_an_older_header_mean_the_same(cli, graphs, tmp_path):
+    picture, older = render(cli, graphs(), tmp_path / "out.exr", "--scale", "0.5"), tmp_path / "older.exr"
+    buffer = oiio.ImageBuf(str(picture))
+    buffer.specmod().erase_attribute("halation:job")
+    words = "scale=0.5 frame=1 output=image precision=half intermediates=half form=compute compression=zip"
+    buffer.specmod().attribute("halation:settings", words)
+    assert buffer.write(str(older))
+    new, old = (read_recipe(path, sandbox=UNRESTRICTED).settings for path in (picture, older))
+    assert structs.replace(new, form=old.form, intermediates=old.intermediates) == old
+    assert again(cli, older)["same"]
+
+
 def test_an_older_header_says_less(cli, graphs, tmp_path):
     picture, older = render(cli, graphs(), tmp_path / "out.exr"), tmp_path / "older.exr"
     buffer = oiio.ImageBuf(str(picture))
-    for name in ("halation:driver", "halation:key"):
+    for name in ("halation:driver", "halation:key", "halation:job"):
         buffer.specmod().erase_attribute(name)
     buffer.specmod().attribute("halation:settings", "scale=1.0 frame=1")
     buffer.specmod().attribute("halation:renderer", "another one")

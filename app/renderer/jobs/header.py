@@ -5,7 +5,6 @@ Nothing in it depends on the time or place of rendering: the same graph and the 
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping, Sequence
 from hashlib import blake2b
 from typing import Any
@@ -19,6 +18,7 @@ from ...resources.sandbox import Sandbox
 from ...version import VERSION
 from ..engine import RenderRequest
 from .destinations import Destination, OutputSettings
+from .picture_settings import RecordedSettings
 from .source_files import FileHashes, SourceFile, describe_source
 
 PREFIX = "halation:"
@@ -52,7 +52,8 @@ def make_header(
     metadata["halation:graph"] = graph
     metadata["halation:version"] = VERSION
     metadata["halation:renderer"] = target.renderer
-    metadata["halation:settings"] = format_settings(request, target, settings, file, frames if plan.memories else None)
+    recorded = record_settings(request, target, settings, file, frames if plan.memories else None)
+    metadata["halation:job"] = recorded.to_json()
     if color := file.encoding.manager.digest:
         metadata["halation:color"] = color
     for source in sources:
@@ -61,25 +62,29 @@ def make_header(
     return metadata
 
 
-def format_settings(
+def record_settings(
     request: RenderRequest, target: Target, settings: OutputSettings, file: Destination, frames: tuple[int, int] | None
-) -> str:
-    """How a file was rendered and written, as `name=value` words with the quotes of a shell.
+) -> RecordedSettings:
+    """The settings that a file is rendered and written with.
 
     `frames` are the first and last frame of the graph if it has temporal nodes.
     """
-    parts = [("scale", request.scale), ("frame", request.frame)]
-    words = [f"{name}={value}" for name, value in parts]
-    if frames:
-        words.append(f"frames={frames[0]}..{frames[1]}")
-    if request.size:
-        words.append(f"size={request.size[0]}x{request.size[1]}")
-    words += [f"node={name}" for name in request.targets]
-    words += [f"output={name}" for name in file.layers.values() if name not in request.targets]
-    words += [f"precision={settings.precision}", f"intermediates={request.precision or target.precision}"]
-    words += [f"form={target.form}", f"view={file.view}", f"display={settings.display}", f"look={settings.look}"]
-    words += [f"colorspace={settings.space}", f"compression={settings.compression}"]
-    return " ".join(shlex.quote(word) for word in words if not word.endswith("="))
+    return RecordedSettings(
+        node=next(iter(request.targets), ""),
+        size=request.size,
+        scale=request.scale,
+        precision=settings.precision,
+        form=target.form,
+        view=file.view,
+        display=settings.display,
+        look=settings.look,
+        colorspace=settings.space,
+        compression=settings.compression,
+        frame=request.frame,
+        outputs=tuple(name for name in file.layers.values() if name not in request.targets),
+        frames=frames,
+        intermediates=request.precision or target.precision,
+    )
 
 
 def compute_frame_key(

@@ -12,16 +12,16 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
-from halation.nodes import Size
-from msgspec import Struct, field
+from msgspec import field
 
 from ...errors import UsageError
 from ...graph.frames import is_video
-from ...resources.render_choices import DEFAULT_TIMEOUT, Form, Precision
+from ...resources.render_choices import DEFAULT_TIMEOUT
 from ...resources.sandbox import Sandbox
+from .picture_settings import PictureSettings
 
 
-class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
     """What to render of which graph, how, and into which files.
 
     `graph` is the path of a graph file; "-" stands for the text in `document`, whose relative paths start at the
@@ -36,23 +36,12 @@ class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_un
     document: str = ""
     inputs: Mapping[str, str] = field(default_factory=dict[str, str])
     sets: Mapping[str, str] = field(default_factory=dict[str, str])
-    node: str = ""
-    """The node, or the output of one, that is rendered instead of the graph's outputs."""
-    size: Size | None = None
-    scale: float = 1.0
     frames: tuple[int, ...] = ()
     """Without any: all frames of the graph where a file's name has a place for the number, else the first."""
-    precision: Precision | None = None
-    form: Form | None = None
     memory: int = 0
     """Bytes that a frame may take; 0 for as many as there are."""
     deterministic: bool = False
     destinations: tuple[tuple[str, str], ...] = ()
-    view: str = ""
-    display: str = ""
-    look: str = ""
-    colorspace: str = ""
-    compression: str = "zip"
     codec: str = ""
     resume: bool = False
     processes: int = 1
@@ -68,10 +57,6 @@ class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_un
     def videos(self) -> tuple[Path, ...]:
         """The files that hold all frames."""
         return tuple(path for _, path in self.files if is_video(str(path)))
-
-    def to_json(self) -> str:
-        """The job as one line of JSON in ASCII, which can hold names of files in any encoding."""
-        return json.dumps(msgspec.to_builtins(self))
 
     @staticmethod
     def from_json(text: str) -> RenderJob:

@@ -9,16 +9,16 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, cast
 
-from halation.nodes import Node, Size
+from halation.nodes import Node
 
 from ... import document, media
-from ...compiler import Form, Precision
 from ...errors import InputError
 from ...graph import Graph
 from ...graph.frames import parse_frames
 from ...resources.library_names import restore_bytes
 from ...resources.sandbox import Sandbox
 from ..jobs.header import PREFIX
+from ..jobs.picture_settings import RecordedSettings
 
 _DIGEST = re.compile(r"(?P<name>.+) sha256:(?P<digest>[0-9a-f]{64})")
 _LAYERED = re.compile(r"(?P<name>.*?\.\w{1,5}):(?P<layer>.+)")
@@ -43,7 +43,7 @@ class RecordedFile:
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a header says. `frames` are the first and last frame of the graph if it has temporal nodes."""
+    """What a header says: the graph, the files that it read, and the settings."""
 
     path: Path
     graph: Graph
@@ -51,20 +51,7 @@ class Recipe:
     renderer: str
     driver: str
     files: tuple[RecordedFile, ...]
-    outputs: tuple[str, ...] = ()
-    node: str = ""
-    frame: int = 1
-    frames: tuple[int, int] | None = None
-    scale: float = 1.0
-    size: Size | None = None
-    precision: Precision = "half"
-    intermediates: Precision | None = None
-    form: Form | None = None
-    view: str = ""
-    display: str = ""
-    look: str = ""
-    colorspace: str = ""
-    compression: str = "zip"
+    settings: RecordedSettings
     color: str = ""
     """A hash of the color settings; "" for the default ones."""
 
@@ -89,7 +76,7 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
         )
     graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue, sandbox=sandbox)
     try:
-        settings = _parse_settings(metadata.get("halation:settings", ""))
+        settings = _read_settings(metadata)
         files = _parse_files(metadata)
     except ValueError as fault:
         raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
@@ -100,8 +87,8 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
         metadata.get("halation:renderer", ""),
         metadata.get("halation:driver", ""),
         files,
-        color=metadata.get("halation:color", ""),
-        **settings,
+        settings,
+        metadata.get("halation:color", ""),
     )
 
 
@@ -110,8 +97,15 @@ def has_recipe(path: str | Path, sandbox: Sandbox) -> bool:
     return bool(media.read_metadata(path, sandbox=sandbox).get("halation:graph"))
 
 
-def _parse_settings(text: str) -> dict[str, Any]:
-    """The arguments of a recipe. Raises ValueError."""
+def _read_settings(metadata: Mapping[str, str]) -> RecordedSettings:
+    """The settings in a header. Raises ValueError."""
+    if "halation:job" in metadata:
+        return RecordedSettings.from_json(metadata["halation:job"])
+    return _parse_settings(metadata.get("halation:settings", ""))
+
+
+def _parse_settings(text: str) -> RecordedSettings:
+    """The settings of a header of an earlier version, which has them as `name=value` words. Raises ValueError."""
     words: dict[str, list[str]] = {}
     for word in shlex.split(text):
         name, _, value = word.partition("=")
@@ -136,7 +130,7 @@ def _parse_settings(text: str) -> dict[str, Any]:
         settings["size"] = _parse_pair(plain["size"], "x")
     if "frames" in plain:
         settings["frames"] = _parse_pair(plain["frames"], "..")
-    return settings
+    return RecordedSettings(**settings)
 
 
 def _parse_pair(text: str, between: str) -> tuple[int, int]:

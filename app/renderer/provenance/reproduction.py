@@ -70,10 +70,10 @@ class Reproduction:
 
 def open_matching_device(recipe: Recipe, sandbox: Sandbox) -> Device:
     """A device like that of the recipe, if there is one. Raises DeviceError without usable OpenGL."""
-    if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED_SUFFIX):
+    if recipe.settings.form == "fragment" and recipe.renderer.endswith(_PINNED_SUFFIX):
         return open_pinned(sandbox=sandbox)
     try:
-        return open_device(recipe.form, sandbox=sandbox)
+        return open_device(recipe.settings.form, sandbox=sandbox)
     except DeviceError:
         return open_device(sandbox=sandbox)
 
@@ -90,21 +90,27 @@ def reproduce(
     Without a tolerance, pictures of the same renderer must be equal, and others within `OTHER_DEVICE_TOLERANCE`. Raises
     the errors of `app.errors`.
     """
-    graph, targets = _relink_graph(recipe, located_files), {}
-    if recipe.node:
-        targets = {recipe.node: find_node_output(graph, recipe.node)}
-    names = recipe.outputs or (recipe.node,)  # "" is all of them
-    request = RenderRequest({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
+    graph, targets, recorded = _relink_graph(recipe, located_files), {}, recipe.settings
+    if recorded.node:
+        targets = {recorded.node: find_node_output(graph, recorded.node)}
+    names = recorded.outputs or (recorded.node,)  # "" is all of them
+    request = RenderRequest({}, targets, recorded.size, recorded.scale, recorded.frame, recorded.intermediates)
     for file in files:
         if file.resolve() == recipe.path.resolve():
             raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")
     with tempfile.TemporaryDirectory(prefix="halation-", dir=renderer.sandbox.root or None) as folder:
         rendered_file = Path(folder, recipe.path.name)
         pairs = [(name, file) for file in (rendered_file, *files) for name in names]
-        settings = OutputSettings(
-            pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
+        output_settings = OutputSettings(
+            pairs,
+            recorded.view,
+            recorded.compression,
+            recorded.precision or "half",
+            recorded.display,
+            recorded.look,
+            recorded.colorspace,
         )
-        run_job(renderer, graph, request, settings, (recipe.frame,))
+        run_job(renderer, graph, request, output_settings, (recorded.frame,))
         layers = compare_layers(*(read_numbers(path, renderer.sandbox) for path in (rendered_file, recipe.path)))
     differences = tuple(
         _find_differences(recipe, renderer.device, get_color_manager(color_settings(graph), renderer.sandbox).digest)
@@ -154,8 +160,8 @@ def _measure_distance(actual: Array, expected: Array) -> float:
 
 def _relink_graph(recipe: Recipe, located_files: Sequence[LocatedFile]) -> Graph:
     graph = relink_files(recipe.graph, located_files)
-    if recipe.frames:  # the sequence may have other frames now
-        return replace(graph, settings=replace(graph.settings, frames=recipe.frames))
+    if recipe.settings.frames:  # the sequence may have other frames now
+        return replace(graph, settings=replace(graph.settings, frames=recipe.settings.frames))
     return graph
 
 
@@ -165,7 +171,7 @@ def _find_differences(recipe: Recipe, device: Device, color: str) -> list[Enviro
         "version": (recipe.version, VERSION),
         "renderer": (recipe.renderer, device.target.renderer),
         "driver": (recipe.driver, device.driver),
-        "passes": (recipe.form or "", device.target.form),
+        "passes": (recipe.settings.form or "", device.target.form),
     }
     differences = [
         EnvironmentDifference(name, recorded, current)
