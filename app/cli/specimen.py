@@ -14,6 +14,7 @@ from ..graph import Graph, Input, Output, Port, Settings
 from ..inputs.lazy_provider import LazyResourceProvider
 from ..resources.picture import Picture
 from ..resources.provider import FrameFile, PictureProbe
+from ..resources.sandbox import UNRESTRICTED
 
 NODE = "node"
 """The id that the node has in these graphs."""
@@ -49,6 +50,7 @@ class _SamplePictures(LazyResourceProvider):
     """A provider whose pictures all have the same size and all layers."""
 
     def __init__(self, size: Size) -> None:
+        super().__init__(UNRESTRICTED)
         self._size = size
 
     def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:
