@@ -18,6 +18,9 @@ INTERRUPTED = 130
 BROKEN_PIPE = 141
 BUG = 70
 
+_NO_MEMORY = ("start new thread", "failed to map segment", "annot allocate memory", "bad_alloc")
+"""What Python, the loader of libraries and C++ say when the system gives them no thread or no memory."""
+
 EXIT_CODES = """\b
 Exit codes:
 0    success
@@ -75,10 +78,11 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
             1,
             f"{fault.filename or 'standard output'}: the system reports an error: {fault.strerror or fault}",
         )
-    if isinstance(fault, RuntimeError) and "start new thread" in str(fault):
+    if any(words in str(fault) for words in _NO_MEMORY):
         return "MemoryError", 1, "the system gives no more threads or memory (ulimit -u, ulimit -v): allow more"
     if isinstance(fault, MemoryError):
-        return "MemoryError", 1, "there is not enough memory; render a smaller picture with --scale or --size"
+        sentence = str(fault) or "there is not enough memory; render a smaller picture with --scale or --size"
+        return "MemoryError", 1, sentence
     if format_message := getattr(fault, "format_message", None):  # the parser of the command line raises it
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"

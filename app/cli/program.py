@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
+from ..resources.machine import memory_limit
 from ..version import VERSION
 from .options import add_root
 from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
@@ -39,6 +40,10 @@ _VISIBLE = (
     "export-isf",
 )
 _HIDDEN = ("git-driver", "worker")
+_LEAST_MEMORY = 288 << 20
+"""Bytes of address space. Libraries of pictures and colors end the process, or wait for ever, where they cannot be
+loaded and started in it: measured on Linux with four cores."""
+
 WITHOUT_ROOT = MappingProxyType(
     {
         "edit": "the user of the editor chooses its files",
@@ -110,6 +115,8 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code. Nothing is raised."""
     as_json = "--json" in arguments
     try:
+        if (memory := memory_limit()) < _LEAST_MEMORY:
+            raise MemoryError(f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow 288 MiB at least")
         words = tuple(arguments)
         code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
     except SystemExit:  # so click ends when the program that read its help has ended

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import DeviceError, HalationError, RenderError
-from ..resources.machine import machine_memory, resident_memory
+from ..resources.machine import has_memory_limit, machine_memory, resident_memory
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -93,6 +93,11 @@ class Watchdog:
         except ValueError:
             name = f"signal {number}"
         self._beat = self._file.read_text(encoding="utf-8")
+        if has_memory_limit():
+            return RenderError(
+                f"the driver ended the process ({name}), as drivers do without enough memory: allow more (ulimit -v), "
+                "or render a smaller picture with --scale or --size"
+            )
         if self._beat:
             return self._fault(f"has ended the process ({name}) while it compiled or ran: make the code simpler")
         return RenderError(f"the render was ended from outside ({name})")

@@ -20,6 +20,21 @@ def machine_memory() -> float:
     return size if size > 0 else math.inf
 
 
+def memory_limit() -> float:
+    """Bytes of address space that this process may have (`ulimit -v`); infinite without a limit."""
+    try:
+        import resource
+    except ImportError:  # Windows
+        return math.inf
+    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
+    return math.inf if limit == resource.RLIM_INFINITY else limit
+
+
+def has_memory_limit() -> bool:
+    """True if this process may have less address space than it asks for (`ulimit -v`)."""
+    return memory_limit() < math.inf
+
+
 def resident_memory(process: int) -> int:
     """Bytes of memory that a process takes; 0 where the system does not say."""
     try:

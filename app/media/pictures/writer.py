@@ -16,6 +16,7 @@ from ...color.encoding import Encoding, choose_png_space
 from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
+from ...resources.machine import has_memory_limit
 from ...resources.render_choices import Precision
 from ...resources.sandbox import Sandbox
 from ..channels import is_depth
@@ -247,7 +248,10 @@ def open_encoder(path: str | Path, format: str) -> oiio.ImageOutput:
     """What writes files of a format. Raises OutputError where there is nothing."""
     output = oiio.ImageOutput.create(format)
     if output is None:
-        raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for {format}")
+        reason = oiio.geterror().strip().partition("\n")[0] or f"this OpenImageIO has no encoder for {format}"
+        if has_memory_limit():
+            reason = "there is not enough memory (ulimit -v)"
+        raise OutputError(f"{path}: cannot be written: {reason}")
     return output
 
 
