@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from functools import lru_cache
 from hashlib import blake2b
+from io import BytesIO
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -13,6 +14,7 @@ from halation.nodes import BuiltInScene, Scene
 
 from ...errors import InputError
 from ...resources.input_files import fingerprint, open_file, read_bytes
+from ...resources.library_names import is_utf8
 from ...resources.mesh import ATTRIBUTES, Mesh
 from ...resources.sandbox import Sandbox
 from .built_in import BUILT_IN, MeshPart
@@ -77,7 +79,8 @@ def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
     resolver, file_type = _make_resolver(path, sandbox), Path(path).suffix.removeprefix(".")
     try:
         with open_file(path, sandbox) as file:
-            scene: Any = trimesh.load_scene(file, file_type=file_type, resolver=resolver)
+            source = file if is_utf8(path) else BytesIO(file.read())  # trimesh hashes the name of a file as UTF-8
+            scene: Any = trimesh.load_scene(source, file_type=file_type, resolver=resolver)
         nodes = [_read_part(scene, name) for name in scene.graph.nodes_geometry]
     except InputError:
         raise
