@@ -30,6 +30,9 @@ from ...resources.render_choices import DEFAULT_TIMEOUT
 MAX_TRIALS = 1024
 """Programs whose trials are remembered: twice those that a renderer keeps."""
 
+SIDE = 16
+"""Pixels on each side of a picture: two of the blocks of 8 that rasterizers shade at a time, across and down."""
+
 PATIENCE = 2.0
 """Seconds that others wait for a slow program: a choice, about the time in which a user writes the next line."""
 
@@ -195,7 +198,10 @@ def _describe(plan: Plan, render_pass: Pass) -> dict[str, Any]:
     """All that the process needs to compile a program as the renderer will."""
     shader = render_pass.shader
     kinds = [
-        [(surface.components, surface.depth, shader.foreign) for surface in map(plan.surfaces.__getitem__, numbers)]
+        [
+            (*map(_shrink, surface.size), surface.components, surface.depth, shader.foreign)
+            for surface in map(plan.surfaces.__getitem__, numbers)
+        ]
         for numbers in (render_pass.textures, render_pass.targets)
     ]
     return {
@@ -210,3 +216,8 @@ def _describe(plan: Plan, render_pass: Pass) -> dict[str, Any]:
         "tables": [(table.sampler, unit) for unit, table in enumerate(render_pass.tables, FIRST_TABLE)],
         "weights": MAX_WEIGHTS if render_pass.weights else 0,
     }
+
+
+def _shrink(length: int) -> int:
+    """A short side for a long one: Mesa compiles a program once for powers of two and once for other lengths."""
+    return SIDE if length & (length - 1) == 0 else SIDE + SIDE // 2

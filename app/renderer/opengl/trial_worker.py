@@ -20,9 +20,6 @@ from typing import Any
 
 import moderngl
 
-SIDE = 16
-"""Pixels on each side of a picture: two of the blocks of 8 that rasterizers shade at a time, across and down."""
-
 CACHE_DELAY = 0.02
 """Seconds that Mesa may take to write its cache after slow programs: it does so on another thread."""
 
@@ -110,10 +107,10 @@ def set_uniform(handle: Any, name: str, value: Any) -> None:
         return
 
 
-def create_texture(context: moderngl.Context, kind: tuple[int, str, bool]) -> moderngl.Texture:
-    """A small picture of components and a depth, zero everywhere, with interpolation or without."""
-    components, depth, linear = kind
-    texture = context.texture((SIDE, SIDE), components, dtype=depth)
+def create_texture(context: moderngl.Context, kind: tuple[int, int, int, str, bool]) -> moderngl.Texture:
+    """A small picture of a size, components and a depth, zero everywhere, with interpolation or without."""
+    width, height, components, depth, linear = kind
+    texture = context.texture((width, height), components, dtype=depth)
     way = moderngl.LINEAR if linear else moderngl.NEAREST
     texture.filter = (way, way)
     texture.repeat_x = texture.repeat_y = False

@@ -1,0 +1,70 @@
+"""Code that a driver cannot compile, or takes long over, neither ends the editor nor has it stand still."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.custom_nodes import Code, node_type
+from halation.graph import Graph, Port
+from halation.nodes.input.constant import Constant
+
+LONGEST_STEP = 0.2
+"""Seconds that a step of the preview may take while code compiles."""
+
+
+def chain(code: str) -> Graph:
+    graph = Graph().add("plain", Constant()).add("user", node_type(Code("glsl", code))())
+    return graph.connect(Port("plain", "out"), Port("user", "image"))
+
+
+def fresh(terms: int) -> str:
+    """Code that is in no cache, and takes the longer to compile the more terms it has."""
+    unique = np.random.default_rng().integers(1, 10**6)
+    total = " + ".join(f"sin(image.r * {number}.{unique})" for number in range(terms))
+    return f"vec4 f(vec4 image) {{ return vec4({total}); }}"
+
+
+def finish(preview) -> None:
+    """Work until everything is shown."""
+    end = time.monotonic() + 60.0
+    while preview.busy and time.monotonic() < end:
+        preview.work(0.01)
+        time.sleep(0.005)
+
+
+def test_no_step_waits_for_a_compiler(preview) -> None:
+    preview.want(chain(fresh(1)), {"A": Port("user", "out")})
+    finish(preview)  # which reads the shaders of Halation
+    preview.want(chain(fresh(60)), {"A": Port("user", "out")})
+    waits, longest, end = 0, 0.0, time.monotonic() + 120.0
+    while preview.busy and time.monotonic() < end:
+        began = time.thread_time()  # of this thread: the machine may be busy with others
+        preview.work(0.01)
+        longest = max(longest, time.thread_time() - began)
+        waits += 1
+        time.sleep(0.005)
+    assert preview.shown("A") is not None and not preview.faults
+    assert waits > 10 and longest < LONGEST_STEP
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of this one")
+def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
+    graph = chain("vec4 f(vec4 image) { float a[16000]; a[int(image.r * 1e6)] = 1.0; return vec4(a[int(image.g)]); }")
+    preview.want(graph, {"A": Port("user", "out")})
+    preview.work(0.01)
+    time.sleep(1.0)
+    for task in Path("/proc/self/task").iterdir():
+        for child in (task / "children").read_text().split():
+            if b"trial_worker" in Path(f"/proc/{child}/cmdline").read_bytes():
+                os.kill(int(child), signal.SIGSEGV)
+    finish(preview)
+    assert "SIGSEGV" in str(preview.faults["user"])
+    preview.want(chain(fresh(2)), {"A": Port("user", "out")})
+    finish(preview)
+    assert preview.shown("A") is not None and not preview.faults
