@@ -83,7 +83,7 @@ def test(
         options,
         jobs=jobs,
         stop_early=stop_early,
-        hears=None if as_json else lambda outcome: print(_format_outcome(outcome)),
+        report_outcome=None if as_json else lambda outcome: print(_format_outcome(outcome)),
     )
     if report is not None:
         write_report(session, report, sandbox=sandbox)

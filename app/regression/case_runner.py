@@ -1,4 +1,4 @@
-"""Cases into outcomes."""
+"""Runs regression cases: renders each graph and compares its pictures with the goldens."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..renderer.jobs.job import OutputSettings, run_job
 from ..resources.sandbox import Sandbox
 from .cases import Case, Golden
-from .comparison import Parts, add_slow_measures, find_unusable, judge_picture
-from .pictures import leave_pictures, make_views
+from .comparison import PictureParts, add_slow_measures, find_unusable, judge_picture
+from .pictures import make_views, write_failure_pictures
 from .results import Outcome, PictureCheck
 
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How cases are run. `update` writes goldens that are missing or fail, `out` is a folder for what failed.
+    """How cases are run. `update` writes goldens that are missing or differ; `out` is a folder for failed pictures.
 
-    `pictures` asks for views of what failed.
+    With `pictures`, failed checks get views for a report.
     """
 
     sandbox: Sandbox
@@ -41,101 +41,107 @@ class RunOptions:
     deterministic: bool = True
 
 
-def run_case(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
-    """What becomes of a case. A fault of the case is an outcome; OutputError is raised for `out` alone."""
+def run_case(case: Case, renderer: Renderer, options: RunOptions) -> Outcome:
+    """The outcome of a case. A faulty case is an outcome, too; only `out` raises OutputError."""
     started = time.perf_counter()
     if case.skip:
         return Outcome(case, "skipped", case.skip)
     try:
-        outcome = _run_failing(case, renderer, how) if case.error else _run_rendering(case, renderer, how)
+        outcome = _run_failing(case, renderer, options) if case.error else _run_rendering(case, renderer, options)
     except HalationError as fault:
         outcome = Outcome(case, "failed", str(fault))
     return replace(outcome, seconds=time.perf_counter() - started)
 
 
-def _run_failing(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
+def _run_failing(case: Case, renderer: Renderer, options: RunOptions) -> Outcome:
     try:
-        _render_only(case, renderer, how)
+        _render_only(case, renderer, options)
     except HalationError as fault:
-        said = str(fault)
-        if case.error.casefold() in said.casefold():
-            return Outcome(case, "passed", said)
-        return Outcome(case, "failed", f"it fails as it should, but not with '{case.error}': {said}")
+        message = str(fault)
+        if case.error.casefold() in message.casefold():
+            return Outcome(case, "passed", message)
+        return Outcome(case, "failed", f"it fails as it should, but not with '{case.error}': {message}")
     return Outcome(case, "failed", f"it should fail with '{case.error}', but it renders")
 
 
-def _run_rendering(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
+def _run_rendering(case: Case, renderer: Renderer, options: RunOptions) -> Outcome:
     if not case.goldens:
-        return _render_only(case, renderer, how)
-    graph = _load_graph(case, sandbox=how.sandbox)
-    wanted = _make_request(case, graph, how)
-    frames = case.frames or (renderer.find_frames(graph, wanted)[0],)
-    with tempfile.TemporaryDirectory(prefix="halation-", dir=how.sandbox.root or None) as name:
+        return _render_only(case, renderer, options)
+    graph = _load_graph(case, sandbox=options.sandbox)
+    request = _make_request(case, graph, options)
+    frames = case.frames or (renderer.find_frames(graph, request)[0],)
+    with tempfile.TemporaryDirectory(prefix="halation-", dir=options.sandbox.root or None) as name:
         folders = [Path(name) / str(index) for index in range(len(case.goldens))]
         for folder in folders:
             folder.mkdir()
         actual = [folder / golden.path.name for folder, golden in zip(folders, case.goldens, strict=True)]
         files = tuple((golden.output, path) for golden, path in zip(case.goldens, actual, strict=True))
         precision = "float" if case.precision == "float" else "half"
-        run_job(renderer, graph, wanted, OutputSettings(files, case.view, precision=precision), frames)
+        run_job(renderer, graph, request, OutputSettings(files, case.view, precision=precision), frames)
         checks, blessed = list[PictureCheck](), list[str]()
         for frame in frames:
             for golden, path in zip(case.goldens, actual, strict=True):
-                check, said = _check_picture(case, graph, golden, _name_at_frame(path, frame), frame, how)
+                check, blessing = _check_picture(case, graph, golden, _name_at_frame(path, frame), frame, options)
                 checks.append(check)
-                blessed += [said] if said else []
+                blessed += [blessing] if blessing else []
     faults = [check for check in checks if check.sentence]
     if faults:
-        rest = f" (and {len(faults) - 1} more pictures)" if len(faults) > 1 else ""
+        more_faults = f" (and {len(faults) - 1} more pictures)" if len(faults) > 1 else ""
         note = f"; {faults[0].elsewhere}" if faults[0].elsewhere else ""
-        return Outcome(case, "failed", f"{faults[0].sentence}{note}{rest}", checks=tuple(checks))
+        return Outcome(case, "failed", f"{faults[0].sentence}{note}{more_faults}", checks=tuple(checks))
     return Outcome(case, "blessed" if blessed else "passed", "; ".join(blessed), checks=tuple(checks))
 
 
 def _check_picture(
-    case: Case, graph: Graph, golden: Golden, actual: Path, frame: int, how: RunOptions
+    case: Case, graph: Graph, golden: Golden, actual: Path, frame: int, options: RunOptions
 ) -> tuple[PictureCheck, str]:
-    """The verdict on one picture, and what was blessed."""
+    """The check of one picture, and a sentence on its golden if that was written."""
     path = _name_at_frame(golden.path, frame)
-    check, made, wanted = judge_picture(case, actual, path, frame, sandbox=how.sandbox)
+    check, actual_parts, golden_parts = judge_picture(case, actual, path, frame, sandbox=options.sandbox)
     if not check.sentence:
         return check, ""
-    if how.update:
-        refusal = find_unusable(case, made) or _explain_conflict(graph, case, path)
+    if options.update:
+        refusal = find_unusable(case, actual_parts) or _explain_conflict(graph, case, path)
         if not refusal:
-            old = check.sentence.removeprefix(f"{path}: ") if wanted else "new"
-            copy_picture(path, actual, sandbox=how.sandbox)
-            return judge_picture(case, actual, path, frame, sandbox=how.sandbox)[0], f"{path}: {old}"
+            old = check.sentence.removeprefix(f"{path}: ") if golden_parts else "new"
+            copy_picture(path, actual, sandbox=options.sandbox)
+            return judge_picture(case, actual, path, frame, sandbox=options.sandbox)[0], f"{path}: {old}"
         check = replace(check, sentence=f"{path} is not blessed: {refusal}")
-    if how.pictures or how.out is not None:
-        check = _add_views(check, case, graph, made, wanted)
-    if how.out is not None:
-        check = leave_pictures(check, case, actual, made, wanted, how.out, sandbox=how.sandbox)
+    if options.pictures or options.out is not None:
+        check = _add_views(check, case, graph, actual_parts, golden_parts)
+    if options.out is not None:
+        check = write_failure_pictures(
+            check, case, actual, actual_parts, golden_parts, options.out, sandbox=options.sandbox
+        )
     return check, ""
 
 
-def _add_views(check: PictureCheck, case: Case, graph: Graph, made: Parts, wanted: Parts) -> PictureCheck:
+def _add_views(
+    check: PictureCheck, case: Case, graph: Graph, actual_parts: PictureParts, golden_parts: PictureParts
+) -> PictureCheck:
     outputs = list(graph.outputs.values())
-    check = add_slow_measures(case, check, made, wanted)
-    return replace(check, views=make_views(check, made, wanted, case.view or (outputs[0].view if outputs else "")))
+    check = add_slow_measures(case, check, actual_parts, golden_parts)
+    return replace(
+        check, views=make_views(check, actual_parts, golden_parts, case.view or (outputs[0].view if outputs else ""))
+    )
 
 
-def _render_only(case: Case, renderer: Renderer, how: RunOptions) -> Outcome:
+def _render_only(case: Case, renderer: Renderer, options: RunOptions) -> Outcome:
     """A case without goldens: it must render, in finite numbers, and not only black."""
-    graph = _load_graph(case, sandbox=how.sandbox)
-    wanted = _make_request(case, graph, how)
-    reel = FrameRenderer(renderer, graph, wanted)
+    graph = _load_graph(case, sandbox=options.sandbox)
+    request = _make_request(case, graph, options)
+    frame_renderer = FrameRenderer(renderer, graph, request)
     try:
-        for frame in case.frames or (reel.frames[0],):
-            pictures = reel.render_frame(frame)
-            if not case.error and (said := _find_fault(case, graph, wanted, pictures)):
-                return Outcome(case, "failed", f"frame {frame}: {said}")
+        for frame in case.frames or (frame_renderer.frames[0],):
+            pictures = frame_renderer.render_frame(frame)
+            if not case.error and (fault := _find_fault(case, graph, request, pictures)):
+                return Outcome(case, "failed", f"frame {frame}: {fault}")
     finally:
-        reel.close()
+        frame_renderer.close()
     return Outcome(case, "passed")
 
 
-def _find_fault(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping[str, Any]) -> str:
+def _find_fault(case: Case, graph: Graph, request: RenderRequest, pictures: Mapping[str, Any]) -> str:
     letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
     return find_unusable(
         case,
@@ -147,15 +153,15 @@ def _find_fault(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mappi
 
 
 def _load_graph(case: Case, sandbox: Sandbox) -> Graph:
-    """The graph with its values set. Raises GraphError, also for what `halation check` calls an error."""
-    graph = reduce(_set, case.values.items(), document.load(case.graph, sandbox=sandbox))
+    """The graph with the values of the case. Raises GraphError, also for errors that `halation check` reports."""
+    graph = reduce(_set_value, case.values.items(), document.load(case.graph, sandbox=sandbox))
     errors = [problem for problem in problems(graph) if problem.severity == "error"]
     if errors:
         raise GraphError(f"{case.graph}: {errors[0].sentence}")
     return graph
 
 
-def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
+def _set_value(graph: Graph, setting: tuple[str, Any]) -> Graph:
     name, value = setting
     try:
         is_expression = isinstance(value, str) and value.startswith("=")
@@ -164,14 +170,14 @@ def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
         raise GraphError(f"set.{name}: {str(fault).removeprefix(f'{name}: ')}") from None
 
 
-def _make_request(case: Case, graph: Graph, how: RunOptions) -> RenderRequest:
+def _make_request(case: Case, graph: Graph, options: RunOptions) -> RenderRequest:
     targets: dict[str, Port] = {case.node: find_node_output(graph, case.node)} if case.node else {}
-    precision = "float" if how.deterministic else None
+    precision = "float" if options.deterministic else None
     return RenderRequest(case.inputs, targets, case.size, case.scale, precision=precision)
 
 
 def _explain_conflict(graph: Graph, case: Case, golden: Path) -> str:
-    """Why a golden must not be written: the graph reads that file."""
+    """Why a golden must not be written: the graph reads that file; "" if it does not."""
     read = [path for path, _, _ in find_named_files(graph, {})]
     read += [split_layer(item)[0] for item in case.inputs.values() if isinstance(item, str)]
     if any(os.path.realpath(path) == os.path.realpath(golden) for path in read):

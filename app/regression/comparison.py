@@ -1,4 +1,4 @@
-"""One rendered file against its golden."""
+"""Compares a rendered file with its golden."""
 
 from __future__ import annotations
 
@@ -16,31 +16,31 @@ from ..resources.sandbox import Sandbox
 from .cases import METRICS, PER_PIXEL, Case, format_number
 from .results import PictureCheck
 
-Parts = Mapping[str, StoredPart]
+PictureParts = Mapping[str, StoredPart]
 
 
 def judge_picture(
     case: Case, actual: Path, golden: Path, frame: int, sandbox: Sandbox
-) -> tuple[PictureCheck, Parts, Parts]:
-    """What there is to say of a picture, and the parts of both files. Nothing is raised for a bad golden."""
-    made, made_by = read_stored_parts(actual, sandbox=sandbox), describe_maker(actual, sandbox=sandbox)
-    fresh = PictureCheck(golden, frame, made_by=made_by)
+) -> tuple[PictureCheck, PictureParts, PictureParts]:
+    """The check of a picture, and the parts of both files. A golden that cannot be read is a failed check, no error."""
+    actual_parts, made_by = read_stored_parts(actual, sandbox=sandbox), describe_maker(actual, sandbox=sandbox)
+    check = PictureCheck(golden, frame, made_by=made_by)
     if not golden.is_file():
-        return replace(fresh, sentence=f"the golden {golden} is missing: --update makes it"), made, {}
+        return replace(check, sentence=f"the golden {golden} is missing: --update makes it"), actual_parts, {}
     try:
-        wanted, golden_by = read_stored_parts(golden, sandbox=sandbox), describe_maker(golden, sandbox=sandbox)
+        golden_parts, golden_by = read_stored_parts(golden, sandbox=sandbox), describe_maker(golden, sandbox=sandbox)
     except HalationError as fault:
-        return replace(fresh, sentence=str(fault)), made, {}
-    fresh = replace(fresh, golden_by=golden_by)
-    if list(made) != list(wanted):
-        said = f"{golden}: the layers are {_join_names(made)}, and {_join_names(wanted)} are expected"
-        return replace(fresh, sentence=said), made, wanted
-    checks = [_measure_layer(case, fresh, name, made[name], wanted[name]) for name in made]
-    return max(checks, key=lambda check: (bool(check.sentence), _rank(case, check))), made, wanted
+        return replace(check, sentence=str(fault)), actual_parts, {}
+    check = replace(check, golden_by=golden_by)
+    if list(actual_parts) != list(golden_parts):
+        sentence = f"{golden}: the layers are {_join_names(actual_parts)}, and {_join_names(golden_parts)} are expected"
+        return replace(check, sentence=sentence), actual_parts, golden_parts
+    checks = [_measure_layer(case, check, name, actual_parts[name], golden_parts[name]) for name in actual_parts]
+    return max(checks, key=lambda check: (bool(check.sentence), _rank(case, check))), actual_parts, golden_parts
 
 
-def find_unusable(case: Case, parts: Parts) -> str:
-    """Why a picture should not become a golden, or pass where none is asked for; "" if nothing speaks against it."""
+def find_unusable(case: Case, parts: PictureParts) -> str:
+    """Why a picture can neither become a golden nor pass without one: it is black or not finite; "" if it can."""
     if "nonfinite" not in case.allow:
         for name, part in parts.items():
             if part.count_unusable:
@@ -51,44 +51,51 @@ def find_unusable(case: Case, parts: Parts) -> str:
     return ""
 
 
-def add_slow_measures(case: Case, check: PictureCheck, made: Parts, wanted: Parts) -> PictureCheck:
-    """The same check with the measures that take long, for people."""
-    if check.compared is None or check.layer not in made or check.layer not in wanted:
+def add_slow_measures(
+    case: Case, check: PictureCheck, actual_parts: PictureParts, golden_parts: PictureParts
+) -> PictureCheck:
+    """The same check with all measures, also the slow ones (SSIM, FLIP), for a report."""
+    if check.compared is None or check.layer not in actual_parts or check.layer not in golden_parts:
         return check
-    return replace(check, compared=_compare(case, made[check.layer], wanted[check.layer], perceptual=True))
+    return replace(
+        check, compared=_compare(case, actual_parts[check.layer], golden_parts[check.layer], perceptual=True)
+    )
 
 
-def _compare(case: Case, made: StoredPart, wanted: StoredPart, perceptual: bool) -> PictureDifference:
+def _compare(case: Case, actual: StoredPart, golden: StoredPart, perceptual: bool) -> PictureDifference:
     threshold = case.tolerance if case.metric in PER_PIXEL else EIGHT_BIT_STEP
     return compare_pictures(
-        made.array,
-        wanted.array,
+        actual.array,
+        golden.array,
         threshold=threshold,
         relative=case.metric != "max_abs",
-        linear=made.is_linear and wanted.is_linear,
+        linear=actual.is_linear and golden.is_linear,
         perceptual=perceptual,
     )
 
 
-def _measure_layer(case: Case, fresh: PictureCheck, name: str, made: StoredPart, wanted: StoredPart) -> PictureCheck:
-    found = _compare(case, made, wanted, perceptual=case.metric in ("ssim", "flip"))
-    check = replace(fresh, layer=name, compared=found)
-    if found.fault:
-        return replace(check, sentence=f"{_name_layer(check)}{found.fault}")
-    value = float(getattr(found, case.metric))
-    return replace(check, value=value, sentence=_describe_failure(case, check, found, value))
+def _measure_layer(case: Case, fresh: PictureCheck, name: str, actual: StoredPart, golden: StoredPart) -> PictureCheck:
+    difference = _compare(case, actual, golden, perceptual=case.metric in ("ssim", "flip"))
+    check = replace(fresh, layer=name, compared=difference)
+    if difference.fault:
+        return replace(check, sentence=f"{_name_layer(check)}{difference.fault}")
+    value = float(getattr(difference, case.metric))
+    return replace(check, value=value, sentence=_describe_failure(case, check, difference, value))
 
 
-def _describe_failure(case: Case, check: PictureCheck, found: PictureDifference, value: float) -> str:
+def _describe_failure(case: Case, check: PictureCheck, difference: PictureDifference, value: float) -> str:
     metric = METRICS[case.metric]
     if metric.allows(value, case.tolerance):
         return ""
+    worst = _describe_worst_pixel(difference)
     if case.failing and case.metric in PER_PIXEL:
-        if 100.0 * found.failing <= case.failing:
+        if 100.0 * difference.failing <= case.failing:
             return ""
-        share = f"{format_number(100.0 * found.failing)} % of the pixels are beyond {format_number(case.tolerance)}"
-        return f"{_name_layer(check)}{share} where {format_number(case.failing)} % may be{_describe_worst_pixel(found)}"
-    return f"{_name_layer(check)}{metric.describe(value, case.tolerance)}{_describe_worst_pixel(found)}"
+        share = (
+            f"{format_number(100.0 * difference.failing)} % of the pixels are beyond {format_number(case.tolerance)}"
+        )
+        return f"{_name_layer(check)}{share} where {format_number(case.failing)} % may be{worst}"
+    return f"{_name_layer(check)}{metric.describe(value, case.tolerance)}{worst}"
 
 
 def _name_layer(check: PictureCheck) -> str:
@@ -96,13 +103,15 @@ def _name_layer(check: PictureCheck) -> str:
     return f"{check.golden}{layer}: "
 
 
-def _describe_worst_pixel(found: PictureDifference) -> str:
+def _describe_worst_pixel(difference: PictureDifference) -> str:
     """The worst pixel in words."""
-    if found.worst is None:
+    if difference.worst is None:
         return ""
-    actual, expected = (" ".join(format_number(part) for part in side) for side in (found.actual, found.expected))
-    broken = f"; {found.broken} pixels are not finite on one side" if found.broken else ""
-    return f"; worst at {found.worst[0]},{found.worst[1]}: {actual} instead of {expected}{broken}"
+    actual, expected = (
+        " ".join(format_number(part) for part in side) for side in (difference.actual, difference.expected)
+    )
+    broken = f"; {difference.broken} pixels are not finite on one side" if difference.broken else ""
+    return f"; worst at {difference.worst[0]},{difference.worst[1]}: {actual} instead of {expected}{broken}"
 
 
 def _rank(case: Case, check: PictureCheck) -> float:
@@ -112,5 +121,5 @@ def _rank(case: Case, check: PictureCheck) -> float:
     return inf if np.isnan(value) else value
 
 
-def _join_names(parts: Parts) -> str:
+def _join_names(parts: PictureParts) -> str:
     return ", ".join(name or "(unnamed)" for name in parts)

@@ -1,4 +1,4 @@
-"""All cases: here, or shared among processes."""
+"""Runs all cases, in this process or in several."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ OutcomeListener = Callable[[Outcome], None]
 
 @dataclass(frozen=True)
 class _CaseResult:
-    """A case, and what it ran on."""
+    """The outcome of a case, and the device that it ran on."""
 
     outcome: Outcome
     device: str
@@ -36,67 +36,67 @@ class _CaseResult:
 
 def run_cases(
     cases: Sequence[Case],
-    how: RunOptions,
+    options: RunOptions,
     *,
     jobs: int = 1,
     stop_early: bool = False,
-    hears: OutcomeListener | None = None,
+    report_outcome: OutcomeListener | None = None,
 ) -> RegressionRun:
-    """Run cases and tell of each as it ends. With `stop_early` the first failure is the last case to be told of.
+    """Run cases; `report_outcome` is called with each as it ends. `stop_early` stops after the first failure.
 
     Raises DeviceError without OpenGL, OutputError for a folder that cannot be written.
     """
     started = time.perf_counter()
-    found: dict[str, Outcome] = {}
+    outcomes: dict[str, Outcome] = {}
     device, software = "", True
-    crew = min(jobs, len(cases))
-    with closing(_run_shared(cases, how, crew) if crew > 1 else _run_alone(cases, how)) as made:
-        for done in made:
-            found[done.outcome.case.id], device, software = done.outcome, done.device, done.software
-            if hears is not None:
-                hears(done.outcome)
-            if stop_early and done.outcome.status == "failed":
+    processes = min(jobs, len(cases))
+    with closing(_run_shared(cases, options, processes) if processes > 1 else _run_alone(cases, options)) as results:
+        for result in results:
+            outcomes[result.outcome.case.id], device, software = result.outcome, result.device, result.software
+            if report_outcome is not None:
+                report_outcome(result.outcome)
+            if stop_early and result.outcome.status == "failed":
                 break
-    ordered = [found[case.id] for case in cases if case.id in found]
+    ordered = [outcomes[case.id] for case in cases if case.id in outcomes]
     remark = (
         ""
-        if software or not how.deterministic
+        if software or not options.deterministic
         else (f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on")
     )
     return RegressionRun(
-        ordered, device, time.perf_counter() - started, how.deterministic and software, remark, VERSION
+        ordered, device, time.perf_counter() - started, options.deterministic and software, remark, VERSION
     )
 
 
-def _run_alone(cases: Iterable[Case], how: RunOptions) -> Generator[_CaseResult, None, None]:
-    renderer = _open_renderer(how.deterministic, how.sandbox)
+def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[_CaseResult, None, None]:
+    renderer = _open_renderer(options.deterministic, options.sandbox)
     for case in cases:
-        yield _run_and_describe(case, renderer, how)
+        yield _run_and_describe(case, renderer, options)
 
 
-def _run_shared(cases: Sequence[Case], how: RunOptions, jobs: int) -> Generator[_CaseResult, None, None]:
-    # Processes that each used all cores would only get into each other's way.
+def _run_shared(cases: Sequence[Case], options: RunOptions, jobs: int) -> Generator[_CaseResult, None, None]:
+    # If each process used all cores, they would only slow each other down.
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _limit_threads, (threads,))
     try:
         with _ignore_interrupts():
-            waiting: list[Future[_CaseResult]] = [pool.submit(_run_in_worker, case, how) for case in cases]
-        for done in as_completed(waiting):
-            yield done.result()
+            waiting: list[Future[_CaseResult]] = [pool.submit(_run_in_worker, case, options) for case in cases]
+        for future in as_completed(waiting):
+            yield future.result()
     except BrokenProcessPool:
         raise RenderError("a process was ended from outside, perhaps for want of memory: use fewer, -j 1") from None
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def run_here(case: Case, how: RunOptions) -> Outcome:
-    """What becomes of a case; the device stays open for the next one."""
-    return run_case(case, _open_renderer(how.deterministic, how.sandbox), how)
+def run_in_process(case: Case, options: RunOptions) -> Outcome:
+    """The outcome of a case; the device stays open for the next case of this process."""
+    return run_case(case, _open_renderer(options.deterministic, options.sandbox), options)
 
 
 @contextmanager
 def _ignore_interrupts() -> Iterator[None]:
-    """Processes that are started inside do not hear Ctrl-C, of which the one that started them takes care."""
+    """Processes that are started in this block ignore Ctrl-C: their parent handles it."""
     if current_thread() is not main_thread():
         yield
         return
@@ -111,12 +111,12 @@ def _limit_threads(threads: str) -> None:
     os.environ.setdefault("LP_NUM_THREADS", threads)
 
 
-def _run_in_worker(case: Case, how: RunOptions) -> _CaseResult:
-    return _run_and_describe(case, _open_renderer(how.deterministic, how.sandbox), how)
+def _run_in_worker(case: Case, options: RunOptions) -> _CaseResult:
+    return _run_and_describe(case, _open_renderer(options.deterministic, options.sandbox), options)
 
 
-def _run_and_describe(case: Case, renderer: engine.Renderer, how: RunOptions) -> _CaseResult:
-    return _CaseResult(run_case(case, renderer, how), renderer.device.description, renderer.device.target.software)
+def _run_and_describe(case: Case, renderer: engine.Renderer, options: RunOptions) -> _CaseResult:
+    return _CaseResult(run_case(case, renderer, options), renderer.device.description, renderer.device.target.software)
 
 
 @cache

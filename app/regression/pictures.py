@@ -1,4 +1,4 @@
-"""Pictures of what differs, for reports and folders."""
+"""Makes pictures of differences, for reports and folders."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing
 from ..resources.atomic_write import write_bytes_atomically
 from ..resources.sandbox import Sandbox
 from .cases import Case
-from .comparison import Parts
+from .comparison import PictureParts
 from .results import PictureCheck, PictureViews
 
 Array = np.ndarray
@@ -23,16 +23,16 @@ Array = np.ndarray
 _UNSAFE = re.compile(r"[^\w.+-]+")
 
 
-def make_views(check: PictureCheck, made: Parts, wanted: Parts, view: str) -> PictureViews:
-    """The worst layer to look at: both pictures, and what differs, as bright as it can be shown."""
-    name = check.layer if check.layer in made else next(iter(made))
-    actual, expected = made[name], wanted.get(name)
+def make_views(check: PictureCheck, actual_parts: PictureParts, golden_parts: PictureParts, view: str) -> PictureViews:
+    """Views of the worst layer: both pictures, and their difference, as bright as it can be shown."""
+    name = check.layer if check.layer in actual_parts else next(iter(actual_parts))
+    actual, expected = actual_parts[name], golden_parts.get(name)
     if expected is None:
         return PictureViews(encode_png(encode_for_viewing(actual, view, _measure_range(actual))))
     span, gain = _measure_range(expected), 1.0
     first, second = actual.array, expected.array
     if first.shape == second.shape:
-        # Bright lights, which differ by large numbers, would leave all else black.
+        # Bright lights differ by large numbers, beside which all other differences would be black.
         size = np.maximum(1.0, np.abs(np.where(np.isfinite(second), second, 0.0)))
         first, second = first / size, second / size
         gain = _choose_gain(np.abs(first - second))
@@ -41,10 +41,16 @@ def make_views(check: PictureCheck, made: Parts, wanted: Parts, view: str) -> Pi
     return PictureViews(*views, encode_png(light ** (1.0 / 2.2)), gain)
 
 
-def leave_pictures(
-    check: PictureCheck, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path, sandbox: Sandbox
+def write_failure_pictures(
+    check: PictureCheck,
+    case: Case,
+    actual: Path,
+    actual_parts: PictureParts,
+    golden_parts: PictureParts,
+    folder: Path,
+    sandbox: Sandbox,
 ) -> PictureCheck:
-    """The same check with its pictures in a folder: as stored and as PNG; differences as EXR and PNG.
+    """Write the pictures of a failed check to a folder: as stored and as PNG; differences as EXR and PNG.
 
     Raises OutputError.
     """
@@ -58,13 +64,19 @@ def leave_pictures(
     stem = check.golden.stem
     files = [folder / f"{stem}.actual{actual.suffix}"]
     copy_picture(files[0], actual, sandbox=sandbox)
-    if wanted:
+    if golden_parts:
         files.append(folder / f"{stem}.expected{check.golden.suffix}")
         copy_picture(files[1], check.golden, sandbox=sandbox)
-        layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
-        if layer in made and layer in wanted:
+        layer = (
+            check.layer
+            if check.layer in actual_parts and check.layer in golden_parts
+            else next(iter(actual_parts.keys() & golden_parts), "")
+        )
+        if layer in actual_parts and layer in golden_parts:
             files.append(folder / f"{stem}.difference.exr")
-            write_difference(files[2], {layer: _subtract(made[layer].array, wanted[layer].array)}, sandbox=sandbox)
+            write_difference(
+                files[2], {layer: _subtract(actual_parts[layer].array, golden_parts[layer].array)}, sandbox=sandbox
+            )
     if check.views:
         for word in ("actual", "expected", "difference"):
             data: bytes = getattr(check.views, word)
@@ -75,7 +87,7 @@ def leave_pictures(
 
 
 def _subtract(actual: Array, expected: Array) -> Array:
-    """The absolute difference as numbers; where sizes differ, a picture of that."""
+    """The absolute difference; for pictures of different sizes, a picture that shows that."""
     same = actual.shape == expected.shape
     return (
         np.abs(to_three_channels(actual) - to_three_channels(expected))
@@ -85,12 +97,12 @@ def _subtract(actual: Array, expected: Array) -> Array:
 
 
 def _choose_gain(difference: Array) -> float:
-    """What makes all but the few largest differences visible."""
-    there = difference[np.isfinite(difference) & (difference > 0.0)]
-    return 1.0 / float(np.percentile(there, 99.5)) if there.size else 1.0
+    """The factor that makes the 99.5th percentile of differences white, so that a few outliers do not hide the rest."""
+    differences = difference[np.isfinite(difference) & (difference > 0.0)]
+    return 1.0 / float(np.percentile(differences, 99.5)) if differences.size else 1.0
 
 
 def _measure_range(part: StoredPart) -> tuple[float, float]:
-    """What is black and what is white where data is shown."""
+    """The numbers that are shown black and white for data."""
     finite = part.array[np.isfinite(part.array)]
     return (float(finite.min()), float(finite.max())) if part.is_data and finite.size else (0.0, 1.0)

@@ -64,9 +64,9 @@ class CaseItem(pytest.Item):
 
     def runtest(self) -> None:
         """Render and compare. Raises Failure."""
-        from .parallel import run_here
+        from .parallel import run_in_process
 
-        outcome = run_here(self.case, self._how())
+        outcome = run_in_process(self.case, self._how())
         for check in outcome.checks:
             self.user_properties += [("picture", str(path)) for path in check.files]
         if outcome.status == "skipped":

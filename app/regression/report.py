@@ -1,4 +1,4 @@
-"""Outcomes as one HTML page that needs nothing but itself."""
+"""Writes outcomes as one HTML page that needs no other file."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from .cases import METRICS, format_number
 from .results import Outcome, PictureCheck, PictureViews, RegressionRun
 
 _MARK = "/*DATA*/null"
-_MOST = 200 * 2**20
-"""Bytes of pictures; what fails after that is a row without pictures."""
+_MAX_PICTURE_BYTES = 200 * 2**20
+"""Bytes of pictures in a page; later failures have no pictures. Chosen by judgement: in base64 they take 280 MB, and
+browsers struggle with larger pages."""
 
 
 def check_report(*paths: Path | None, sandbox: Sandbox) -> None:
@@ -46,25 +47,25 @@ def make_page(session: RegressionRun) -> str:
         "remark": session.remark,
         "version": session.version,
         "seconds": round(session.seconds, 2),
-        "cases": _cases(session),
+        "cases": _describe_cases(session),
     }
-    # A script element ends at its end tag and nowhere else, wherever that stands.
+    # HTML ends a script at the first "</script", even inside a string, so no "<" may be in the data.
     return template.replace(_MARK, json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))
 
 
-def _cases(session: RegressionRun) -> list[dict[str, Any]]:
-    room = _MOST
-    found: list[dict[str, Any]] = []
+def _describe_cases(session: RegressionRun) -> list[dict[str, Any]]:
+    room = _MAX_PICTURE_BYTES
+    cases: list[dict[str, Any]] = []
     for outcome in session.outcomes:
         checks: list[dict[str, Any]] = []
         for check in outcome.checks:
-            views, room = _views(check.views, room)
-            checks.append(_check(outcome, check) | views)
-        found.append(_case(outcome) | {"checks": checks})
-    return found
+            views, room = _embed_views(check.views, room)
+            checks.append(_describe_check(outcome, check) | views)
+        cases.append(_describe_case(outcome) | {"checks": checks})
+    return cases
 
 
-def _case(outcome: Outcome) -> dict[str, Any]:
+def _describe_case(outcome: Outcome) -> dict[str, Any]:
     case, worst = outcome.case, outcome.worst
     value = "" if worst is None or worst.value is None else format_number(worst.value)
     return {
@@ -74,12 +75,12 @@ def _case(outcome: Outcome) -> dict[str, Any]:
         "said": outcome.sentence,
         "seconds": round(outcome.seconds, 3),
         "graph": case.graph.as_posix(),
-        "metric": _metric(outcome),
+        "metric": _describe_metric(outcome),
         "value": value,
     }
 
 
-def _metric(outcome: Outcome) -> str:
+def _describe_metric(outcome: Outcome) -> str:
     case = outcome.case
     if case.error:
         return "must fail"
@@ -90,9 +91,9 @@ def _metric(outcome: Outcome) -> str:
     return f"{case.metric} {sign} {format_number(case.tolerance)}{METRICS[case.metric].unit}{share}"
 
 
-def _check(outcome: Outcome, check: PictureCheck) -> dict[str, Any]:
-    found = check.compared
-    said: dict[str, Any] = {
+def _describe_check(outcome: Outcome, check: PictureCheck) -> dict[str, Any]:
+    difference = check.compared
+    description: dict[str, Any] = {
         "golden": check.golden.as_posix(),
         "frame": check.frame,
         "layer": check.layer,
@@ -102,18 +103,20 @@ def _check(outcome: Outcome, check: PictureCheck) -> dict[str, Any]:
         "elsewhere": bool(check.elsewhere),
         "files": [path.as_posix() for path in check.files],
     }
-    if found is not None and outcome.status == "failed":
+    if difference is not None and outcome.status == "failed":
         names = ("max_rel", "max_abs", "rms", "psnr", "ssim", "flip")
-        values = {name: getattr(found, name) for name in names}
-        said["measures"] = {name: format_number(value) for name, value in values.items() if value == value}
-        said["share"] = format_number(100.0 * found.failing)
-        if found.worst:
-            said["worst"] = list(found.worst)
-            said["numbers"] = [[format_number(part) for part in side] for side in (found.actual, found.expected)]
-    return said
+        values = {name: getattr(difference, name) for name in names}
+        description["measures"] = {name: format_number(value) for name, value in values.items() if value == value}
+        description["share"] = format_number(100.0 * difference.failing)
+        if difference.worst:
+            description["worst"] = list(difference.worst)
+            description["numbers"] = [
+                [format_number(part) for part in side] for side in (difference.actual, difference.expected)
+            ]
+    return description
 
 
-def _views(views: PictureViews | None, room: int) -> tuple[dict[str, Any], int]:
+def _embed_views(views: PictureViews | None, room: int) -> tuple[dict[str, Any], int]:
     if views is None:
         return {}, room
     pictures = {"actual": views.actual, "expected": views.expected, "difference": views.difference}

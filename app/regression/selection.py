@@ -1,4 +1,4 @@
-"""`-k`: which cases are meant, by words of their names with and, or, not and parentheses, as pytest has it."""
+"""Selects cases for `-k` by words of their names with and, or, not and parentheses, as in pytest."""
 
 from __future__ import annotations
 
@@ -15,40 +15,40 @@ _SIGNS = ("and", "or", "not", "(", ")")
 
 
 def select_cases(cases: Iterable[Case], expression: str) -> tuple[Case, ...]:
-    """The cases that an expression means, all for "". Raises UsageError for one that makes no sense or means none."""
-    found = tuple(cases)
+    """The cases that an expression selects, all for "". Raises UsageError if it is invalid or selects none."""
+    all_cases = tuple(cases)
     if not expression.strip():
-        return found
-    chooses = parse_expression(expression)
-    kept = tuple(case for case in found if chooses(case.id))
-    if not kept:
-        raise UsageError(f"-k {expression}: none of {len(found)} cases is meant; --list shows their names")
-    return kept
+        return all_cases
+    predicate = parse_expression(expression)
+    selected = tuple(case for case in all_cases if predicate(case.id))
+    if not selected:
+        raise UsageError(f"-k {expression}: none of {len(all_cases)} cases is meant; --list shows their names")
+    return selected
 
 
 def parse_expression(expression: str) -> CasePredicate:
-    """What tells by a case's id whether it is meant. Words are looked for in it, upper case or lower."""
+    """A predicate of case ids. A word selects the ids that contain it, in upper or lower case."""
     words = _WORDS.findall(expression)
-    made, rest = _parse_or(words, expression)
+    predicate, rest = _parse_or(words, expression)
     if rest:
         raise _make_fault(expression, f"'{rest[0]}' is not expected")
-    return made
+    return predicate
 
 
 def _parse_or(words: list[str], whole: str) -> tuple[CasePredicate, list[str]]:
-    made, rest = _parse_and(words, whole)
+    predicate, rest = _parse_and(words, whole)
     while rest and rest[0].lower() == "or":
-        other, rest = _parse_and(rest[1:], whole)
-        made = _combine(made, other, any)
-    return made, rest
+        operand, rest = _parse_and(rest[1:], whole)
+        predicate = _combine(predicate, operand, any)
+    return predicate, rest
 
 
 def _parse_and(words: list[str], whole: str) -> tuple[CasePredicate, list[str]]:
-    made, rest = _parse_not(words, whole)
+    predicate, rest = _parse_not(words, whole)
     while rest and rest[0].lower() == "and":
-        other, rest = _parse_not(rest[1:], whole)
-        made = _combine(made, other, all)
-    return made, rest
+        operand, rest = _parse_not(rest[1:], whole)
+        predicate = _combine(predicate, operand, all)
+    return predicate, rest
 
 
 def _parse_not(words: list[str], whole: str) -> tuple[CasePredicate, list[str]]:
@@ -68,9 +68,9 @@ def _parse_not(words: list[str], whole: str) -> tuple[CasePredicate, list[str]]:
     return (lambda id: word in id.lower()), rest
 
 
-def _combine(one: CasePredicate, other: CasePredicate, how: Callable[[Iterable[bool]], bool]) -> CasePredicate:
-    return lambda id: how(each(id) for each in (one, other))
+def _combine(first: CasePredicate, second: CasePredicate, join: Callable[[Iterable[bool]], bool]) -> CasePredicate:
+    return lambda id: join(each(id) for each in (first, second))
 
 
-def _make_fault(expression: str, said: str) -> UsageError:
-    return UsageError(f"-k '{expression}': {said}; write words with and, or, not and parentheses")
+def _make_fault(expression: str, sentence: str) -> UsageError:
+    return UsageError(f"-k '{expression}': {sentence}; write words with and, or, not and parentheses")

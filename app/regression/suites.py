@@ -1,4 +1,4 @@
-"""Suite files into cases."""
+"""Reads suite files: the cases that they describe."""
 
 from __future__ import annotations
 
@@ -30,94 +30,94 @@ _KEYS = (
     "allow",
     "skip",
 )
-_ALLOWABLE = ("nonfinite", "black")
+_EXCEPTIONS = ("nonfinite", "black")
 
 
 def find_suites(paths: Iterable[Path]) -> tuple[Path, ...]:
     """Suite files: those named, and those below folders. Raises UsageError where there is none."""
-    found: dict[Path, None] = {}
+    suites: dict[Path, None] = {}
     for path in paths:
         if path.is_dir():
-            inside = sorted(item for item in walk_project(path) if item.name.endswith(ENDING))
-            if not inside:
+            files = sorted(item for item in walk_project(path) if item.name.endswith(ENDING))
+            if not files:
                 raise UsageError(f"{path}: there is no suite in this folder; the name of one ends in {ENDING}")
-            found.update(dict.fromkeys(inside))
+            suites.update(dict.fromkeys(files))
         elif not path.exists():
             raise UsageError(f"{path}: there is no such file or folder")
         elif not path.name.endswith(ENDING):
             raise UsageError(f"{path}: this is no suite: the name of one ends in {ENDING}")
         else:
-            found[path] = None
-    return tuple(found)
+            suites[path] = None
+    return tuple(suites)
 
 
 def load_suite(path: Path, sandbox: Sandbox) -> tuple[Case, ...]:
     """The cases of a file, in its order. Raises DocumentError that names the file and the key at fault."""
     tree = TomlTable(str(path), "", parse_toml(path, sandbox=sandbox))
     tree.refuse_other_keys(("defaults", "cases"))
-    defaults = tree.table("defaults")
+    defaults = tree.read_table("defaults")
     defaults.refuse_other_keys(tuple(name for name in _KEYS if name not in ("error", "skip")))
-    cases = tree.table("cases")
+    cases = tree.read_table("cases")
     if not cases.items:
         raise DocumentError(str(path), "cases", 'there is no case: begin one with [cases.NAME] and graph = "FILE"')
-    made: dict[str, Case] = {}
+    cases_by_name: dict[str, Case] = {}
     for name in cases.items:
-        for case in _read_cases(path, name, cases.table(name), defaults):
-            if case.name in made:
+        for case in _read_cases(path, name, cases.read_table(name), defaults):
+            if case.name in cases_by_name:
                 raise DocumentError(str(path), f"cases.{name}", f"there are two cases '{case.name}'; rename one")
-            made[case.name] = case
-    _check_goldens(path, made.values())
-    return tuple(made.values())
+            cases_by_name[case.name] = case
+    _check_goldens(path, cases_by_name.values())
+    return tuple(cases_by_name.values())
 
 
 def _read_cases(path: Path, name: str, own: TomlTable, defaults: TomlTable) -> Iterator[Case]:
     """The case of a table; several where the name of its graph has wildcards."""
     own.refuse_other_keys(_KEYS)
     both = own.merge_over(defaults)
-    pattern = both.text("graph")
+    pattern = both.read_text("graph")
     if not pattern:
-        raise both.fault("graph", 'which graph? Write graph = "FILE", relative to this file')
+        raise both.make_fault("graph", 'which graph? Write graph = "FILE", relative to this file')
     if not any(sign in pattern for sign in "*?["):
         yield _read_case(path, name, path.parent / pattern, own, both)
         return
     graphs = sorted(item for item in path.parent.glob(pattern) if item.is_file())
     if not graphs:
-        raise both.fault("graph", f"no file is called {pattern}")
+        raise both.make_fault("graph", f"no file is called {pattern}")
     for graph in graphs:
         yield _read_case(path, f"{name}/{graph.stem}", graph, own, both)
 
 
 def _read_case(path: Path, name: str, graph: Path, own: TomlTable, both: TomlTable) -> Case:
     if "metric" in own.items and "tolerance" not in own.items:
-        both = both.without("tolerance")
-    metric = both.choice("metric", tuple(METRICS), "max_rel")
-    failing = both.number("failing", 0.0, 0.0, 100.0)
+        both = both.drop_key("tolerance")
+    metric = both.read_choice("metric", tuple(METRICS), "max_rel")
+    failing = both.read_number("failing", 0.0, 0.0, 100.0)
     if failing and metric not in PER_PIXEL:
-        raise both.fault("failing", f"pixels may fail with the metrics max_rel and max_abs, not with {metric}")
-    error = both.text("error")
+        raise both.make_fault("failing", f"pixels may fail with the metrics max_rel and max_abs, not with {metric}")
+    error = both.read_text("error")
     if "error" in own.items and not error:
-        raise both.fault("error", "give some words of the sentence that rendering must fail with")
+        raise both.make_fault("error", "give some words of the sentence that rendering must fail with")
     if error and own.items.get("golden"):
-        raise both.fault("golden", "a case that must fail gives no picture: leave out golden or error")
+        raise both.make_fault("golden", "a case that must fail gives no picture: leave out golden or error")
     return Case(
         path,
         name,
         graph,
         read_inputs(both, path.parent),
-        both.table("set").items,
+        both.read_table("set").items,
         read_frames(both),
         read_size(both),
-        both.number("scale", 1.0, 0.0, 1.0),
-        both.text("node"),
+        both.read_number("scale", 1.0, 0.0, 1.0),
+        both.read_text("node"),
         () if error else read_goldens(both, path.parent, name, graph.stem),
         metric,
-        both.number("tolerance", METRICS[metric].tolerance, None, None),
+        both.read_number("tolerance", METRICS[metric].tolerance, None, None),
         failing,
-        both.choice("precision", ("half", "float"), "half"),
-        both.text("view"),
+        both.read_choice("precision", ("half", "float"), "half"),
+        both.read_text("view"),
         error,
-        both.choices("allow", _ALLOWABLE),
-        both.text("skip"),
+        both.read_choices("allow", _EXCEPTIONS),
+        both.read_text("skip"),
     )
 
 

@@ -122,24 +122,24 @@ def migrate_graph(graph: Graph, types: Types | None = None) -> Graph:
     Values that no longer fit have their default. Nodes of a type that is gone become unknown ones, and come back.
     """
     types_by_id = catalogue() if types is None else types
-    changed = {id: found for id, item in graph.nodes.items() if (found := _migrate_node(graph, id, item, types_by_id))}
+    changed = {id: part for id, item in graph.nodes.items() if (part := _migrate_node(graph, id, item, types_by_id))}
     if not changed:
         return graph
     extra = {key: keys for key, keys in graph.extra.items() if not any(_is_of(key, id) for id in changed)}
-    for found in changed.values():
-        extra |= found.extra
+    for part in changed.values():
+        extra |= part.extra
     return replace(graph, nodes={**graph.nodes, **{id: found.nodes[id] for id, found in changed.items()}}, extra=extra)
 
 
-def _migrate_node(graph: Graph, id: str, item: Item, known: Types) -> Graph | None:
+def _migrate_node(graph: Graph, id: str, item: Item, types: Types) -> Graph | None:
     """A graph of that node alone, or None if it stays as it is."""
     own_keys = {key: keys for key, keys in graph.extra.items() if _is_of(key, id)}
     if isinstance(item, Group):
-        inner = migrate_graph(item.graph, known)
+        inner = migrate_graph(item.graph, types)
         return None if inner is item.graph else Graph({id: replace(item, graph=inner)}, extra=own_keys)
     if isinstance(item, CustomNode):
         return None
-    current_class = known.get(item.type if isinstance(item, Unknown) else item.id)
+    current_class = types.get(item.type if isinstance(item, Unknown) else item.id)
     if (current_class is None and isinstance(item, Unknown)) or type(item) is current_class:
         return None
     try:
@@ -149,15 +149,15 @@ def _migrate_node(graph: Graph, id: str, item: Item, known: Types) -> Graph | No
     node: dict[str, Any] = tree["nodes"][id]
     if current_class is not None and isinstance(item, Node):
         node["version"] = min(item.version, current_class.version)
-    return _load_fitting(tree, id, graph.folder, known)
+    return _load_fitting(tree, id, graph.folder, types)
 
 
-def _load_fitting(tree: dict[str, Any], id: str, folder: str, known: Types) -> Graph | None:
+def _load_fitting(tree: dict[str, Any], id: str, folder: str, types: Types) -> Graph | None:
     """The graph that the tree says, without values that do not fit; None if it is beyond that."""
     values: Any = tree["nodes"][id].get("values")
     while True:
         try:
-            return document.loads(json.dumps(tree), folder=folder, catalogue=known, sandbox=None)
+            return document.loads(json.dumps(tree), folder=folder, catalogue=types, sandbox=None)
         except DocumentError as fault:
             name = fault.path.removeprefix(f"nodes.{id}.values.")
             if not isinstance(values, dict) or values.pop(name, None) is None:

@@ -44,7 +44,9 @@ def list_sequence_files(paths: Iterable[Path], sandbox: Sandbox) -> tuple[Path, 
 def suggest_patterns(paths: Sequence[Path], sandbox: Sandbox) -> tuple[tuple[Path, ...], dict[Path, Path]]:
     """Dropped files with several of one sequence made one, and the sequence that each of the others is a frame of."""
     suggested = {path: pattern for path in paths if (pattern := suggest_pattern(str(path), sandbox=sandbox))}
-    counts = {found: [*suggested.values()].count(found) for found in suggested.values()}
+    counts = {
+        sequence_pattern: [*suggested.values()].count(sequence_pattern) for sequence_pattern in suggested.values()
+    }
     chosen = tuple(
         dict.fromkeys(
             Path(suggested[path]) if path in suggested and counts[suggested[path]] > 1 else path for path in paths

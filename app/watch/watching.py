@@ -132,9 +132,9 @@ class FileWatcher:
         with self._lock:
             news, self._news = self._news, {}
             return tuple(
-                FileChange(*key, exists=one.stamp is not None)
-                for key, one in news.items()
-                if not self._is_ours(key[1], one.content)
+                FileChange(*key, exists=state.stamp is not None)
+                for key, state in news.items()
+                if not self._is_ours(key[1], state.content)
             )
 
     def differs(self, path: Path) -> bool:
@@ -231,12 +231,16 @@ class FileWatcher:
         # A file that a folder did not have when it was first looked at is news; all others are known from then on.
         old = {key: before.get(key) or (nothing if folder in listed else None) for key, folder in inside.items()}
         old |= {key: before.get(key) for key in (*watched.files, *removed)}
-        states = {key: _inspect(key, one, self._sandbox) for key, one in old.items()}
+        states = {key: _inspect(key, state, self._sandbox) for key, state in old.items()}
         with self._lock:
             if watched is not self._watched:
                 return
             self._known, self._listed = states, frozenset(watched.folders)
-            self._news |= {key: one for key, one in states.items() if (was := old[key]) and was.content != one.content}
+            self._news |= {
+                key: one
+                for key, one in states.items()
+                if (before_state := old[key]) and before_state.content != one.content
+            }
 
 
 def find_pictures(graph: Graph, bindings: Mapping[str, object] | None = None) -> tuple[Path, ...]:
