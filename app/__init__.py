@@ -7,13 +7,14 @@
     hal.write("out.png", pictures["image"])
 
 Pictures are float arrays [height, width, channels], row 0 at the top, scene-linear, color premultiplied.
-Everything raises `HalationError` (see `halation.errors`) with one sentence that says what to do.
+Everything raises `HalationError` (see `halation.errors`) with one sentence that says what to do, arguments of a wrong
+type included; a missing argument or an unknown keyword is a TypeError, as in all of Python.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
+from collections.abc import Callable, Generator, Iterable, Mapping
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,11 +25,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from .compiler import Precision
-    from .graph import Graph, Port
+    from .graph import Graph
     from .inputs.provider import Binding
-    from .renderer import Renderer
-    from .renderer.execution.trials import TrialProcess
-    from .resources.sandbox import Sandbox
 
 __all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
 
@@ -40,16 +38,18 @@ def load(path: str | Path) -> Graph:
     from . import document
     from .custom_nodes.plugins import find_graph_or_preset
     from .resources.sandbox import read_process_sandbox
+    from .scripting.arguments import check_path
 
-    return document.load(find_graph_or_preset(path), sandbox=read_process_sandbox())
+    return document.load(find_graph_or_preset(check_path("path", path)), sandbox=read_process_sandbox())
 
 
 def save(graph: Graph, path: str | Path) -> None:
     """Write a graph as canonical JSON, whole or not at all. Raises OutputError."""
     from . import document
     from .resources.sandbox import read_process_sandbox
+    from .scripting.arguments import check_graph, check_path
 
-    document.save(graph, path, sandbox=read_process_sandbox())
+    document.save(check_graph(graph), check_path("path", path), sandbox=read_process_sandbox())
 
 
 def render(
@@ -68,11 +68,15 @@ def render(
     `inputs` bind graph inputs to arrays, paths or `path:layer`; the name of a sequence has `####` for the frame.
     `values` set `node.value` or a control by name. `node` renders one node (`id` or `id.output`) instead. `size`
     replaces the size of canvas and pictures, `scale` renders a proxy with lengths in pixels shrunk too. `frame` is by
-    default the first of the graph. Programs and results are kept from call to call.
+    default the first of the graph. Programs and results are kept from call to call. Any thread may call this: the main
+    thread renders by itself, all others share one renderer.
     """
     frames = None if frame is None else (frame,)
-    made = render_frames(graph, inputs, frames, values=values, node=node, size=size, scale=scale, precision=precision)
-    return next(iter(made))[1]
+    rendered = render_frames(
+        graph, inputs, frames, values=values, node=node, size=size, scale=scale, precision=precision
+    )
+    with closing(rendered):
+        return next(rendered)[1]
 
 
 def render_frames(
@@ -85,35 +89,41 @@ def render_frames(
     size: tuple[int, int] | None = None,
     scale: float = 1.0,
     precision: Precision | None = None,
-) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+) -> Generator[tuple[int, dict[str, np.ndarray]]]:
     """Frames of a graph, by default all that it has, one after the other, each with its outputs as `render` has them.
 
-    An input may also be bound to a function that makes the picture of a frame. Whatever the order, a frame is always
-    the same: nodes with a memory are led up to it from the first frame of the graph, or by its pre-roll.
+    An input may also be bound to a function that makes the picture of a frame; it is called on the thread that renders.
+    Whatever the order, a frame is always the same: nodes with a memory are led up to it from the first frame of the
+    graph, or by its pre-roll.
     """
     from .graph.custom_code import has_code
+    from .scripting import arguments
+    from .scripting.threads import choose_thread
 
+    graph = arguments.check_graph(graph)
+    thread = choose_thread()
     if has_code(graph):
-        _trial_process().start()  # while the renderer is loaded
-    from .renderer import FrameRenderer, RenderRequest
+        thread.trial_process.start()  # while the renderer is loaded
+    from .graph import find_node_output
+    from .renderer import RenderRequest
     from .resources.sandbox import read_process_sandbox
+    from .scripting.rendering import ScriptedRendering
 
-    if not 0.0 < scale <= 1.0:
-        raise UsageError(f"scale {scale:g}: give a number above 0 and up to 1")
-    if size is not None and min(size) < 1:
-        raise UsageError(f"size {size[0]}x{size[1]}: give width and height in pixels, at least 1")
-    for name, value in (values or {}).items():
+    proxy, canvas = arguments.check_scale(scale), arguments.check_size(size)
+    if precision is not None:
+        arguments.check_choice("precision", precision, ("half", "float"))
+    for name, value in arguments.check_mapping("values", values).items():
         graph = graph.override(name, value)
-    targets = {node: _output(graph, node)} if node else {}
-    reel = FrameRenderer(
-        _renderer(read_process_sandbox()), graph, RenderRequest(inputs or {}, targets, size, scale, precision=precision)
-    )
-    first, last = reel.frames
+    targets = {node: find_node_output(graph, node)} if arguments.check_text("node", node) else {}
+    request = RenderRequest(arguments.check_inputs(inputs), targets, canvas, proxy, precision=precision)
+    chosen = None if frames is None else arguments.check_frame_numbers(frames)
+    rendering = ScriptedRendering(graph, request, thread, read_process_sandbox())
+    first, last = rendering.frames
     try:
-        for frame in range(first, last + 1) if frames is None else frames:
-            yield frame, reel.render_frame(frame)
+        for frame in range(first, last + 1) if chosen is None else chosen:
+            yield frame, rendering.render(frame)
     finally:
-        reel.close()
+        rendering.close()
 
 
 def write(
@@ -127,42 +137,23 @@ def write(
 
     from . import media
     from .resources.sandbox import read_process_sandbox
+    from .scripting import arguments
 
-    channels = {2: 1, 3: picture.shape[-1]}.get(picture.ndim, 0)
-    if not 1 <= channels <= 4:
-        raise UsageError(f"{path}: the array is {list(picture.shape)}; give [height, width] or [height, width, 1 to 4]")
+    file = arguments.check_path("path", path)
+    array = arguments.as_array(str(file), picture)
+    channels = {2: 1, 3: (0, *array.shape)[-1]}.get(array.ndim, 0)
+    if not 1 <= channels <= 4 or not array.size:
+        raise UsageError(f"{file}: the array is {list(array.shape)}; give [height, width] or [height, width, 1 to 4]")
     kind = (Kind.FIELD, Kind.VECTOR, Kind.IMAGE, Kind.IMAGE)[channels - 1]
     media.write_picture(
-        Path(path),
-        {"image": picture},
+        file,
+        {"image": array},
         kinds={"image": kind},
-        precision=precision,
-        compression=compression,
-        view=view,
+        precision=arguments.check_choice("precision", precision, ("half", "float")),
+        compression=arguments.check_text("compression", compression),
+        view=arguments.check_text("view", view),
         sandbox=read_process_sandbox(),
     )
-
-
-def _output(of: Graph, node: str) -> Port:
-    from .graph import find_node_output
-
-    return find_node_output(of, node)
-
-
-@cache
-def _renderer(sandbox: Sandbox) -> Renderer:
-    """One device for all calls: opening another costs more than most graphs."""
-    from .renderer import Renderer
-
-    return Renderer(sandbox=sandbox, trial_process=_trial_process())
-
-
-@cache
-def _trial_process() -> TrialProcess:
-    """The process in which programs with code of users are tried."""
-    from .renderer.execution.trials import TrialProcess
-
-    return TrialProcess()
 
 
 def __getattr__(name: str) -> Any:

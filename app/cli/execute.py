@@ -94,11 +94,12 @@ def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) ->
 
 def _choose_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
     """The frames of a job that names none: all of the graph if its files can hold them, else the first."""
+    from ..graph.frames import list_range
     from ..inputs.lazy_provider import LazyResourceProvider
 
     provider = LazyResourceProvider(job.sandbox)
     first, last = provider.find_frames(graph, job.inputs)
-    return tuple(range(first, last + 1)) if parsing.have_frame_number(job.files) else (first,)
+    return list_range(first, last) if parsing.have_frame_number(job.files) else (first,)
 
 
 def _split_among_helpers(

@@ -119,11 +119,12 @@ def parse_setting(text: str) -> Any:
 
 def parse_frame_options(frame: int | None, text: str | None) -> tuple[int, ...] | None:
     """The frames that --frame or --frames name; None without either."""
+    from ..graph.frames import check_frame, parse_frames
+
     if text is None:
-        return None if frame is None else (frame,)
+        return None if frame is None else (check_frame(frame),)
     if frame is not None:
         raise UsageError("--frame and --frames: give one of them")
-    from ..graph.frames import parse_frames
 
     return parse_frames(text)
 

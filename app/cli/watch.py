@@ -59,6 +59,7 @@ def watch(
 
     Watches the graph and its groups, code, pictures and shaders. After an error it waits for the next change.
     """
+    from ..graph.frames import list_range
     from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.jobs.job import OutputSettings, run_job
@@ -83,7 +84,7 @@ def watch(
             parsing.find_targets(graph_now, node),
         )
         first, last = (0, 0) if named_frames else LazyResourceProvider(sandbox).find_frames(graph_now, bindings)
-        every = named_frames or (tuple(range(first, last + 1)) if parsing.have_frame_number(destinations) else (first,))
+        every = named_frames or (list_range(first, last) if parsing.have_frame_number(destinations) else (first,))
         request = RenderRequest(bindings, targets, canvas, proxy, precision=parsed_precision)
         return run_job(
             renderer,

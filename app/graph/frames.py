@@ -76,6 +76,20 @@ def parse_frames(text: str) -> tuple[int, ...]:
     return tuple(dict.fromkeys(chain.from_iterable(spans)))
 
 
+def list_range(first: int, last: int) -> tuple[int, ...]:
+    """All frames of a range. Raises UsageError for more than a million."""
+    if last - first >= MOST_FRAMES:
+        raise UsageError(f"the frames {first} to {last} of the graph are more than {MOST_FRAMES:,}: name some of them")
+    return tuple(range(first, last + 1))
+
+
+def check_frame(frame: int) -> int:
+    """The frame. Raises UsageError for a number with more digits than lists of frames may have."""
+    if abs(frame) >= 10**_DIGITS:
+        raise UsageError(f"frame {_shorten(str(frame))}: it has more than {_DIGITS} digits")
+    return frame
+
+
 def format_frames(frames: Iterable[int]) -> str:
     """The shortest text that lists these frames in this order: `1-23x2,40`; "" for no frames.
 

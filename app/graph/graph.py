@@ -16,8 +16,9 @@ from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
 from .ends import EndSection, move_end
+from .method_arguments import check_method_arguments
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, class_signature, freeze
-from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
+from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, make_printable, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
 from .relink import move_links, relink
 from .values import coerce, value_fault
@@ -62,6 +63,7 @@ class Group:
 Item = Node | Group | Unknown
 
 
+@check_method_arguments
 @dataclass(frozen=True)
 class Graph(Wired[Item]):
     """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
@@ -96,7 +98,7 @@ class Graph(Wired[Item]):
     def node(self, id: str) -> Item:
         """The node of an id. Raises GraphError with a suggestion."""
         if id not in self.nodes:
-            raise GraphError(f"there is no node '{id}'{did_you_mean(id, self.nodes)}")
+            raise GraphError(f"there is no node '{make_printable(id)}'{did_you_mean(id, self.nodes)}")
         return self.nodes[id]
 
     def source(self, port: Port) -> Socket | None:

@@ -51,10 +51,15 @@ def did_you_mean(name: str, names: Collection[str]) -> str:
     return ""
 
 
+def make_printable(name: str) -> str:
+    """A name on one line: characters that cannot be printed are escaped."""
+    return name if name.isprintable() else ascii(name)[1:-1]
+
+
 def pick(entries: Mapping[str, T], name: str, lacking: str) -> T:
     """The entry of a name. Raises GraphError made of `lacking`, the name and a suggestion."""
     if name not in entries:
-        raise GraphError(f"{lacking} '{name}'{did_you_mean(name, entries)}")
+        raise GraphError(f"{lacking} '{make_printable(name)}'{did_you_mean(name, entries)}")
     return entries[name]
 
 

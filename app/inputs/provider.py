@@ -84,10 +84,16 @@ class MediaProvider:
 
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
+        from ..media.sequences import find_sequence
+
         needed = graph.upstream(OUTPUTS)
         for path, owner, missing in find_named_files(graph, {}):
             used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
-            for frame in frames if used and missing == "error" else ():
+            if used and missing == "error" and frames:
+                # The first frame that a sequence lacks, or just the first: there may be a billion of them.
+                sequence = find_sequence(path, sandbox=self.sandbox)
+                there = sequence.names if sequence else frames
+                frame = next((frame for frame in frames if frame not in there), frames[0])
                 self.find_frame_file(path, frame, missing)
 
     def find_frame_file(self, path: str, frame: int, missing: Missing) -> FrameFile:

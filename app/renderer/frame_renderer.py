@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping
 from msgspec.structs import replace
 
 from ..compiler import Memory, Plan
+from ..errors import UsageError
 from ..graph import Graph, Port
 from .engine import Renderer, RenderRequest
 from .execution.decoding import Array
@@ -25,6 +26,9 @@ from .execution.texture_pool import TextureLease
 MAX_PLANS = 16
 """Plans that are kept: those of the last frames, for playing back and forth. Chosen by judgement: a plan of a large
 graph takes about a megabyte, and one that was dropped is compiled again in milliseconds."""
+
+MAX_LEAD_FRAMES = 100_000
+"""Frames that are computed for the history of one frame: more than an hour of film at 24 frames per second."""
 
 MAX_CARRIED_BYTES = 2**29
 """Bytes of results that may stay on the device from one frame to the next, beyond what temporal nodes store. Chosen by
@@ -79,9 +83,8 @@ class FrameRenderer:
 
         `plan_frame` compiles all of them at once, which takes long far from where the history begins.
         """
-        begin, at = self.find_history_start(frame), frame - 1
-        while at >= begin and (begin, at) not in self._memories:
-            at -= 1
+        begin = self.find_history_start(frame)
+        at = self._find_last_planned(begin, frame)
         if frame > begin and at + 1 < frame and self._memories.get((begin, at), True):
             self._plan_from(begin, at + 1)
         elif (begin, frame) not in self._plans:
@@ -158,15 +161,32 @@ class FrameRenderer:
         """What the frame before stores."""
         if frame <= begin:
             return {}
-        start = frame - 1
-        while start > begin and (begin, start) not in self._memories:
-            start -= 1
-        for at in range(start, frame):
+        if (begin, begin) not in self._memories:
+            self._plan_from(begin, begin)
+        for at in range(self._find_last_planned(begin, frame), frame):
             if (begin, at) not in self._memories:
                 self._plan_from(begin, at)
             if not self._memories[begin, at]:
                 return {}
         return self._memories[begin, frame - 1]
+
+    def _find_last_planned(self, begin: int, frame: int) -> int:
+        """The last frame before `frame` whose memories are known; `begin` if nothing is remembered, else one before it.
+
+        Raises UsageError for a frame too far from where its history begins.
+        """
+        if not self._memories.get((begin, begin)):
+            return begin if (begin, begin) in self._memories else begin - 1
+        if frame - begin > MAX_LEAD_FRAMES:
+            node = min(port.node for port in self._memories[begin, begin])
+            raise UsageError(
+                f"frame {frame}: node '{node}' remembers earlier frames, so {frame - begin:,} frames come before it, "
+                f"and at most {MAX_LEAD_FRAMES:,} can: set the pre-roll of the graph, or name a nearer frame"
+            )
+        at = frame - 1
+        while (begin, at) not in self._memories:
+            at -= 1
+        return at
 
 
 def _find_carried_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:

@@ -10,7 +10,16 @@ from types import SimpleNamespace
 import pytest
 from halation.errors import UsageError
 from halation.graph import frames as module
-from halation.graph.frames import MOST_FRAMES, Pattern, add_frame_number, check_numbered, format_frames, parse_frames
+from halation.graph.frames import (
+    MOST_FRAMES,
+    Pattern,
+    add_frame_number,
+    check_frame,
+    check_numbered,
+    format_frames,
+    list_range,
+    parse_frames,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -281,3 +290,15 @@ def test_nothing_is_evaluated_or_listed(monkeypatch):
     pattern = Pattern.parse("$HOME/`id`/{frame}.$F4.exr")
     assert pattern is not None and pattern.name(1) == "$HOME/`id`/{frame}.0001.exr"
     assert pattern.frame("{frame}.0001.exr") == 1
+
+
+def test_a_range_is_listed_up_to_a_million_frames() -> None:
+    assert list_range(-2, 1) == (-2, -1, 0, 1) and list_range(5, 1) == ()
+    with pytest.raises(UsageError, match="more than 1,000,000"):
+        list_range(1, 10**9)
+
+
+def test_a_frame_has_at_most_nine_digits() -> None:
+    assert check_frame(-999_999_999) == -999_999_999
+    with pytest.raises(UsageError, match="more than 9 digits"):
+        check_frame(10**9)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from halation.compiler import Library, installed_library
 from halation.compiler.library import parse
-from halation.errors import GraphError
+from halation.errors import GraphError, UsageError
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
 from halation.nodes.color.exposure import Exposure
@@ -161,3 +161,33 @@ def test_a_picture_that_is_there_needs_no_history(engine):
     expected = [2.0 * closed_form(0.5, 1, 6)]
     assert rendered(one, (6,)) == pytest.approx(expected) and engine.runner.counters.passes == before
     shown.close()
+
+
+class CountedLookups(dict):
+    """What is known of frames, and how often somebody asked. A billion questions take minutes."""
+
+    count = 0
+
+    def __contains__(self, key: object) -> bool:
+        self.count += 1
+        return super().__contains__(key)
+
+
+@pytest.mark.parametrize("number", [999_999_999, -999_999_999])
+def test_a_frame_far_away_is_not_walked_to(engine, number):
+    graph = Graph(settings=Settings((7, 5))).add_input("image", SHOWN).add("light", Exposure(stops=1.0))
+    graph = graph.add_output("out", Output()).connect(Port("inputs", "image"), Port("light", "image"))
+    frames = reel(engine, graph.connect(Port("light", "out"), Port("outputs", "out")))
+    frames._memories = CountedLookups()
+    assert frames.plan_next(number) is not None
+    assert rendered(frames, [number]) == [2.0 * np.float32(number)]
+    assert frames._memories.count < 20 and len(frames._memories) <= 2
+
+
+def test_too_many_frames_of_history_are_refused(engine):
+    frames = reel(engine, trail())
+    frames._memories = CountedLookups()
+    with pytest.raises(UsageError, match="remembers earlier frames, so 999,999,998 frames come before it"):
+        frames.render(999_999_999)
+    assert frames._memories.count < 20
+    assert rendered(reel(engine, trail(preroll=2)), [999_999_999]) == [np.float32(1e9)]

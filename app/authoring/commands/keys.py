@@ -13,6 +13,7 @@ from halation.nodes import Plain
 
 from ...errors import GraphError
 from ...graph import Animation, Expression, Graph, Key, Keys, Port
+from ...graph.frames import list_range
 from ..edits.elements import clean_text
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
@@ -121,7 +122,7 @@ class BakeKeys(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         check_not_animated_outside(document, self.port)
         first, last = document.frames
-        frames = tuple(range(first, last + 1) if self.frames is None else self.frames)
+        frames = list_range(first, last) if self.frames is None else tuple(self.frames)
         if not frames:
             raise GraphError(f"{self.port}: there are no frames to bake")
         values = {frame: document.value_then(self.port, frame) for frame in frames}

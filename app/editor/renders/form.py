@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from ...authoring.render_queue.queue import QueuedRender, RenderJob
 from ...errors import HalationError, UsageError
 from ...graph.frames import (
+    MOST_FRAMES,
     Pattern,
     add_frame_number,
     check_numbered,
@@ -86,7 +87,7 @@ class RenderForm:
         session = self.context.session
         first, last = session.frames
         extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
-        if first < last:
+        if first < last < first + MOST_FRAMES:
             extents["all frames"] = tuple(range(first, last + 1))
             low, high = self.context.timeline.span(session)
             if (low, high) != (first, last):

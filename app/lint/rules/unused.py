@@ -30,8 +30,8 @@ STALE_LAYOUT = Rule(
     "Remove the entries, or save the graph in the editor.",
 )
 
-_MOST_COUNTED = 1_000_000
-"""Nodes that are counted for all dead ends together, about half a second: many ends can share a long branch."""
+_MOST_COUNTED = 10_000
+"""Nodes that are counted for all dead ends together: many ends can share one long branch."""
 
 
 def unused_branch(sheet: GraphFacts) -> Iterator[Problem]:

@@ -1,0 +1,112 @@
+"""Checking takes work in proportion to the file. Work is counted in calls; how long it takes is for tests/bench."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+import tracemalloc
+from collections.abc import Callable
+
+import pytest
+from halation.cli import options
+from halation.document import limits
+from halation.errors import DocumentError
+from halation.lint.checking import MAX_FINDINGS, CheckReport, GraphChecker
+from halation.resources.sandbox import UNRESTRICTED
+from large_graphs import GRAPHS, TEXTS, chain, fan
+
+
+def check(text: str) -> CheckReport:
+    return GraphChecker(sandbox=UNRESTRICTED).check_text(text, "a.json", "")
+
+
+def count_calls(function: Callable[[], object]) -> int:
+    """How many functions are called meanwhile, those of C included."""
+    count = 0
+
+    def trace(frame: object, event: str, argument: object) -> None:
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(trace)
+    try:
+        function()
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.parametrize("name", sorted(GRAPHS))
+def test_four_times_the_graph_is_four_times_the_work(name: str) -> None:
+    check(json.dumps(chain(5)))  # what is made once
+    small, large = (json.dumps(GRAPHS[name](count)) for count in (150, 600))
+    ratio = count_calls(lambda: check(large)) / count_calls(lambda: check(small))
+    assert ratio < 5.0, f"{ratio:.1f} times the calls"
+
+
+@pytest.mark.parametrize("name", sorted(TEXTS))
+def test_memory_stays_in_proportion_to_the_text(name: str) -> None:
+    """Paths of parts were spelled in full: gigabytes for 40,000 brackets."""
+    text = TEXTS[name](40_000)
+    tracemalloc.start()
+    try:
+        assert check(text).findings
+        assert tracemalloc.get_traced_memory()[1] < 60 * len(text) + (20 << 20)
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_thousand_findings_are_reported_and_the_others_counted() -> None:
+    graph = fan(MAX_FINDINGS + 500)
+    for node in list(graph["nodes"].values())[1:]:
+        node["type"] = "exposre"
+    report = check(json.dumps(graph))
+    assert len(report.findings) == MAX_FINDINGS and report.omitted >= 500
+    assert report.code == 3 and "did you mean 'exposure'" in report.findings[1].problem.sentence
+
+
+def test_errors_are_not_left_out_for_warnings() -> None:
+    graph = fan(MAX_FINDINGS + 500)
+    graph["links"]["n7.image"] = "nothing.out"
+    report = check(json.dumps(graph))
+    assert any("nothing" in finding.problem.sentence for finding in report.findings) and report.code == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("[" * 100 + "]" * 100, "nest deeper than 64"),
+        (json.dumps({"halation": 1, "ui": {"k" * (limits.MAX_KEY + 1): 1}}), "has 1,001 characters"),
+        ('{"halation": 1, "ui": [' + "0," * limits.MAX_PARTS + "0]}", "more than 1,500,000 parts"),
+    ],
+    ids=["depth", "key", "parts"],
+)
+def test_what_is_too_large_is_refused(text: str, sentence: str) -> None:
+    (finding,) = check(text).findings
+    assert sentence in finding.problem.sentence and finding.code == 3
+
+
+def test_brackets_in_strings_are_not_parts() -> None:
+    report = check(json.dumps({**chain(2), "ui": {"note": "[{," * limits.MAX_PARTS}}))
+    assert report.code == 0
+
+
+class EndlessInput:
+    """Standard input that never ends. `count` bytes have been read."""
+
+    def __init__(self) -> None:
+        self.buffer, self.count = self, 0
+
+    def read(self, count: int = -1) -> bytes:
+        assert 0 <= count <= 2 * limits.MAX_BYTES, "all of it is read"
+        self.count += count
+        return b" " * count
+
+
+def test_standard_input_is_bounded_as_files_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "stdin", EndlessInput())
+    with pytest.raises(DocumentError, match="more than 32 MB"):
+        options.read_standard_input()
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(b'{"a": 1}')))
+    assert options.read_standard_input() == '{"a": 1}'
