@@ -188,6 +188,6 @@ def test_too_many_frames_of_history_are_refused(engine):
     frames = reel(engine, trail())
     frames._memories = CountedLookups()
     with pytest.raises(UsageError, match="remembers earlier frames, so 999,999,998 frames come before it"):
-        frames.render(999_999_999)
+        frames.render_frame(999_999_999)
     assert frames._memories.count < 20
     assert rendered(reel(engine, trail(preroll=2)), [999_999_999]) == [np.float32(1e9)]
