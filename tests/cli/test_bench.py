@@ -128,7 +128,7 @@ def test_one_slow_moment_fails_nothing():
         (("--fail-over", "1.2"), "--fail-over: name the file to compare with"),
         (("--compare", "BASE", "--fail-over", "fast"), "--fail-over fast: write a ratio above 0"),
         (("--compare", "BASE", "--fail-over", "-1"), "--fail-over -1: write a ratio above 0"),
-        (("--compare", "missing.json"), "--compare missing.json: it cannot be read (No such file or directory)"),
+        (("--compare", "missing.json"), "--compare missing.json: there is no such file"),
         (("--compare", "GRAPH"), "it is no measurement: make one with halation bench GRAPH --json"),
         (("--compare", "BASE", "--scale", "0.5"), "it was measured at 48x32 pixels, this is 24x16"),
     ],

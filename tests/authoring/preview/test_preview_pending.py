@@ -38,7 +38,7 @@ def test_nothing_is_compiled_until_it_is_known(engine, preview, graph):
             raise OverviewPending(path, lambda: bool(ready))
         return read_render(path, named, sandbox=UNRESTRICTED)
 
-    engine.pictures.look = look
+    engine.pictures.describer = look
     preview.want(graph, {"A": Port("render", "depth")})
     for _ in range(20):
         preview.work(0.01)
@@ -52,7 +52,7 @@ def test_another_wish_does_not_wait(engine, preview, graph):
     def never(path, named):
         raise OverviewPending(path, lambda: False)
 
-    engine.pictures.look = never
+    engine.pictures.describer = never
     preview.want(graph, {"A": Port("render", "depth")})
     preview.work(0.01)
     preview.want(Graph().add("plain", Constant()), {"A": Port("plain", "out")})
