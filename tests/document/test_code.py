@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from halation import document
 from halation.custom_nodes import CustomNode
+from halation.document import FORMAT
 from halation.errors import DocumentError
 from halation.graph import Graph, Unknown, problems
 from halation.resources.sandbox import UNRESTRICTED
@@ -26,7 +27,7 @@ def written(graph: Graph, id: str = "tint") -> CustomNode:
 def raw(**node: Any) -> str:
     import json
 
-    return json.dumps({"halation": 1, "nodes": {"tint": {"type": "glsl", **node}}})
+    return json.dumps({"halation": FORMAT, "nodes": {"tint": {"type": "glsl", **node}}})
 
 
 def test_code_stands_line_by_line() -> None:

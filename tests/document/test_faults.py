@@ -9,7 +9,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from halation.document import dumps, load, loads
+from halation.document import FORMAT, dumps, load, loads
 from halation.errors import DocumentError, GraphError
 from halation.graph import Graph
 from halation.resources.sandbox import UNRESTRICTED
@@ -161,7 +161,7 @@ def test_json_paths(body: str, path: str, says: str) -> None:
     )
 )
 def test_no_tree_is_a_traceback(tree: object) -> None:
-    document = {**tree, "halation": 1} if isinstance(tree, dict) else tree
+    document = {**tree, "halation": FORMAT} if isinstance(tree, dict) else tree
     try:
         assert isinstance(loads(json.dumps(document), catalogue=TOYS, sandbox=UNRESTRICTED), Graph)
     except DocumentError as error:

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.document import dumps, limits, load, loads, save
+from halation.document import FORMAT, dumps, limits, load, loads, save
 from halation.errors import DocumentError, OutputError
 from halation.graph import Graph, Group
 from halation.resources.sandbox import UNRESTRICTED
@@ -21,7 +21,7 @@ from toy_nodes import TOYS, Gain, small
 
 def write(path: Path, **sections: Any) -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({"halation": 1, **sections}))
+    path.write_text(json.dumps({"halation": FORMAT, **sections}))
     return path
 
 
@@ -128,7 +128,7 @@ class TestGroupFiles:
         assert inner.graph == small()
         assert inner.body().nodes["gain"] == Gain(gain=5.0)
         assert Path(inner.graph.folder) == tmp_path / "lib" / "deep"
-        assert json.loads(dumps(graph)) == {"halation": 1, "nodes": {"m": group("lib/middle.json")}}
+        assert json.loads(dumps(graph)) == {"halation": FORMAT, "nodes": {"m": group("lib/middle.json")}}
         assert loads(top.read_text(), "top.json", str(tmp_path), TOYS, sandbox=UNRESTRICTED) == graph
 
     def test_a_missing_file_names_both(self, tmp_path: Path) -> None:

@@ -125,7 +125,7 @@ def test_unknown_nodes_and_keys_are_kept_to_the_byte(seed: int) -> None:
 
 def test_where_unknown_keys_are_kept() -> None:
     raw = {
-        "halation": 1,
+        "halation": FORMAT,
         "author": "me",
         "settings": {"fps": 24},
         "nodes": {
@@ -147,7 +147,7 @@ def test_where_unknown_keys_are_kept() -> None:
     renamed = json.loads(dumps(graph.rename("a", "b")))
     assert renamed["nodes"]["b"] == raw["nodes"]["a"]
     assert json.loads(dumps(graph.remove("a").remove_input("i"))) == {
-        "halation": 1,
+        "halation": FORMAT,
         "author": "me",
         "settings": {"fps": 24},
         "nodes": {"z": {"type": "lens", "f": 2}},
@@ -184,9 +184,9 @@ def test_text_is_exact() -> None:
 
 def test_lines_are_as_long_as_they_may_be() -> None:
     """An entry that ends at column 100 stays whole, one column more breaks it."""
-    fits = {"halation": 1, "x": "y" * (WIDTH - 2 - len('"x": "",'))}
+    fits = {"halation": FORMAT, "x": "y" * (WIDTH - 2 - len('"x": "",'))}
     for length in range(70, 110):
-        document = {"a": {"k": "v" * length}, "halation": 1}
+        document = {"a": {"k": "v" * length}, "halation": FORMAT}
         line = '  "a": {"k": "' + "v" * length + '"},'
         assert (line in pretty(document)) == (len(line) <= WIDTH)
     assert max(map(len, pretty(fits).splitlines())) <= WIDTH
@@ -240,7 +240,7 @@ def test_inline_groups() -> None:
 
 
 def test_unknown_controls_of_groups_are_kept() -> None:
-    raw = {"halation": 1, "nodes": {"g": {"type": "group", "graph": {}, "values": {"gone": 1}}}}
+    raw = {"halation": FORMAT, "nodes": {"g": {"type": "group", "graph": {}, "values": {"gone": 1}}}}
     graph = read(json.dumps(raw))
     assert graph.extra["nodes.g.values"] == {"gone": 1}
     assert dumps(graph) == pretty({**raw, "nodes": {"g": raw["nodes"]["g"]}})

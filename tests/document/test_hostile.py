@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
+from halation.document import FORMAT
 from halation.errors import DocumentError
 from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
@@ -83,7 +84,7 @@ def test_any_json(tree: object) -> None:
 
 @given(st.dictionaries(st.sampled_from(KEYS[1:8]), TREES, max_size=6))
 def test_anything_in_the_place_of_a_section(sections: dict[str, object]) -> None:
-    survives(json.dumps({"halation": 1, **sections}))
+    survives(json.dumps({"halation": FORMAT, **sections}))
 
 
 @given(st.text())

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from edited_graphs import edit_randomly, make_graph, parse_graph
-from halation.document import dumps
+from halation.document import FORMAT, dumps
 from halation.document.diff_merge import (
     MergedGraph,
     PartPath,
@@ -147,7 +147,7 @@ def made(document: dict[str, Any], **changes: Any) -> Graph:
 
 
 BASE = {
-    "halation": 1,
+    "halation": FORMAT,
     "inputs": {"beauty": {"type": "Image"}},
     "outputs": {"image": {"type": "Image"}},
     "nodes": {
@@ -280,7 +280,7 @@ def test_links_that_only_together_make_a_loop() -> None:
 
 def test_code_goes_together_line_by_line() -> None:
     def coded(*code: str) -> Graph:
-        return parse_graph(json.dumps({"halation": 1, "nodes": {"wave": {"type": "later", "code": code}}}))
+        return parse_graph(json.dumps({"halation": FORMAT, "nodes": {"wave": {"type": "later", "code": code}}}))
 
     base = coded("a", "b", "c", "d", "e")
     found = merge_graphs(base, coded("A", "b", "c", "d", "e"), coded("a", "b", "c", "d", "E", "f"))

@@ -9,6 +9,7 @@ from random import Random
 
 import pytest
 from halation import document
+from halation.document import FORMAT
 from halation.document.schema import schema
 from halation.errors import DocumentError
 from halation.graph import Control, Expression, Graph, Group, Key, Keys, Port, problems
@@ -24,7 +25,7 @@ PRESETS = sorted((Path(__file__).parents[2] / "presets").glob("*.json"))
 SCHEMA = json.loads(json.dumps(schema(catalogue())))
 VALIDATOR = Draft202012Validator(SCHEMA)
 GRAPH = {
-    "halation": 1,
+    "halation": FORMAT,
     "inputs": {"beauty": {"type": "Image"}},
     "outputs": {"image": {"type": "Image"}},
     "nodes": {
@@ -201,5 +202,5 @@ def test_values_of_an_older_version_are_not_looked_at() -> None:
 
     validator = Draft202012Validator(schema({**TOYS, "gain": NewGain}))
     for version, valid in ((1, True), (2, True), (3, False), (4, False)):
-        tree = {"halation": 1, "nodes": {"a": {"type": "gain", "version": version, "values": {"gain": "much"}}}}
+        tree = {"halation": FORMAT, "nodes": {"a": {"type": "gain", "version": version, "values": {"gain": "much"}}}}
         assert validator.is_valid(tree) == valid
