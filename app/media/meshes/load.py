@@ -113,7 +113,8 @@ def _make_resolver(path: str, sandbox: Sandbox) -> Any:
                     return read_bytes(asset, sandbox)
             raise FileNotFoundError(name)
 
-    return SandboxedResolver(path)
+    # trimesh names objects by the file, and hashes their names as UTF-8
+    return SandboxedResolver(path if is_utf8(path) else str(Path(path).with_name("mesh")))
 
 
 def _read_part(scene: Any, node: str) -> MeshPart | None:
