@@ -14,6 +14,7 @@ from ..errors import InputError, UsageError
 from ..glsl import parse
 from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
+from ..resources.library_names import name_for_library
 from ..resources.sandbox import Sandbox
 from .config_files import make_sandboxed_files, may_name_files
 from .display import make_display_processor
@@ -101,9 +102,9 @@ def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
         config.setConfigIOProxy(files)
     api.ClearAllCaches()  # files that have changed are to be read again; a config would remember them, too
     direction = api.TRANSFORM_DIR_INVERSE if change.inverse else api.TRANSFORM_DIR_FORWARD
-    transform = api.FileTransform(change.path, interpolation=api.INTERP_BEST, direction=direction)
     try:
-        return config.getProcessor(transform)
+        with name_for_library(change.path) as name:
+            return config.getProcessor(api.FileTransform(name, interpolation=api.INTERP_BEST, direction=direction))
     except ocio_errors() as error:
         if files is not None and files.faults:
             raise InputError(f"{change.path}: names a file that may not be read: {files.faults[-1]}") from error

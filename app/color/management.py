@@ -27,6 +27,7 @@ from msgspec import Struct
 
 from ..errors import GraphError, HalationError, InputError, UsageError
 from ..resources.input_files import content_hash
+from ..resources.library_names import is_utf8
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .config_files import find_config_fault, open_config
 
@@ -235,6 +236,8 @@ class ColorManager:
             folder = Path(source).parent
             near = difflib.get_close_matches(Path(source).name, _list_names(folder), 1)
             raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
+        if not is_utf8(source):  # its tables lie beside it, so no link elsewhere can stand for it
+            raise self._error(f"{self._describe_source(source)}: no color config can have such a name: it is not UTF-8")
         try:
             if source.startswith("ocio://"):
                 return load_builtin_config(source)

@@ -97,12 +97,12 @@ def test_meshes_and_tables(folder, cli):
     assert len(load_mesh(SceneFile(str(mesh)), sandbox=UNRESTRICTED).indices) == 3
     table = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
     for name, content in (
-        (f"lut{ODD}.cube", table.encode()),
+        ("lut.cube", table.encode()),
         ("latin.cube", b"# caf\xe9\n" + table.encode()),
-        ("bad.cube", b"\xff\xfe" * 40),
+        ("bad.cube", table.encode() + b"caf\xe9 1 2\n"),
     ):
         (folder / name).write_bytes(content)
-        nodes = {"n": {"type": "lut_file", "values": {"file": str(folder / name)}}, "s": {"type": "noise"}}
+        nodes = {"n": {"type": "lut_file", "values": {"file": name}}, "s": {"type": "noise"}}
         graph = GRAPH | {"inputs": {}, "nodes": nodes, "links": {"outputs.image": "n.out", "n.image": "s.out"}}
         (folder / "lut.json").write_text(json.dumps(graph | {"settings": {"size": [8, 8]}}))
         ended = cli("render", folder / "lut.json", "-o", folder / "lut.exr")
