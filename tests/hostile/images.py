@@ -11,6 +11,7 @@ from tempfile import mkdtemp
 import numpy as np
 import OpenImageIO as oiio
 from cases import Case
+from relatives import write_relatives
 
 PICTURES = (
     "exr",
@@ -80,16 +81,22 @@ def write_corpus(folder: Path) -> list[Path]:
 
 
 def collect_files(collection: Path | None) -> list[Path]:
-    """Our own small files, or, where a folder is named, all files in it and below."""
+    """Our own small files and valid ones of rare kinds, or, where a folder is named, all files in it and below."""
     if collection is None:
-        return write_corpus(Path(mkdtemp(prefix="hostile-corpus-")))
+        rare = list(write_relatives(Path(mkdtemp(prefix="hostile-rare-"))))
+        return write_corpus(Path(mkdtemp(prefix="hostile-corpus-"))) + rare
     return sorted(path for path in collection.rglob("*") if path.is_file() and path.stat().st_size < 64 << 20)
 
 
 def build_cases(seed: int, count: int, collection: Path | None = None) -> Iterator[Case]:
-    """So many damaged copies; of a collection each file is tried once as it is, too."""
+    """So many cases: each file once as it is, as far as half of them go, then damaged copies of any.
+
+    Of our own files those that are whole are chosen by the seed.
+    """
     sources = collect_files(collection)
-    whole = len(sources) if collection else 0
+    whole = len(sources) if collection else min(len(sources), count // 2)
+    if not collection:
+        Random(f"images {seed}").shuffle(sources)
     for number in range(count):
         rng = Random(f"images {seed} {number}")
         source = sources[number] if number < whole else rng.choice(sources)
