@@ -14,6 +14,10 @@ UNFINISHED = re.compile(r"\.halation-|\.[0-9a-f]{8}\.tmp$")
 """Names of files that were begun and not finished."""
 
 
+CHATTER = re.compile(r"^(lib(png|jpeg|tiff|webp)|_?TIFF|JPEG|OpenEXR|OpenJPEG|Premature|Corrupt|Bogus).*", re.MULTILINE)
+"""What libraries print by themselves, beside the sentence of Halation."""
+
+
 @dataclass(frozen=True)
 class Case:
     """One command on files that `prepare` puts into an empty folder. `name` says how to make it again."""
@@ -56,6 +60,8 @@ def find_faults(case: Case, outcome: Outcome, folder: Path, most_memory: int) ->
         text = path.read_text("utf-8", "replace") if path.exists() else ""
         if "Traceback (most recent call last)" in text:
             faults.append(f"traceback: {text.strip().splitlines()[-1][:200]}")
+        if said := CHATTER.search(text):
+            faults.append(f"chatter: {said[0][:200]}")
         if "this is a bug in Halation" in text:
             faults.append(f"bug: {text.strip().splitlines()[-1][:200]}")
     if left := [path.name for path in folder.rglob("*") if UNFINISHED.search(path.name)]:
