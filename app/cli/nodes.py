@@ -20,6 +20,14 @@ def nodes(
     id: Annotated[
         str, typer.Argument(help="A node, or a code file (FILE.fs, FILE.glsl); without it all nodes are listed.")
     ] = "",
+    check: Annotated[
+        bool,
+        typer.Option(
+            "--check",
+            help="Check a node, or all nodes of a plug-in (by its package or import name), or of all plug-ins: "
+            "tooltip, units, ranges, shader, pixels. Exits with 1 if something is wrong.",
+        ),
+    ] = False,
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
     ] = False,
@@ -31,6 +39,10 @@ def nodes(
 
     The description has its sockets, values, ranges and units, and the passes that it compiles to.
     """
+    if check:
+        from .node_check import check_nodes
+
+        return check_nodes(id, as_json, sandbox)
     from halation.nodes import catalogue, plugins
 
     from ..errors import UsageError

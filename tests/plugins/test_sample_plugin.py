@@ -102,3 +102,71 @@ def test_one_that_fails_to_import_is_named(site: Path, tmp_path: Path) -> None:
     assert check.returncode == 0 and sentence in check.stderr
     report = json.loads(halation(broken, "check", graph, "--json").stdout)
     assert report["refused_plugins"][0]["package"] == "acme-glow"
+
+
+def test_its_nodes_keep_what_nodes_promise(site: Path) -> None:
+    result = halation(site, "nodes", "--check", "acme-glow")
+    assert (result.returncode, result.stdout) == (0, "acme_glow.soft_glow: ok\n"), result
+    assert halation(site, "nodes", "--check").stdout == result.stdout
+    assert json.loads(halation(site, "nodes", "--check", "acme_glow", "--json").stdout) == {
+        "faults": {"acme_glow.soft_glow": []}
+    }
+
+
+CLASS = """from typing import Annotated
+
+from halation.nodes import Image, Pointwise, Slider
+
+
+class SoftGlow(Pointwise):
+    \"\"\"Glow.\"\"\"
+
+    image = Image()
+    amount: Annotated[float, Slider(0.0, 1.0, unit="ratio")] = 0.5
+"""
+SHADER = "vec4 acme_glow_soft_glow(vec4 image, float amount) { return BODY; }\n"
+FAULTY = {
+    "tooltip": (CLASS.replace('    """Glow."""\n\n', ""), SHADER, "its class has no docstring, which is the tooltip"),
+    "sentence": (CLASS.replace("Glow.", "Glow"), SHADER, "is no sentence"),
+    "range": (CLASS.replace("= 0.5", "= 0.5").replace("0.0, 1.0", "1.0, 0.0"), SHADER, "has a slider from 1 to 0"),
+    "default": (
+        CLASS.replace('"ratio"', '"ratio", maximum=1.0').replace("= 0.5", "= 7.0"),
+        SHADER,
+        "has the default 7.0",
+    ),
+    "signature": (CLASS, SHADER.replace("float", "vec4"), "vec4 acme_glow_soft_glow(vec4 image, float amount)"),
+    "no shader": (CLASS, "", "there is no function 'acme_glow_soft_glow' in it"),
+    "GLSL": (CLASS, SHADER.replace("BODY", "shade"), "soft_glow.glsl, line 1: error: `shade' undeclared"),
+    "include": (CLASS, '#include "lib/colour.glsl"\n' + SHADER, "line 1: #include"),
+    "NaN": (CLASS, SHADER.replace("BODY", "image * amount"), "use finite()"),
+    "alpha": (
+        CLASS,
+        '#include "lib/finite.glsl"\n'
+        + SHADER.replace("BODY", "vec4(finite(image).rgb * finite(image).rgb * finite(amount), finite(image).a)"),
+        "use straight() and premultiplied() of lib/alpha.glsl",
+    ),
+    "a name of GLSL": (
+        CLASS,
+        "float acme_glow_sum(float half) { return half; }\n" + SHADER.replace("BODY", "image"),
+        "line 1: the parameter 'half' has a name of GLSL",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", FAULTY)
+def test_what_a_node_does_not_keep_is_said(site: Path, tmp_path: Path, case: str) -> None:
+    copy = shutil.copytree(site, tmp_path / "site")
+    code, shader, sentence = FAULTY[case]
+    (copy / "acme_glow" / "nodes" / "glow" / "soft_glow.py").write_text(code)
+    (copy / "acme_glow" / "shaders" / "glow" / "soft_glow.glsl").write_text(shader)
+    result = halation(copy, "nodes", "--check")
+    assert result.returncode == 1 and sentence in result.stdout, result
+
+
+def test_a_plugin_that_cannot_be_loaded_keeps_nothing(site: Path, tmp_path: Path) -> None:
+    copy = shutil.copytree(site, tmp_path / "site")
+    (copy / "acme_glow" / "__init__.py").write_text("import no_such_library\n")
+    result = halation(copy, "nodes", "--check", "acme-glow")
+    assert result.returncode == 1
+    assert result.stdout.startswith("acme-glow 1.2.0: it cannot be loaded: acme_glow/__init__.py, line 1: Module")
+    assert halation(copy, "nodes", "--check", "acme-glaw").returncode == 2

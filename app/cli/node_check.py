@@ -1,0 +1,67 @@
+"""`halation nodes --check`: what nodes of plug-ins promise, and whether they keep it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from ..errors import UsageError
+from ..resources.sandbox import Sandbox
+from .outcome import print_json, print_note
+
+if TYPE_CHECKING:
+    from halation.nodes import Node, Plugin
+
+
+def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
+    """Check the nodes that a name stands for, print what is wrong, and return the exit code. Raises UsageError."""
+    from halation.nodes import plugins
+
+    from ..renderer import Renderer, open_device
+    from .node_promises import find_declaration_faults, find_render_faults, find_shader_faults
+
+    classes, chosen = _choose_nodes(name, plugins())
+    faults = {str(plugin): [f"it cannot be loaded: {plugin.fault}"] for plugin in chosen if plugin.fault}
+    renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
+    try:
+        for id, node in classes.items():
+            faults[id] = [*find_declaration_faults(node), *find_shader_faults(node)]
+            faults[id] += () if faults[id] else find_render_faults(renderer, node)
+    finally:
+        renderer.close()
+    for plugin in chosen:
+        faults |= {name: sentences for name, sentences in _find_file_faults(plugin) if sentences}
+    if as_json:
+        print_json({"faults": faults})
+    else:
+        for subject, sentences in faults.items():
+            print(*(f"{subject}: {sentence}" for sentence in sentences or ("ok",)), sep="\n")
+        count = sum(map(bool, faults.values()))
+        print_note(f"{len(classes)} node{'' if len(classes) == 1 else 's'}: {count or 'nothing'} to mend")
+    return 1 if any(faults.values()) else 0
+
+
+def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, type[Node]], list[Plugin]]:
+    """The nodes to check by id, and the plug-ins that are checked as a whole. Raises UsageError."""
+    from halation.nodes import catalogue
+
+    from ..graph import did_you_mean
+
+    if name in catalogue():
+        return {name: catalogue()[name]}, []
+    chosen = [plugin for plugin in plugins if not name or name in (plugin.package, plugin.namespace)]
+    if not chosen and not name:
+        raise UsageError("no plug-in is installed: name a node, such as halation nodes bloom --check")
+    if not chosen:
+        names = [plugin.package for plugin in plugins]
+        raise UsageError(f"there is no node and no plug-in '{name}'{did_you_mean(name, [*names, *catalogue()])}")
+    return {id: node for plugin in chosen for id, node in plugin.nodes.items()}, chosen
+
+
+def _find_file_faults(plugin: Plugin) -> Iterator[tuple[str, list[str]]]:
+    """What is wrong in each shader file of a plug-in."""
+    from ..compiler import installed_library
+    from .node_promises import find_file_faults
+
+    names = [name for name in installed_library().texts if name.startswith(f"{plugin.namespace}/")]
+    yield from ((name, list(find_file_faults(name, names))) for name in names)
