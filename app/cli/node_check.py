@@ -17,8 +17,8 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
     """Check the nodes that a name stands for, print what is wrong, and return the exit code. Raises UsageError."""
     from halation.nodes import plugins
 
+    from ..regression.node_promises import find_declaration_faults, find_render_faults, find_shader_faults
     from ..renderer import Renderer, open_device
-    from .node_promises import find_declaration_faults, find_render_faults, find_shader_faults
 
     classes, chosen = _choose_nodes(name, plugins())
     faults = {str(plugin): [f"it cannot be loaded: {plugin.fault}"] for plugin in chosen if plugin.fault}
@@ -61,7 +61,7 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
 def _find_file_faults(plugin: Plugin) -> Iterator[tuple[str, list[str]]]:
     """What is wrong in each shader file of a plug-in."""
     from ..compiler import installed_library
-    from .node_promises import find_file_faults
+    from ..regression.node_promises import find_file_faults
 
     names = [name for name in installed_library().texts if name.startswith(f"{plugin.namespace}/")]
     yield from ((name, list(find_file_faults(name, names))) for name in names)

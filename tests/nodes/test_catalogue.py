@@ -7,7 +7,9 @@ import re
 from pathlib import Path
 
 import pytest
-from halation.cli.node_promises import (
+from halation.compiler import installed_library
+from halation.nodes import Filter, Kind, Node, Pointwise, built_in_nodes
+from halation.regression.node_promises import (
     TRIALS,
     can_be_tried,
     find_changing_values,
@@ -15,8 +17,6 @@ from halation.cli.node_promises import (
     find_file_faults,
     find_shader_faults,
 )
-from halation.compiler import installed_library
-from halation.nodes import Filter, Kind, Node, Pointwise, built_in_nodes
 
 ROOT = Path(__file__).parents[2]
 NODES = list(built_in_nodes().values())
