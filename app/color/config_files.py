@@ -26,6 +26,9 @@ _BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
 """White space and marks of byte order (XML 1.0, section 2.3 and appendix F), with the zeros of UTF-16 and UTF-32."""
 
 
+_NO_TABLE = b"no table"
+"""What OpenColorIO is given in place of a file that it may not read."""
+
 _NO_TEXT = "\N{REPLACEMENT CHARACTER}"
 
 
@@ -92,21 +95,22 @@ def _define_sandboxed_files() -> type[Any]:
 
         def getFastLutFileHash(self, path: str) -> str:
             """A mark of the version of a file; "" for one that is not there or may not be read."""
-            if not self._sandbox.fault(path) and (Path(path).is_dir() or not Path(path).exists()):
-                return ""
             try:
-                return fingerprint(path, self._sandbox)
+                is_file = bool(self._sandbox.fault(path)) or (Path(path).exists() and not Path(path).is_dir())
+                return fingerprint(path, self._sandbox) if is_file else ""
+            except (OSError, ValueError):
+                return ""
             except InputError as fault:
                 self.faults.append(str(fault))
                 return ""
 
         def getLutData(self, path: str) -> list[int]:
-            """The bytes of a file."""
+            """The bytes of a file; never none, and nothing is raised: OpenColorIO 2.6 would open the file itself."""
             try:
-                return list(read_bytes(path, self._sandbox))
+                return list(read_bytes(path, self._sandbox) or _NO_TABLE)
             except InputError as fault:
                 self.faults.append(str(fault))
-                return []
+                return list(_NO_TABLE)
 
     return SandboxedFiles
 
