@@ -245,12 +245,8 @@ def panels(ui: Ui) -> Screens:
 
 def make_render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
     """A render to files as the panel sees it, without a process."""
-    made = QueuedRender(
-        QueuedJob(
-            RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1)), sandbox=UNRESTRICTED),
-            Graph(),
-        )
-    )
+    frames, files = tuple(range(1, total + 1)), (("image", str(place)),)
+    made = QueuedRender(QueuedJob(RenderJob(sandbox=UNRESTRICTED, destinations=files, frames=frames), Graph()))
     made.state, made.done = state, done
     made.started_at, made.ended_at = 1.0, 0.0 if state in ("running", "waiting") else 43.0
     made.written_files = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))

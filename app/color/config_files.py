@@ -133,8 +133,8 @@ def _find_tables(config: Any) -> Iterator[str]:
     for source in dict.fromkeys(source for one in transforms for source in _find_sources(api, one)):
         try:
             yield context.resolveFileLocation(source)
-        except api.Exception:
-            yield context.resolveStringVar(source)
+        except (api.Exception, api.ExceptionMissingFile):
+            yield str(Path(config.getWorkingDir(), context.resolveStringVar(source)))
 
 
 def _find_sources(api: Any, transform: Any) -> Iterator[str]:

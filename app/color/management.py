@@ -118,7 +118,8 @@ class ColorManager:
         if not space.own and self.is_chosen:
             self._check_bridge(space)
         config = self.spaces if space.own else load_studio_config()
-        if not config.isColorSpaceLinear(space.name, load_ocio().REFERENCE_SPACE_SCENE):
+        reference = load_ocio().REFERENCE_SPACE_SCENE
+        if not self._run(lambda: config.isColorSpaceLinear(space.name, reference)):
             raise GraphError(
                 f"settings.color.working: '{self._working_name or space.name}' is not scene-linear: light is added and "
                 "blurred in the working space; choose one such as ACEScg"

@@ -7,13 +7,17 @@ watched by the system (inotify), not guessed from what comes out.
 from __future__ import annotations
 
 import json
+import os
+import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from random import Random
 
 import images
 from cases import Case
+from halation.document import records
 from halation.nodes import Node, catalogue
+from msgspec import Struct, structs
 
 Tree = dict[str, object]
 WAYS = (
@@ -27,6 +31,23 @@ WAYS = (
     "chain/",
 )
 """How a path leads out: up, by links, by links to links, whole."""
+
+SPECIAL = ("fifo", "socket", "device", "fifolink", "devicelink")
+"""What lies in the jail in place of a file of each ending, and would be waited for or never end: see `make_special`."""
+
+LISTED = frozenset({"InputRecord.file", "GroupRecord.path", "CodeRecord.file", "ColorRecord.config"})
+"""The fields of the format that name files, beside values of nodes. `fields` has graphs for each of them."""
+
+
+def find_path_fields() -> frozenset[str]:
+    """The fields of records of the format that name files, by their names: a new one has to be listed above."""
+    return frozenset(
+        f"{name}.{field.name}"
+        for name, record in vars(records).items()
+        if isinstance(record, type) and issubclass(record, Struct)
+        for field in structs.fields(record)
+        if field.name in ("file", "path", "config")
+    )
 
 
 def path_values() -> Iterator[tuple[type[Node], str]]:
@@ -110,6 +131,10 @@ def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
         config = CONFIG.replace("TRANSFORM", transform)
         settings = {"size": [16, 16], "color": {"config": "a.ocio", "working": "looked"}}
         yield "table of a config", {"a.ocio": config}, _wrap({"type": "noise"}, "out", settings=settings)
+    for part in CONFIG_PARTS:
+        settings = {"size": [16, 16], "color": {"config": "a.ocio"}}
+        tree = _wrap({"type": "noise"}, "out", settings=settings, outputs={"image": {"type": "Image", "view": "v"}})
+        yield "table of another part of a config", {"a.ocio": part.replace("NAME", name)}, tree
     moved = CONFIG.replace("search_path: .", f"search_path: {name.rpartition('/')[0] or '.'}").replace(
         "TRANSFORM", "!<FileTransform> {src: secret.cube}"
     )
@@ -153,6 +178,42 @@ colorspaces:
 """
 
 
+_LOOK = "looks:\n  - !<Look> {name: l, process_space: looked, transform: TABLE}\ndisplays:"
+_NAMED = "named_transforms:\n  - !<NamedTransform> {name: t, transform: TABLE}\ncolorspaces:"
+_DEEP = "!<GroupTransform> {children: [!<GroupTransform> {children: [TABLE]}]}"
+_PARTS = (
+    CONFIG.replace("displays:", _LOOK).replace("colorspace: looked}", "colorspace: looked, looks: l}"),
+    CONFIG.replace("roles:", "environment: {WHERE: NAME.cube}\nroles:").replace("TRANSFORM", "TABLE_BY_VARIABLE"),
+    CONFIG.replace("colorspaces:", _NAMED).replace("{name: v, colorspace: looked}", "{name: v, colorspace: t}"),
+    CONFIG.replace("TRANSFORM", _DEEP),
+)
+CONFIG_PARTS = tuple(
+    part.replace("TRANSFORM", "!<CDLTransform> {slope: [2, 2, 2]}")
+    .replace("TABLE_BY_VARIABLE", "!<FileTransform> {src: $WHERE}")
+    .replace("TABLE", "!<FileTransform> {src: NAME.cube}")
+    for part in _PARTS
+)
+"""Configs that name a table in a look, by a variable, in a named transform and deep inside of groups."""
+
+
+ENDINGS = (
+    *("exr", "0001.exr", "png", "mov", "cube", "clf", "ctf", "ocio"),
+    *("obj", "mtl", "gltf", "bin", "ply", "json", "glsl", "fs"),
+)
+"""Of everything that a field or a file of the jail names."""
+
+
+def make_special(jail: Path) -> None:
+    """FIFOs, sockets and devices of every ending, and links to them."""
+    os.mkfifo(jail / "pipe")
+    for ending in ENDINGS:
+        os.mkfifo(jail / f"fifo.{ending}")
+        os.mknod(jail / f"socket.{ending}", stat.S_IFSOCK | 0o600)
+        (jail / f"device.{ending}").symlink_to("/dev/zero")
+        (jail / f"fifolink.{ending}").symlink_to("pipe")
+        (jail / f"devicelink.{ending}").symlink_to(f"device.{ending}")
+
+
 def make_yard(folder: Path) -> None:
     """jail/ with links that lead out, and secret/ beside it with a file of every kind."""
     jail, secret = folder / "jail", folder / "secret"
@@ -177,11 +238,28 @@ COMMANDS = (
     ("check", "jail/graph.json", "--root", "jail"),
     ("explain", "jail/graph.json", "--root", "jail"),
 )
+INFO = ("exr", "mov")
+"""Endings of what `info` looks at."""
 
 
 def build_cases(seed: int, count: int) -> Iterator[Case]:
     """All fields in all ways by all commands, in an order by the seed; `count` of them, 0 for all."""
+    assert find_path_fields() == LISTED, f"path fields that no case covers: {find_path_fields() ^ LISTED}"
     plans: list[tuple[str, str, Callable[[Path], None], tuple[str, ...]]] = []
+    for way in WAYS:
+        for ending in INFO:
+            path = f"jail/{way}secret.{ending}" if "{" not in way else f"secret/secret.{ending}"
+            plans.append((f"info ({ending})", way, make_yard, ("info", path, "--root", "jail")))
+    for name in SPECIAL:
+        for ending in INFO:
+            plans.append((f"info ({ending})", name, _make_special_yard, ("info", f"jail/{name}.{ending}")))
+        for words in COMMANDS:
+            place = words.index("--root")
+            for root in (words, words[:place] + words[place + 2 :]):
+                for label, ending, _ in fields("x"):
+                    plans.append((f"{label} ({ending})", name, _write_special(name, label, ending), root))
+                for number, (label, _, _) in enumerate(inner_files("x")):
+                    plans.append((label, name, _write_special_inner(name, number), root))
     for way in WAYS:
         for words in COMMANDS:
             for label, ending, _ in fields("x"):
@@ -191,6 +269,31 @@ def build_cases(seed: int, count: int) -> Iterator[Case]:
     Random(f"jails {seed}").shuffle(plans)
     for number, (label, way, prepare, words) in enumerate(plans[: count or None]):
         yield Case(f"jail-{seed}-{number} {label} by {way} {words[0]}", prepare, words, forbidden="secret")
+
+
+def _make_special_yard(folder: Path) -> None:
+    make_yard(folder)
+    make_special(folder / "jail")
+
+
+def _write_special(name: str, label: str, ending: str) -> Callable[[Path], None]:
+    def prepare(folder: Path) -> None:
+        _make_special_yard(folder)
+        tree = next(tree for its, end, tree in fields(name) if (its, end) == (label, ending))
+        (folder / "jail" / "graph.json").write_text(json.dumps(tree))
+
+    return prepare
+
+
+def _write_special_inner(name: str, number: int) -> Callable[[Path], None]:
+    def prepare(folder: Path) -> None:
+        _make_special_yard(folder)
+        _, files, tree = list(inner_files(str(folder / "jail" / name)))[number]
+        for file, text in files.items():
+            (folder / "jail" / file).write_text(text)
+        (folder / "jail" / "graph.json").write_text(json.dumps(tree))
+
+    return prepare
 
 
 def _named(way: str, folder: Path) -> str:

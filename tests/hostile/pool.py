@@ -115,7 +115,9 @@ def run_cases(cases: Iterable[Case], jobs: int, keep: Path | None, patience: flo
                 faults += [f"escape: {name} was opened" for name in sorted(watch.names())]
                 watch.close()
             if faults and keep:
-                shutil.copytree(folder, keep / case.name.replace("/", "_"), dirs_exist_ok=True, symlinks=True)
+                shutil.copytree(
+                    folder, keep / case.name.replace("/", "_"), ignore=_list_special, dirs_exist_ok=True, symlinks=True
+                )
             return case, outcome, faults
         finally:
             shutil.rmtree(folder, ignore_errors=True)
@@ -148,3 +150,9 @@ def _in_turn(
     while waiting:
         yield waiting.pop(0).result()
         waiting += [threads.submit(run, case) for case in islice(rest, 1)]
+
+
+def _list_special(folder: str, names: list[str]) -> list[str]:
+    """What nobody can copy: FIFOs and sockets."""
+    paths = (Path(folder, name) for name in names)
+    return [path.name for path in paths if not (path.is_symlink() or path.is_file() or path.is_dir())]

@@ -270,12 +270,9 @@ class Session(OpenDocument):
     @property
     def recoverable(self) -> Graph:
         """The document with drafts in it: nothing else would bring them back."""
-        drafts = self.drafts
-        if not drafts:
-            return self.root
-        return self._memo.get(
-            "recoverable", (self.root, drafts), lambda: coding.embed_drafts(self.root, drafts, sandbox=self.sandbox)
-        )
+        root, drafts, sandbox = self.root, self.drafts, self.sandbox
+        make = (lambda: coding.embed_drafts(root, drafts, sandbox)) if drafts else (lambda: root)
+        return self._memo.get("recoverable", (root, drafts), make)
 
     def export_code(self, id: str, path: str | Path) -> None:
         """Write the code of a node to a file, from which it comes from then on. Raises OutputError."""
