@@ -189,11 +189,15 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
             process.stdin.close()
         while True:
             try:
-                return process.wait(CHECK_INTERVAL)
+                code = process.wait(CHECK_INTERVAL)
             except subprocess.TimeoutExpired:
                 if fault := watchdog.check(process.pid):
                     process.kill()
                     raise fault from None
+                continue
+            if code < 0:
+                raise watchdog.explain_signal(-code)
+            return code
 
 
 @contextmanager

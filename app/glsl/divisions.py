@@ -3,7 +3,8 @@
 The smallest int divided by -1, and anything divided by 0, has no result. Where a driver computes such a division while
 it compiles, the processor stops the process. So `a / b` becomes `halation_quotient(a, b)`, `a % b`
 `halation_remainder(a, b)`: functions of `lib/whole.glsl` that never divide by 0 or -1. Floats are left as they are,
-and so are divisions by a constant that is neither.
+and so are divisions by a constant that is neither. Constants whose divisor only the driver can tell become variables,
+since constants cannot be made by functions.
 """
 
 from __future__ import annotations
@@ -52,6 +53,8 @@ class _DivisionGuard:
         self.reader = OperandReader(tokens, partners, names)
         self.starts: dict[int, int] = {}
         """Where the chain of products before an operator begins."""
+        self.variables: set[int] = set()
+        """The `const` of constants that are made by functions."""
         self.floats: dict[int, bool] = {}
         """By where a chain of products begins: whether one of its factors so far is a float."""
 
@@ -81,6 +84,8 @@ class _DivisionGuard:
             appended.setdefault(end - 1, []).append(")")
         if first >= last:
             return ""
+        if self.variables:
+            replaced |= dict.fromkeys(self._list_variables(), "")
         whole = last - first == len(self.tokens)
         parts, place = list[str](), 0 if whole else self.tokens[first].start
         for at in range(first, last):
@@ -173,9 +178,15 @@ class _DivisionGuard:
             return True
         if _is_safe(divisor):
             return True
-        if self._is_constant(at):
-            self._check_constant(divisor, self.reader.read(start, at), at)
-            return True
+        qualifier = self._find_qualifier(at)
+        if qualifier is not None:
+            line = count_line(self.code, self.tokens[at].start)
+            self._check_constant(divisor, self.reader.read(start, at), line)
+            if self.tokens[qualifier].text == "case":
+                raise GlslFault(line, "a case is divided by what only the driver can tell: write a number")
+            if divisor.number is not None:
+                return True
+            self.variables.add(qualifier)
         return False
 
     def _is_float(self, start: int, at: int) -> bool:
@@ -189,18 +200,40 @@ class _DivisionGuard:
                 factor = self._operand_start(factor - 1)
         return self.floats[start]
 
-    def _is_constant(self, at: int) -> bool:
-        """True where functions may not be called: in constants and the cases of a switch."""
+    def _find_qualifier(self, at: int) -> int | None:
+        """The `const` or `case` of a statement where functions may not be called, if it has one."""
         while at >= 0 and self.tokens[at].text not in (";", "{", "}"):
             if self.tokens[at].text in ("const", "case"):
-                return True
+                return at
             at = self.partners[at] - 1 if self.tokens[at].text in (")", "]") and at in self.partners else at - 1
-        return False
+        return None
 
-    def _check_constant(self, divisor: Operand, dividend: Operand, at: int) -> None:
+    def _list_variables(self) -> set[int]:
+        """The `const` of each constant that becomes a variable: its value is made by functions, or by such a one."""
+        statements = [(at, self._assigned_names(at)) for at, token in enumerate(self.tokens) if token.text == "const"]
+        variables, names, before = self.variables, set[str](), -1
+        while len(variables) > before:
+            before = len(variables)
+            for at, (declared, read) in statements:
+                if at in variables or read & names:
+                    variables.add(at)
+                    names |= declared
+        return variables
+
+    def _assigned_names(self, at: int) -> tuple[set[str], set[str]]:
+        """The names that a statement declares, and all that it says."""
+        declared, read = set[str](), set[str]()
+        while at + 1 < len(self.tokens) and self.tokens[at].text != ";":
+            if self.tokens[at].is_word:
+                read.add(self.tokens[at].text)
+                if self.tokens[at + 1].text in ("=", "["):
+                    declared.add(self.tokens[at].text)
+            at += 1
+        return declared, read
+
+    def _check_constant(self, divisor: Operand, dividend: Operand, line: int) -> None:
         """Raise GlslFault for a constant that would be divided by 0, or by -1 where it may be the smallest int."""
         numbers = divisor.number if isinstance(divisor.number, tuple) else (divisor.number,)
-        line = count_line(self.code, self.tokens[at].start)
         if 0 in numbers:
             raise GlslFault(line, "a whole number is divided by 0")
         if -1 in numbers and (not isinstance(dividend.number, int) or dividend.number == _SMALLEST):

@@ -106,6 +106,41 @@ def test_mixed_numbers(run: Run) -> None:
     assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
 
 
+@pytest.mark.parametrize(
+    "divisor",
+    [
+        "clamp(-9, -1, 3)",
+        "-abs(1)",
+        "sign(-3)",
+        "int(cos(3.14159265))",
+        "t[0]",
+        "s.a",
+        "ivec2(-1, 0)[0]",
+        "-t.length()",
+    ],
+)
+@pytest.mark.parametrize("sign", ["/", "%"])
+def test_constants_that_only_the_driver_can_tell(run: Run, divisor: str, sign: str) -> None:
+    """They are variables then, and so are constants that are made of them."""
+    text = f"""struct S {{ int a; }};
+    const S s = S(-1);
+    const int t[1] = int[1](-1);
+    const int q = (-2147483647 - 1) {sign} {divisor}, other = 3;
+    const float twice = float(q) * 2.0;
+    vec4 f(vec4 image) {{
+        const int inner = q {sign} {divisor};
+        return q == {"-2147483647 - 1" if sign == "/" else "0"} && twice == float(q) * 2.0 && other == 3
+            && inner == q ? vec4(1.0) : vec4(0.0);
+    }}"""
+    assert (run(node_type(Code("glsl", text))(), PIXEL) == 1.0).all()
+
+
+def test_a_case_that_only_the_driver_can_tell() -> None:
+    text = "vec4 f(vec4 image) {\n switch (3) { case 8 / int(cos(3.14159265)): return image; }\n return image; }"
+    with pytest.raises(CodeFault, match="line 2: a case is divided by"):
+        node_type(Code("glsl", text))
+
+
 @pytest.mark.parametrize("sign", ["/", "%"])
 def test_constants_that_have_no_result_are_refused(sign: str) -> None:
     for divisor in ("0", "-1", "(1 - 2)", "N"):
