@@ -51,13 +51,13 @@ _CONTROL = frozenset({"if", "for", "while", "do", "switch", "else"})
 _COUNTED = _OPERATORS | _PREFIXES | _ASSIGNMENTS | _CONTROL | {".", "[", "?", "case", ",", ";"}
 
 
-def check_size(code: str, given: Mapping[str, str] | None = None) -> None:
+def check_size(code: str, outside_types: Mapping[str, str] | None = None) -> None:
     """Raise GlslFault with the line where code without comments and macros is too large.
 
-    `given` are the types of names that come from elsewhere.
+    `outside_types` are the types of names that come from elsewhere.
     """
     tokens = read_tokens(mask_directives(code))
-    bounds = _Bounds(code, tokens, match_brackets(tokens, code, DEEPEST_BRACKETS), given or {})
+    bounds = _Bounds(code, tokens, match_brackets(tokens, code, DEEPEST_BRACKETS), outside_types or {})
     bounds.check_statements()
     bounds.check_arrays()
     bounds.check_calls()
@@ -67,10 +67,10 @@ class _Bounds:
     """What the checks share."""
 
     def __init__(
-        self, code: str, tokens: Sequence[GlslToken], partners: Mapping[int, int], given: Mapping[str, str]
+        self, code: str, tokens: Sequence[GlslToken], partners: Mapping[int, int], outside_types: Mapping[str, str]
     ) -> None:
         self.code, self.tokens, self.partners = code, tokens, partners
-        self.names = collect_names(tokens, partners, given)
+        self.names = collect_names(tokens, partners, outside_types)
         self.reader = OperandReader(tokens, partners, self.names)
         self.sizes: dict[str, int] = {}
         """The floats of each struct."""

@@ -60,22 +60,22 @@ class _Condition:
 
     def evaluate(self) -> int:
         """The number of the whole condition."""
-        number = self._level(0, 0)
+        number = self._read_level(0, 0)
         if self.at < len(self.tokens):
-            raise self._fault()
+            raise self._make_fault()
         return number
 
-    def _fault(self) -> GlslFault:
+    def _make_fault(self) -> GlslFault:
         there = f" at '{self.tokens[self.at]}'" if self.at < len(self.tokens) else ""
         return GlslFault(self.line, f"the condition cannot be read{there}")
 
-    def _level(self, level: int, depth: int) -> int:
+    def _read_level(self, level: int, depth: int) -> int:
         if level == len(_LEVELS):
-            return self._unary(depth)
-        number = self._level(level + 1, depth)
+            return self._read_unary(depth)
+        number = self._read_level(level + 1, depth)
         while self.at < len(self.tokens) and (sign := self.tokens[self.at]) in _LEVELS[level]:
             self.at += 1
-            right = self._level(level + 1, depth)
+            right = self._read_level(level + 1, depth)
             if sign in "/%" and right == 0:
                 # What is not computed is not divided: `defined(N) && 8 / N`.
                 number = 0
@@ -83,18 +83,18 @@ class _Condition:
             number = (_COMPUTE[sign](number, right) + (1 << 31)) % (1 << 32) - (1 << 31)
         return number
 
-    def _unary(self, depth: int) -> int:
+    def _read_unary(self, depth: int) -> int:
         if self.at >= len(self.tokens) or depth > DEEPEST:
-            raise self._fault()
+            raise self._make_fault()
         token = self.tokens[self.at]
         self.at += 1
         if token in ("-", "+", "!", "~"):
-            number = self._unary(depth + 1)
+            number = self._read_unary(depth + 1)
             return {"-": -number, "+": number, "!": int(not number), "~": ~number}[token]
         if token == "(":
-            number = self._level(0, depth + 1)
+            number = self._read_level(0, depth + 1)
             if self.tokens[self.at : self.at + 1] != [")"]:
-                raise self._fault()
+                raise self._make_fault()
             self.at += 1
             return number
         if token[0].isdigit():
@@ -102,8 +102,8 @@ class _Condition:
                 digits = token.rstrip("uU")
                 return int(digits, 8 if digits[0] == "0" and digits.isdigit() else 0)
             except ValueError:
-                raise self._fault() from None
+                raise self._make_fault() from None
         if token[0].isalpha() or token[0] == "_":
             return 0
         self.at -= 1
-        raise self._fault()
+        raise self._make_fault()

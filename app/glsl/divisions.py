@@ -29,8 +29,8 @@ _DIVIDERS: Mapping[str, str] = {"/": QUOTIENT, "%": REMAINDER, "/=": QUOTIENT, "
 _SMALLEST = -(1 << 31)
 
 
-def guard_divisions(code: str, given: Mapping[str, str] | None = None) -> str:
-    """The text with divisions of whole numbers made by functions; `given` are types of names that it does not declare.
+def guard_divisions(code: str, outside_types: Mapping[str, str] | None = None) -> str:
+    """The text with divisions of whole numbers made by functions; `outside_types` are types of names that it does not declare.
 
     Lines stay. The same text if there is nothing to guard. Raises GlslFault for what cannot be guarded.
     """
@@ -41,7 +41,7 @@ def guard_divisions(code: str, given: Mapping[str, str] | None = None) -> str:
         partners = match_brackets(tokens, code, DEEPEST)
     except GlslFault:
         return code  # the driver refuses it
-    names = collect_names(tokens, partners, given or {})
+    names = collect_names(tokens, partners, outside_types or {})
     return _DivisionGuard(code, tokens, partners, names).rewrite(0, len(tokens))
 
 
@@ -68,12 +68,12 @@ class _DivisionGuard:
             if not function:
                 continue
             if self.tokens[at].text.endswith("="):
-                start, end = self._operand_start(at), self._assigned_end(at)
+                start, end = self._find_operand_start(at), self._find_assigned_end(at)
                 if self._is_harmless(start, at, end):
                     continue
                 replaced[at] = f"= {function}({self._repeat(start, at)},"
             else:
-                start, end = self._chain_start(at), self._operand_end(at)
+                start, end = self._find_chain_start(at), self._find_operand_end(at)
                 if self._is_harmless(start, at, end):
                     continue
                 inserted.setdefault(start, []).append(f"{function}(")
@@ -99,16 +99,16 @@ class _DivisionGuard:
 
     # --- what is divided by what -------------------------------------------------------------------------------------
 
-    def _chain_start(self, at: int) -> int:
+    def _find_chain_start(self, at: int) -> int:
         """Where the left operand of an operator begins: a chain of products."""
-        start, passed = self._operand_start(at), [at]
+        start, passed = self._find_operand_start(at), [at]
         while start > 0 and self.tokens[start - 1].text in _MULTIPLICATIVE:
             passed.append(start - 1)
-            start = self.starts.get(start - 1) or self._operand_start(start - 1)
+            start = self.starts.get(start - 1) or self._find_operand_start(start - 1)
         self.starts |= dict.fromkeys(passed, start)
         return start
 
-    def _operand_start(self, end: int) -> int:
+    def _find_operand_start(self, end: int) -> int:
         """Where the operand begins that ends before a place, with its signs."""
         at = end - 1
         while at > 0 and self.tokens[at].text in ("++", "--"):
@@ -140,7 +140,7 @@ class _DivisionGuard:
             return True
         return token.is_number or (token.is_word and token.text not in _KEYWORDS)
 
-    def _operand_end(self, at: int) -> int:
+    def _find_operand_end(self, at: int) -> int:
         """The place after the right operand of an operator."""
         at += 1
         while at < len(self.tokens) and self.tokens[at].text in _PREFIXES:
@@ -152,7 +152,7 @@ class _DivisionGuard:
             at = at + 2 if text == "." else self.partners.get(at, at) + 1
         return min(at, len(self.tokens))
 
-    def _assigned_end(self, at: int) -> int:
+    def _find_assigned_end(self, at: int) -> int:
         """The place after what is assigned."""
         at, choices = at + 1, 0
         while at < len(self.tokens) and (text := self.tokens[at].text) not in (",", ";", ")", "]", "}"):
@@ -192,12 +192,12 @@ class _DivisionGuard:
     def _is_float(self, start: int, at: int) -> bool:
         """Whether a chain of products has a float: each factor is looked at once."""
         if not self.floats.get(start):
-            factor = self._operand_start(at)
+            factor = self._find_operand_start(at)
             while True:
-                self.floats[start] = self.reader.read(factor, self._operand_end(factor - 1)).is_float
+                self.floats[start] = self.reader.read(factor, self._find_operand_end(factor - 1)).is_float
                 if self.floats[start] or factor <= start or self.tokens[factor - 1].text in ("/", "%"):
                     break
-                factor = self._operand_start(factor - 1)
+                factor = self._find_operand_start(factor - 1)
         return self.floats[start]
 
     def _find_qualifier(self, at: int) -> int | None:
@@ -210,7 +210,9 @@ class _DivisionGuard:
 
     def _list_variables(self) -> set[int]:
         """The `const` of each constant that becomes a variable: its value is made by functions, or by such a one."""
-        statements = [(at, self._assigned_names(at)) for at, token in enumerate(self.tokens) if token.text == "const"]
+        statements = [
+            (at, self._list_assigned_names(at)) for at, token in enumerate(self.tokens) if token.text == "const"
+        ]
         variables, names, before = self.variables, set[str](), -1
         while len(variables) > before:
             before = len(variables)
@@ -220,7 +222,7 @@ class _DivisionGuard:
                     names |= declared
         return variables
 
-    def _assigned_names(self, at: int) -> tuple[set[str], set[str]]:
+    def _list_assigned_names(self, at: int) -> tuple[set[str], set[str]]:
         """The names that a statement declares, and all that it says."""
         declared, read = set[str](), set[str]()
         while at + 1 < len(self.tokens) and self.tokens[at].text != ";":

@@ -80,10 +80,10 @@ class _Expander:
         expanded: list[str] = []
         while self.at < len(self.lines):
             first = self.at
-            line = self._take_line()
+            line = self._read_line()
             directive = _DIRECTIVE.fullmatch(line) if line.lstrip().startswith("#") else None
             if directive:
-                expanded.append(self._obey(directive[1], directive[2], line, first + 1))
+                expanded.append(self._apply_directive(directive[1], directive[2], line, first + 1))
             elif not self._is_used():
                 expanded.append("")
             else:
@@ -93,7 +93,7 @@ class _Expander:
             raise GlslFault(self.conditions[-1][2], "the condition that begins here has no #endif")
         return "\n".join(expanded)
 
-    def _take_line(self) -> str:
+    def _read_line(self) -> str:
         """The next line, with those that a backslash joins to it."""
         parts = [self.lines[self.at]]
         self.at += 1
@@ -116,7 +116,7 @@ class _Expander:
 
     # --- directives --------------------------------------------------------------------------------------------------
 
-    def _obey(self, name: str, rest: str, whole: str, line: int) -> str:
+    def _apply_directive(self, name: str, rest: str, whole: str, line: int) -> str:
         """What stays of a line with a directive."""
         match name:
             case "if" | "ifdef" | "ifndef":
@@ -221,7 +221,7 @@ class _Expander:
             elif macro.parameters is None:
                 self._insert(tokens, self._join(macro.body, {}, line, depth), painted | {text}, line)
             elif self._is_called(tokens, follow):
-                arguments, closing = self._arguments(tokens, text, len(macro.parameters), follow, line)
+                arguments, closing = self._read_arguments(tokens, text, len(macro.parameters), follow, line)
                 named = dict(zip(macro.parameters, arguments, strict=True))
                 # As Prosser's algorithm has it: what the call and its end share is not expanded any more.
                 self._insert(tokens, self._join(macro.body, named, line, depth), (painted & closing) | {text}, line)
@@ -237,20 +237,20 @@ class _Expander:
 
     def _is_called(self, tokens: deque[_Painted], follow: bool) -> bool:
         """Whether brackets follow the name of a macro."""
-        while not tokens and follow and self._take_more(tokens):
+        while not tokens and follow and self._read_more(tokens):
             pass
         return bool(tokens) and tokens[0][0] == "("
 
-    def _take_more(self, tokens: deque[_Painted]) -> bool:
+    def _read_more(self, tokens: deque[_Painted]) -> bool:
         """Add the next line, unless it is a directive; False at the end."""
         if self.at >= len(self.lines) or self.lines[self.at].lstrip().startswith("#"):
             return False
-        texts = split_tokens(self._take_line())
+        texts = split_tokens(self._read_line())
         self._spend(self.at, len(texts))
         tokens.extend((text, frozenset()) for text in texts)
         return True
 
-    def _arguments(
+    def _read_arguments(
         self, tokens: deque[_Painted], name: str, count: int, follow: bool, line: int
     ) -> tuple[list[list[_Painted]], frozenset[str]]:
         """The arguments of a call, whose opening bracket comes next, and what its closing bracket is painted with."""
@@ -258,7 +258,7 @@ class _Expander:
         arguments: list[list[_Painted]] = [[]]
         depth = 0
         while True:
-            if not tokens and not (follow and self._take_more(tokens)):
+            if not tokens and not (follow and self._read_more(tokens)):
                 raise GlslFault(line, f"the arguments of the macro '{name}' do not end")
             if not tokens:
                 continue

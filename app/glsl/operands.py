@@ -19,7 +19,7 @@ TYPE = re.compile(r"float|double|int|uint|bool|void|[iubd]?vec[234]|d?mat[234](?
 _FLOAT = re.compile(r"float|double|d?vec[234]|d?mat[234](?:x[234])?")
 _SWIZZLE = re.compile(r"[xyzw]{1,4}|[rgba]{1,4}|[stpq]{1,4}")
 _MIXED = frozenset({"abs", "sign", "min", "max", "clamp", "mix"})
-"""Functions that return what they are given."""
+"""Functions that return what they are outside_types."""
 
 _FLOATS = frozenset(
     {
@@ -82,7 +82,7 @@ _FLOATS = frozenset(
         "unpackUnorm4x8",
     }
 )
-"""Functions that return floats, whatever they are given."""
+"""Functions that return floats, whatever they are outside_types."""
 
 _PREFIXES = frozenset({"-", "+", "!", "~", "++", "--"})
 _ASSIGNMENTS = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="})
@@ -139,10 +139,10 @@ def _are_floats(types: frozenset[str] | None) -> bool:
     return bool(types) and all(_FLOAT.fullmatch(one) for one in types or ())
 
 
-def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], given: Mapping[str, str]) -> Names:
-    """The names that tokens declare; `given` are the types of names that come from elsewhere, as `a` or `f()`."""
-    types = {name: {glsl} for name, glsl in given.items() if not name.endswith("()")}
-    returns = {name[:-2]: {glsl} for name, glsl in given.items() if name.endswith("()")}
+def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], outside_types: Mapping[str, str]) -> Names:
+    """The names that tokens declare; `outside_types` are the types of names that come from elsewhere, as `a` or `f()`."""
+    types = {name: {glsl} for name, glsl in outside_types.items() if not name.endswith("()")}
+    returns = {name[:-2]: {glsl} for name, glsl in outside_types.items() if name.endswith("()")}
     structs = {tokens[at + 1].text for at, token in enumerate(tokens[:-1]) if token.text == "struct"}
     declared: list[tuple[str, int, bool]] = []
     for at, token in enumerate(tokens):
@@ -205,7 +205,7 @@ class OperandReader:
         before = self._at, self._end
         self._at, self._end = start, end
         try:
-            operand = self._sequence()
+            operand = self._read_sequence()
             return operand if self._at >= end else Operand()
         except (RecursionError, IndexError, KeyError, ArithmeticError, ValueError):
             return Operand()
@@ -215,47 +215,47 @@ class OperandReader:
     def _peek(self) -> str:
         return self._tokens[self._at].text if self._at < self._end else ""
 
-    def _sequence(self) -> Operand:
-        operand = self._assignment()
+    def _read_sequence(self) -> Operand:
+        operand = self._read_assignment()
         while self._peek() == ",":
             self._at += 1
-            operand = self._assignment()
+            operand = self._read_assignment()
         return operand
 
-    def _assignment(self) -> Operand:
-        left = self._binary(0)
+    def _read_assignment(self) -> Operand:
+        left = self._read_binary(0)
         if self._peek() == "?":
             self._at += 1
-            first = self._assignment()
+            first = self._read_assignment()
             if self._peek() != ":":
                 raise ValueError
             self._at += 1
-            second = self._assignment()
+            second = self._read_assignment()
             number = None
             if isinstance(left.number, int):
                 number = first.number if left.number else second.number
             return Operand(first.is_float or second.is_float, number)
         if self._peek() in _ASSIGNMENTS:
             self._at += 1
-            right = self._assignment()
+            right = self._read_assignment()
             return Operand(left.is_float or right.is_float)
         return left
 
-    def _binary(self, lowest: int) -> Operand:
-        left = self._unary()
+    def _read_binary(self, lowest: int) -> Operand:
+        left = self._read_unary()
         while (level := _PRECEDENCE.get(sign := self._peek(), -1)) > lowest:
             self._at += 1
-            right = self._binary(level)
+            right = self._read_binary(level)
             floats = level >= 9 and (left.is_float or right.is_float)
             left = Operand(floats, combine(sign, left.number, right.number))
         return left
 
-    def _unary(self) -> Operand:
+    def _read_unary(self) -> Operand:
         signs: list[str] = []
         while self._peek() in _PREFIXES:
             signs.append(self._peek())
             self._at += 1
-        operand = self._postfix()
+        operand = self._read_postfix()
         for sign in reversed(signs):
             number = operand.number
             if number is not None and sign == "-":
@@ -267,17 +267,17 @@ class OperandReader:
             operand = Operand(operand.is_float, number)
         return operand
 
-    def _postfix(self) -> Operand:
+    def _read_postfix(self) -> Operand:
         token = self._tokens[self._at]
         if self._at >= self._end:
             raise ValueError
         self._at += 1
         if token.text == "(":
-            operand = self._inside(self._at - 1)
+            operand = self._read_brackets(self._at - 1)
         elif token.is_number:
             operand = Operand(is_float_number(token.text), read_number(token.text))
         elif token.is_word and self._peek() == "(":
-            operand = self._call(token.text)
+            operand = self._read_call(token.text)
         elif token.is_word:
             if token.text in ("true", "false"):
                 return Operand(False, int(token.text == "true"))
@@ -287,26 +287,26 @@ class OperandReader:
         else:
             raise ValueError
         while self._peek() in (".", "[", "(", "++", "--"):
-            operand = self._select(operand, self._peek())
+            operand = self._read_selection(operand, self._peek())
         return operand
 
-    def _inside(self, opened: int) -> Operand:
+    def _read_brackets(self, opened: int) -> Operand:
         """What stands in brackets."""
         closed = self._partners[opened]
         operand = self.read(opened + 1, closed)
         self._at = closed + 1
         return operand
 
-    def _call(self, name: str) -> Operand:
+    def _read_call(self, name: str) -> Operand:
         opened, closed = self._at, self._partners[self._at]
         self._at = closed + 1
-        arguments = [self.read(start, end) for start, end in self._split(opened, closed)]
+        arguments = [self.read(start, end) for start, end in self._split_arguments(opened, closed)]
         floats = self._names.returns_float(name) or (name in _MIXED and any(one.is_float for one in arguments))
         return Operand(
             floats, None if name in self._names.returns else construct(name, [one.number for one in arguments])
         )
 
-    def _split(self, opened: int, closed: int) -> list[tuple[int, int]]:
+    def _split_arguments(self, opened: int, closed: int) -> list[tuple[int, int]]:
         """The arguments between brackets."""
         parts, start, at = list[tuple[int, int]](), opened + 1, opened + 1
         while at < closed:
@@ -316,7 +316,7 @@ class OperandReader:
             at = self._partners.get(at, at) + 1
         return [*parts, (start, closed)] if closed > opened + 1 else []
 
-    def _select(self, operand: Operand, sign: str) -> Operand:
+    def _read_selection(self, operand: Operand, sign: str) -> Operand:
         if sign == ".":
             name = self._tokens[self._at + 1].text
             self._at += 2
