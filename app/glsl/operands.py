@@ -19,7 +19,7 @@ TYPE = re.compile(r"float|double|int|uint|bool|void|[iubd]?vec[234]|d?mat[234](?
 _FLOAT = re.compile(r"float|double|d?vec[234]|d?mat[234](?:x[234])?")
 _SWIZZLE = re.compile(r"[xyzw]{1,4}|[rgba]{1,4}|[stpq]{1,4}")
 _MIXED = frozenset({"abs", "sign", "min", "max", "clamp", "mix"})
-"""Functions that return what they are outside_types."""
+"""Functions that return the type of what they are given."""
 
 _FLOATS = frozenset(
     {
@@ -82,7 +82,7 @@ _FLOATS = frozenset(
         "unpackUnorm4x8",
     }
 )
-"""Functions that return floats, whatever they are outside_types."""
+"""Functions that return floats, whatever they are given."""
 
 _PREFIXES = frozenset({"-", "+", "!", "~", "++", "--"})
 _ASSIGNMENTS = frozenset({"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="})
@@ -140,7 +140,7 @@ def _are_floats(types: frozenset[str] | None) -> bool:
 
 
 def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], outside_types: Mapping[str, str]) -> Names:
-    """The names that tokens declare; `outside_types` are the types of names that come from elsewhere, as `a` or `f()`."""
+    """The names that tokens declare; `outside_types` are those of names from elsewhere, such as `a` or `f()`."""
     types = {name: {glsl} for name, glsl in outside_types.items() if not name.endswith("()")}
     returns = {name[:-2]: {glsl} for name, glsl in outside_types.items() if name.endswith("()")}
     structs = {tokens[at + 1].text for at, token in enumerate(tokens[:-1]) if token.text == "struct"}
