@@ -32,7 +32,8 @@ _SMALLEST = -(1 << 31)
 def guard_divisions(code: str, outside_types: Mapping[str, str] | None = None) -> str:
     """The text with divisions of whole numbers made by functions.
 
-    `outside_types` are the types of names that it does not declare. Lines stay. The same text if there is nothing to guard. Raises GlslFault for what cannot be guarded.
+    `outside_types` are the types of names that it does not declare. Lines stay. The same text if
+    there is nothing to guard. Raises GlslFault for what cannot be guarded.
     """
     tokens = read_tokens(mask_directives(code))
     if not any(token.text in _DIVIDERS for token in tokens):
