@@ -23,7 +23,6 @@ from .request import Request
 from .target import NULL, Form, Precision, Target
 from .tiling.tiles import TileStage, Tiling
 from .tiling.tiling import plan_tile
-from .working import library_for
 
 __all__ = [
     "FIRST_TABLE",
@@ -53,7 +52,6 @@ __all__ = [
     "find_named_files",
     "graph_library",
     "installed_library",
-    "library_for",
     "plan_as_json",
     "plan_tile",
     "scale_size",

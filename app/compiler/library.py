@@ -17,6 +17,7 @@ from msgspec import field
 from ..errors import ShaderError
 from ..glsl import GlslFunction, Text, parse
 from ..resources.record import Record
+from ..resources.working_space import WorkingSpace
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 
@@ -61,6 +62,10 @@ class Library(Record, frozen=True):
         if not added:
             return self
         return self._derive(added, frozenset(added))
+
+    def with_working_space(self, working: WorkingSpace | None) -> Library:
+        """This library for a working space; None is linear Rec.709, for which the files are written."""
+        return self if working is None else self.with_replacement(working.text, f"{working}")
 
     def with_replacement(self, text: Text, mark: str) -> Library:
         """This library with another text in place of a file; `mark` identifies the content."""

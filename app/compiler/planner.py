@@ -35,7 +35,6 @@ from .target import NULL, Precision, Target
 from .tiling.regions import focus_program
 from .tiling.tiles import Tiling
 from .tiling.tiling import plan_tiling
-from .working import library_for
 
 MAX_REMEMBERED_PLANS = 4
 """Plans that a planner remembers, one for each set of options: the viewer's two pictures, the thumbnails and a region.
@@ -215,7 +214,7 @@ def examine(graph: Graph, request: Request, provider: ResourceProvider, target: 
 def graph_library(graph: Graph, provider: ResourceProvider, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and those of its custom nodes."""
     working = provider.find_working_space(color_settings(graph)) if graph.settings.color.working else None
-    return library_for(library or installed_library(), working).with_texts(find_custom_texts(graph))
+    return (library or installed_library()).with_working_space(working).with_texts(find_custom_texts(graph))
 
 
 def _fill_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:

@@ -27,6 +27,8 @@ _STRUCTURAL = re.compile(
     re.IGNORECASE,
 )
 _JPEG_BYTES = 8000
+"""Bytes of one attribute in a JPEG. Chosen by judgement: six long texts fit into `_JPEG_TOTAL`, and a single one cannot
+take the place of all others."""
 _JPEG_TOTAL = 48_000
 """Bytes of all attributes together but the packed one: each block of a JPEG's header may hold all of them, with their
 names, within 65,533 bytes (ITU T.81)."""
@@ -36,6 +38,7 @@ _MOST_ASPECT = 1e6
 _PACKED = {"jpeg": "halation:header", "tiff": "DocumentName"}
 """Formats that keep no text under names of our own: the one name that has to do for all of it."""
 _PACKED_BYTES = 60_000
+"""Bytes of the packed attribute of a JPEG: below the 65,533 of a block, with room for its name and escapes."""
 _OURS = "halation:"
 
 

@@ -46,7 +46,7 @@ class PictureBuilder:
             first = next(iter(self.named), None)
             size = self._find_first_size(*first) if first else DEFAULT_CANVAS
         self.canvas_is_read = True
-        return self._scale(size)
+        return scale_size(size, self._request.scale)
 
     def _find_first_size(self, picture: Picture, owner: str) -> Size:
         """The size of a picture; of a sequence, whether or not this frame has a file."""
@@ -64,9 +64,6 @@ class PictureBuilder:
             error.node = owner
             raise
 
-    def _scale(self, size: Size) -> Size:
-        return scale_size(size, self._request.scale)
-
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
         """Upload a picture, or that frame of a sequence, at the size of the request."""
         picture, is_black = replace(picture, color=self._color), False
@@ -75,7 +72,8 @@ class PictureBuilder:
             picture, is_black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
-        size = self._scale(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
+        whole = self._request.size if self._request.size and probed.size != (1, 1) else probed.size
+        size = scale_size(whole, self._request.scale)
         if is_black:
             socket = make_socket(picture.kind, picture.width)
             return self.convert(UniformConstant(make_zero(socket)), socket, size, owner)

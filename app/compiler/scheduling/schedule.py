@@ -13,7 +13,7 @@ from ...errors import DeviceError
 from ...graph import Port
 from ..codegen.emit import EmittedProgram, emit
 from ..fusion.fuse import PassGroup
-from ..ir import LoweredProgram, Memory, Op, PictureShape, Ref, SourceOp
+from ..ir import LoweredProgram, Memory, Op, Ref, SourceOp
 from ..library import Library
 from ..plan import Depth, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
@@ -59,7 +59,7 @@ def schedule(
             keys[ref],
             program.ops[ref.op].owner,
             program.size_on_device(ref),
-            _find_shape(program, ref).channels,
+            program.shape(ref).channels,
             _find_depth(texels[ref]),
             slots[ref],
             first[ref],
@@ -128,7 +128,7 @@ def _find_memories(
 ) -> Mapping[Port, Memory]:
     return MappingProxyType(
         {
-            node: Memory(keys[ref], _find_shape(program, ref), texels[ref].endswith("16f"))
+            node: Memory(keys[ref], program.shape(ref), texels[ref].endswith("16f"))
             for node, ref in program.memories.items()
         }
     )
@@ -153,10 +153,6 @@ def _find_textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict
     return needed | dict.fromkeys(program.kept_refs)
 
 
-def _find_shape(program: LoweredProgram, ref: Ref) -> PictureShape:
-    return program.ops[ref.op].shapes[ref.output]
-
-
 def count_peak_bytes(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
     """Bytes of all textures that passes need at the same time."""
     first, last = _find_lifetimes(program, passes)
@@ -176,7 +172,7 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
 
 def _choose_format(program: LoweredProgram, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
-    op, shape = program.ops[ref.op], _find_shape(program, ref)
+    op, shape = program.ops[ref.op], program.shape(ref)
     half = op.is_half(ref.output) if isinstance(op, SourceOp) else precision == "half" and not shape.data
     return texture_format(shape.channels, half)
 
@@ -253,7 +249,7 @@ def _find_uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[U
         op = program.ops[ref.op]
         picture = op.find_upload(ref.output)
         if picture is not None:
-            uploads.append(Upload(number, picture, op.owner, _find_shape(program, ref).size))
+            uploads.append(Upload(number, picture, op.owner, program.shape(ref).size))
     return uploads
 
 

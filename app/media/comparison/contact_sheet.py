@@ -22,14 +22,20 @@ _MARGIN = 16
 _GAP = 12
 _RADIUS = 5.0
 _RULE = 2
+"""Pixels around a sheet, between its cells, of their round corners, and of its lines. Chosen by eye for cells of 320 to
+480 pixels."""
 _BACKGROUND = (0.08, 0.08, 0.086)
 _TILE_COLOR = (0.115, 0.115, 0.125)
 _DIM = (0.70, 0.70, 0.73)
 _TEXT = (0.90, 0.90, 0.91)
 _CHECKER = (0.20, 0.28)
 _SQUARE = 12
+"""Colors of the sheet and pixels of a square of the checkerboard: chosen by eye. The background is dark and neutral, so
+that it does not change how the pictures look."""
 _BOLD = "DroidSans-Bold"
 _QUALITY = 84
+"""JPEG quality of sheets, on the scale of libjpeg. Chosen by eye: no blocks are visible at 1:1, and the sheets in the
+documentation take a third less than at 95."""
 
 
 def show_light(array: Array, view: str = "") -> Array:

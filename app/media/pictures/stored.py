@@ -1,10 +1,14 @@
-"""Pictures to be compared and shown: the parts of a file number by number, who made it, and copies of it."""
+"""Reads the parts of a file as they are stored, without repair and change of color, to compare and to show them.
+
+`read_stored_parts` reads them as floats over the display window, as regression tests compare them. `read_stored_codes`
+reads the very numbers of the file in their own type, to tell whether two files hold the same bits.
+"""
 
 from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +24,7 @@ from ...resources.library_messages import quiet_libraries
 from ...resources.library_names import name_for_library
 from ...resources.sandbox import Sandbox
 from ..metadata import read_metadata
-from .open import describe_fault, open_picture
+from .open import describe_fault, describe_picture, open_picture
 from .writer import write_picture
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")
@@ -31,7 +35,7 @@ _FLOATS = ("half", "float", "double")
 class StoredPart:
     """One part of a file: [h, w, c] of float32 over its display window. Integers fill 0..1, alpha is as stored.
 
-    `encoded` are integers, which are meant for a display as they are; `data` are numbers that are no color.
+    If it `is_encoded`, it was stored as integers, which a display shows as they are.
     """
 
     array: Array
@@ -57,10 +61,8 @@ class StoredPart:
 
 def read_stored_parts(path: str | Path, sandbox: Sandbox) -> dict[str, StoredPart]:
     """The parts of a file by name. Nothing is repaired or converted. Raises InputError."""
-    count = 0
     with open_picture(path, sandbox=sandbox) as handle:
-        while handle.seek_subimage(count, 0):
-            count += 1
+        count = sum(1 for _ in _iterate_parts(handle))
     settings = oiio.ImageSpec()
     settings.attribute("oiio:UnassociatedAlpha", 1)
     parts: dict[str, StoredPart] = {}
@@ -78,8 +80,30 @@ def read_stored_parts(path: str | Path, sandbox: Sandbox) -> dict[str, StoredPar
     return parts
 
 
+def read_stored_codes(path: str | Path, sandbox: Sandbox) -> dict[str, Array]:
+    """The parts of a file by name, [h, w, c] in the type of the file; integers are codes. Raises InputError."""
+    parts: dict[str, Array] = {}
+    with open_picture(path, sandbox=sandbox) as handle:
+        describe_picture(handle, str(path), sandbox=sandbox)
+        for index, spec in enumerate(_iterate_parts(handle)):
+            block = handle.read_image(index, 0, 0, spec.nchannels, str(spec.format))
+            if block is None:
+                raise InputError(f"{path}: {describe_fault(handle.geterror() or 'corrupt')}")
+            name = spec.get_string_attribute("oiio:subimagename") or spec.get_string_attribute("name")
+            parts[name if name and name not in parts else f"part {index + 1}" if parts else ""] = np.asarray(block)
+    return parts
+
+
+def _iterate_parts(handle: oiio.ImageInput) -> Iterator[oiio.ImageSpec]:
+    """The description of every part of a file, which the file stands at meanwhile."""
+    index = 0
+    while handle.seek_subimage(index, 0):
+        yield handle.spec()
+        index += 1
+
+
 def describe_maker(path: str | Path, sandbox: Sandbox) -> str:
-    """What rendered a picture: renderer, driver and version as its header has them, "" where it does not say."""
+    """The renderer, driver and version that made a picture, from its header; "" if it does not say."""
     attributes = read_metadata(path, sandbox=sandbox)
     parts = [str(attributes[key]) for key in _MAKER if attributes.get(key)]
     if len(parts) > 1 and _MAKER[2] in attributes:
@@ -88,7 +112,7 @@ def describe_maker(path: str | Path, sandbox: Sandbox) -> str:
 
 
 def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
-    """Replace a file by a copy of another, whole or not at all; its folder is made. Raises OutputError."""
+    """Copy a file to a path, whole or not at all; its folder is created. Raises OutputError."""
 
     def copy(name: str) -> None:
         shutil.copyfile(source, name)
@@ -103,7 +127,7 @@ def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
 
 
 def encode_for_viewing(part: StoredPart, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
-    """[h, w, 3] of uint8 for people: light through a view over black, data with the ends of `span` black and white."""
+    """A part as [h, w, 3] of uint8: light through a view over black, data from black to white over `span`."""
     if part.is_encoded:
         return _to_codes(to_three_channels(part.array))
     if part.is_data:

@@ -13,7 +13,7 @@ from ...color.management import get_color_manager
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, find_node_output
 from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
-from ...media.pictures.same_numbers import read_numbers
+from ...media.pictures.stored import read_stored_codes
 from ...resources.sandbox import Sandbox
 from ...version import VERSION
 from ..device import Device
@@ -111,7 +111,7 @@ def reproduce(
             recorded.colorspace,
         )
         run_job(renderer, graph, request, output_settings, (recorded.frame,))
-        layers = compare_layers(*(read_numbers(path, renderer.sandbox) for path in (rendered_file, recipe.path)))
+        layers = compare_layers(*(read_stored_codes(path, renderer.sandbox) for path in (rendered_file, recipe.path)))
     differences = tuple(
         _find_differences(recipe, renderer.device, get_color_manager(color_settings(graph), renderer.sandbox).digest)
     )
