@@ -12,7 +12,7 @@ import typer
 from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .options import AsJson, expand_preset, read_standard_input
-from .outcome import print_json, print_note
+from .outcome import print_json, print_note, write_count
 from .plugins import list_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
@@ -87,7 +87,9 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
         for finding in () if quiet else report.findings:
             problem = finding.problem
             sentence, *excerpt = problem.sentence.split("\n")  # an excerpt shows where in an expression the fault is
-            print(f"{path}:{finding.line}: {problem.severity}: {sentence} [{problem.rule.name}]", *excerpt, sep="\n")
+            is_read = problem.rule.name != "unreadable-graph"
+            place = f"{path}:{finding.line}" if is_read else path
+            print(f"{place}: {problem.severity}: {sentence} [{problem.rule.name}]", *excerpt, sep="\n")
         if report.omitted and not quiet:
             print(f"{path}: and {report.omitted} more")
         if not quiet and not report.findings and path in graphs:
@@ -96,7 +98,7 @@ def _check_and_print(checker: GraphChecker, graphs: Sequence[Path], quiet: bool)
         print_note("no graphs were found")
     elif len(reports) > 1 and not quiet:
         severities = [finding.problem.severity for report in reports for finding in report.findings]
-        counts = [f"{severities.count(word)} {word}s" for word in ("error", "warning")]
+        counts = [write_count(severities.count(word), word) for word in ("error", "warning")]
         omitted = sum(report.omitted for report in reports)
         print_note(f"{len(reports)} graphs: {', '.join(counts)}{f', and {omitted} more' if omitted else ''}")
     return reports

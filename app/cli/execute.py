@@ -18,7 +18,7 @@ from ..errors import UsageError
 from ..resources.machine import has_memory_limit
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
-from .outcome import flush_output, print_json, print_note, report_failure
+from .outcome import flush_output, print_json, print_note, report_failure, write_count
 from .progress import progress_reporter
 from .watchdog import can_fork, needs_watchdog, run_forked
 
@@ -204,7 +204,7 @@ def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> Non
     from ..compiler.explain import format_bytes
 
     peak, passes, unchanged_count = format_bytes(report["peak_bytes"]), report["passes"], len(report["kept"])
-    cost = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
+    cost = f"{total:.2f} s, {write_count(passes, 'pass', 'passes')}, {peak} of textures at the peak"
     written: Sequence[str] = report["written"]
     if len(report["frames"]) > 1:
         files = list(dict.fromkeys((written[0], written[-1])))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..errors import UsageError
 from ..resources.sandbox import Sandbox
-from .outcome import print_json, print_note
+from .outcome import print_json, print_note, write_count
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Plugin
@@ -37,7 +37,7 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
         for subject, sentences in faults.items():
             print(*(f"{subject}: {sentence}" for sentence in sentences or ("ok",)), sep="\n")
         count = sum(map(bool, faults.values()))
-        print_note(f"{len(classes)} node{'' if len(classes) == 1 else 's'}: {count or 'nothing'} to mend")
+        print_note(f"{write_count(len(classes), 'node')}: {count or 'nothing'} to mend")
     return 1 if any(faults.values()) else 0
 
 

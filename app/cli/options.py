@@ -171,8 +171,15 @@ def override_value(graph: Graph, name: str, text: str) -> Graph:
             if item is value and (reason := animation_fault(graph, port, item)):
                 raise GraphError(reason)
     except GraphError as fault:
-        raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
+        hint = _value_hint(graph, name) if name not in graph.controls else ""
+        raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}{hint}") from None
     return graph
+
+
+def _value_hint(graph: Graph, name: str) -> str:
+    """How to write the values of this name that nodes of the graph have, or ""."""
+    ports = [f"{id}.{name}" for id, node in graph.nodes.items() if name in getattr(type(node), "values", ())]
+    return f"; write {' or '.join(ports[:3])}" if ports else ""
 
 
 def read_standard_input() -> str:
@@ -217,6 +224,8 @@ def report_problems(path: Path, graph: Graph) -> None:
 
     graph_problems = problems(graph)
     errors = [problem for problem in graph_problems if problem.severity == "error"]
+    # A misspelt link leaves an input without a picture. The sentence is about the link, which is the cause.
+    errors.sort(key=lambda problem: problem.rule.name in ("unlinked-input", "unfed-output"))
     if errors:
         how = "" if str(path) == "-" else f": halation check {path}"
         more = f" (and {len(errors) - 1} more{how})" if len(errors) > 1 else ""

@@ -118,6 +118,11 @@ def print_json(item: object) -> None:
     print(json.dumps(item, indent=2, ensure_ascii=False, default=str))
 
 
+def write_count(count: int, noun: str, plural: str = "") -> str:
+    """A count and its noun: `1 pass`, `2 passes`."""
+    return f"{count} {noun if count == 1 else plural or f'{noun}s'}"
+
+
 def print_note(sentence: str) -> None:
     """Print a sentence for the user to standard error, away from the results of the command."""
     print(sentence, file=sys.stderr, flush=True)

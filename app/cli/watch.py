@@ -26,7 +26,7 @@ from .options import (
     report_problems,
     resolve_inputs,
 )
-from .outcome import INTERRUPTED, print_note
+from .outcome import INTERRUPTED, print_note, write_count
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -125,7 +125,8 @@ def _print_report(turn: WatchReport) -> None:
     names = [path.name for path in turn.changed]
     more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
     why = f"  ({', '.join(names[:_LISTED])}{more} changed)" if names else ""
-    print_note(f"{clock}  {written}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
+    passes = write_count(turn.report.passes, "pass", "passes")
+    print_note(f"{clock}  {written}  {turn.seconds:.2f} s, {passes}{why}")
 
 
 def _print_report_json(turn: WatchReport) -> None:

@@ -10,6 +10,9 @@ from ..resources.input_files import open_file
 from ..resources.sandbox import Sandbox, make_path_printable
 from .limits import MAX_BYTES, size_fault
 
+_PICTURE_MARKS = (b"\x76\x2f\x31\x01", b"\x89PNG", b"\xff\xd8\xff", b"II*\x00", b"MM\x00*", b"RIFF", b"SDPX", b"XPDS")
+"""The first bytes of EXR, PNG, JPEG, TIFF (both byte orders), WebP and DPX (both) files."""
+
 
 def read_text(path: Path, sandbox: Sandbox) -> str:
     """The text of a graph file. Raises DocumentError; a file that is too large is not read."""
@@ -31,6 +34,8 @@ def read_text(path: Path, sandbox: Sandbox) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         fault = f"the text is not UTF-8 (byte {error.start}); save it as UTF-8"
+        if content.startswith(_PICTURE_MARKS):
+            fault = f"this is a picture, not a graph: name a graph, and the picture after -i as NAME={path.name}"
         raise DocumentError(str(path), "", fault, rule="unreadable-graph") from None
 
 
