@@ -11,7 +11,7 @@ import ctypes
 import os
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from functools import cache
 
@@ -26,7 +26,7 @@ class _ErrorStream:
         self._lock, self._count = threading.Lock(), 0
 
     @contextmanager
-    def replace(self) -> Iterator[None]:
+    def replace(self) -> Generator[None]:
         """Exchange the stream until the last of those who want it has left."""
         self._change(1)
         try:
@@ -41,7 +41,7 @@ class _ErrorStream:
 
 
 @contextmanager
-def quiet_libraries() -> Iterator[None]:
+def quiet_libraries() -> Generator[None]:
     """Keep libraries from printing while a file is read; HALATION_DEBUG=1 lets them."""
     stream = _find_error_stream()
     if stream is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,7 +13,7 @@ _ESCAPED = re.compile(r"\\u(dc[89a-f][0-9a-f])")
 
 
 @contextmanager
-def name_for_library(path: str | Path) -> Iterator[str]:
+def name_for_library(path: str | Path) -> Generator[str]:
     """A name of the file that is UTF-8: its own, else that of a link in a temporary folder, with the same ending.
 
     The link is there as long as the context, for libraries that open a file again.

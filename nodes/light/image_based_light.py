@@ -1,6 +1,6 @@
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from .._declare import (
     CameraSocket,
@@ -76,7 +76,7 @@ class ImageBasedLight(Filter):
         skies = [mirror]
         for size in _LEVELS:
             skies.append(shrunk(draw, "image_based_light", skies[-1], size))
-        smaller = {f"level{number}": sky for number, sky in enumerate(skies[1:])}
+        smaller: dict[str, Any] = {f"level{number}": sky for number, sky in enumerate(skies[1:])}
         lobes = [
             draw("image_based_light_lobe", **smaller, size=size, result=DATA, roughness=roughness)
             for roughness, size in _LOBES

@@ -2,7 +2,6 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 from .._declare import (
-    Argument,
     CameraSocket,
     Doc,
     Draw,
@@ -123,7 +122,7 @@ class ScreenReflections(Filter):
             roughness=self.roughness,
         )
         light = self._trace(draw, all_surfaces, normal, rough, rows, rays)
-        shading: dict[str, Argument] = {
+        shading: dict[str, Any] = {
             "light": light,
             "normal": normal,
             "rough": rough,
