@@ -137,7 +137,7 @@ vec2 smaa_diagonal(int rise, int reach) {
     return rise < 0 ? area : area.yx;
 }
 
-// For the edge above, then for the edge to the left: how much of this pixel, and of the one across the edge, belongs to
+// For the edge above, then the one to the left: the share of this pixel, and of the one across the edge, that belongs to
 // the other.
 vec4 smaa_weights(int reach, int diagonal, float corner_rounding) {
     vec2 here = edges_at(pixel), above = vec2(0.0), left = vec2(0.0);
@@ -151,7 +151,7 @@ vec4 smaa_weights(int reach, int diagonal, float corner_rounding) {
     return vec4(above, left);
 }
 
-// Mixes with the neighbors in rows or in columns, whichever is cut off more.
+// Mixes with neighbors in rows or in columns, on whichever side the edges cut off more.
 vec4 smaa() {
     vec4 here = weights_at(pixel), color = image_at(pixel);
     float right = weights_at(pixel + ivec2(1, 0)).w, below = weights_at(pixel + ivec2(0, 1)).y;

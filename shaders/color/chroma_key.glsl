@@ -30,7 +30,7 @@ void chroma_key(
     }
     float cover = (1.0 - clamp(finite(empty), 0.0, 1.0) - finite(black)) / max(finite(white) - finite(black), 1e-6);
     cover = clamp(finite(cover), 0.0, 1.0);
-    // What is left without the screen; then the light that the screen still sheds on it.
+    // The pixel without the screen; then the light that the screen still casts on it.
     vec3 subject = image.rgb - (1.0 - cover) * back;
     subject[channel] -= finite(spill) * max(chroma_key_excess(subject, channel, limit), 0.0);
     result = finite(vec4(cover > 0.0 ? max(subject, min(image.rgb, 0.0)) : vec3(0.0), cover * image.a));

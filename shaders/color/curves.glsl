@@ -33,7 +33,7 @@ vec4 curves(
 ) {
     vec4 color = straight(finite(image));
     vec3 bent = curves_bent(color.rgb, space, keep_color, master, red, green, blue);
-    // What covers nothing is not lifted out of black.
+    // Transparent pixels stay black.
     if (color.a <= ALPHA_NONE) bent -= curves_bent(vec3(0.0), space, keep_color, master, red, green, blue);
     color.rgb = finite(bent);
     return finite(premultiplied(color));

@@ -11,7 +11,7 @@ vec4 levels(
     black = finite(black), white = finite(white), gamma = finite(gamma), low = finite(low), high = finite(high);
     float span = white - black;
     span = abs(span) < 1e-6 ? 1e-6 : span;  // one step instead of a slope
-    // What covers nothing is not lifted out of black.
+    // Transparent pixels stay black.
     float covered = color.a > ALPHA_NONE ? 1.0 : 0.0;
     vec3 code = space == SPACE_DISPLAY ? srgb_encode(color.rgb) : color.rgb;
     vec3 level = (code - covered * black) / span;

@@ -6,7 +6,7 @@
 const float depth_of_field_least = 0.5;    // a disc of this radius covers its own pixel only
 const float depth_of_field_seam = 0.85;    // from this part of the radius that is too large, levels cross over
 const float depth_of_field_slack = 1.015;  // pixels are squares: discs of them have not quite the area of discs
-const float depth_of_field_unseen = 0.05;  // weight of what is guessed, beside what is known
+const float depth_of_field_unseen = 0.05;  // weight of guessed light, relative to light that is seen
 
 // --- circles of confusion ---
 
@@ -68,7 +68,7 @@ void depth_of_field_apart(out vec4 stays, out vec4 clean) {
     clean = blurred ? own : image_at(pixel) - (is_hole(stays) ? vec4(0.0) : stays);
 }
 
-// Whether what has one radius lies before what has another, and is blurred.
+// True if a surface with one radius lies in front of one with another radius, and is blurred.
 bool depth_of_field_hides(float other, float here) { return here - other >= 1.0 && abs(other) >= 1.0; }
 
 // The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges. What
@@ -87,7 +87,7 @@ vec4 depth_of_field_whole() {
     return sum;
 }
 
-// With what stayed. It does not make light negative.
+// The picture with the light that stayed. No light becomes negative.
 vec4 depth_of_field_with(vec4 seen, vec4 kept) { return max(seen + kept, min(seen, 0.0)); }
 
 // --- levels: how a disc belongs to the size that it is made at ---
@@ -190,7 +190,7 @@ float depth_of_field_inside(int aperture, vec3 lens, vec2 stretch, vec2 eye, ive
 
 float depth_of_field_cover(float inside) { return clamp(inside + 0.5, 0.0, 1.0); }
 
-// Half the width of a disc in a row.
+// Half the width of a disc in a row of pixels.
 int depth_of_field_chord(float reach, int row) {
     float outer = reach + 0.5;
     return int(sqrt(max(outer * outer - float(row * row), 0.0)));
@@ -331,7 +331,7 @@ void depth_of_field_gathered(
     }
 }
 
-// Everything at full size.
+// All discs at full size.
 vec4 depth_of_field_alone(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     float reach = reach_at(pixel / tile);
     if (reach <= depth_of_field_least) return image_at(pixel) + kept_at(pixel);

@@ -7,12 +7,12 @@
 const float motion_blur_still = 1e-3;  // shorter paths are none
 const float motion_blur_apart = 50.0;  // what is nearer by 1 / 100 of the depth is fully in front
 
-// Where it is at a time, on the parabola through the three places.
+// The position at a time, on the parabola through the three positions.
 vec2 motion_blur_place(vec4 path, float time) {
     return 0.5 * time * (path.xy + path.zw + time * (path.zw - path.xy));
 }
 
-// How far it gets while the shutter is open, from where it is now to both sides.
+// The length of the path while the shutter is open, before and after the frame.
 float motion_blur_length(vec4 path, vec2 times) {
     return length(motion_blur_place(path, times.x)) + length(motion_blur_place(path, times.y));
 }
@@ -64,7 +64,7 @@ uvec2 motion_blur_sides(vec2 bounds) {
     return count > 0 ? uvec2(motion_blur_inside(front), motion_blur_inside(~front & 0x1ffffffu)) : uvec2(0u);
 }
 
-// The mean velocity of some of them.
+// The mean velocity of the pixels whose bits are set.
 vec4 motion_blur_motion(uint side) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
@@ -81,7 +81,7 @@ vec4 motion_blur_motion(uint side) {
 // Where renderers filter velocity as they do light, it tells how much the nearer surface covers: unlike colors, it is
 // much the same all over a surface.
 vec2 motion_blur_layer() {
-    const float slow = 0.5, hardly = 0.01;  // pixels that motions must differ by; covers that are none
+    const float slow = 0.5, hardly = 0.01;  // the least difference of motions in pixels; the least coverage
     float here = nearness(depth_at(pixel)), cover = 0.0;
     vec2 bounds = motion_blur_edge(here);
     uvec2 sides = motion_blur_sides(bounds);
@@ -131,7 +131,7 @@ float motion_blur_turn(vec4 path, vec2 times) {
     return max(far.x, far.y);
 }
 
-// The path of a pixel, shortened to `longest`, and so that nothing gets farther from its place than `reach`.
+// The path of a pixel, shortened to `longest`, and so that no point of it is farther away than `reach`.
 vec4 motion_blur_path(vec4 velocity, int path, vec2 times, float longest, float reach) {
     vec4 safe = is_finite(velocity) ? clamp(velocity, -1e5, 1e5) * proxy : vec4(0.0);
     if (path == PATH_STRAIGHT || safe.zw == vec2(0.0)) safe.zw = safe.xy;
@@ -208,7 +208,7 @@ float motion_blur_unlike(float apart, float far) {
     return clamp(4.0 * apart / max(far, motion_blur_still) - 1.0, 0.0, 1.0);
 }
 
-// What of a path is looked at: stops at even times, from the first to the last.
+// The samples of a path: stops at even times, from the first to the last.
 struct MotionBlurRun { vec4 path; float step, shift; bool sparse; int first, last; };
 
 // Steps of a pixel, so that nothing is missed, or longer ones, at random, if those are too many.
@@ -251,13 +251,13 @@ float motion_blur_between(MotionBlurRun run, int i, out ivec2 cell, out ivec2 si
 
 bool motion_blur_outside(ivec2 at) { return any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, image_size)); }
 
-// Loops run as often as any pixel nearby needs them: what is not wanted has no stops.
+// Loops run as often as any pixel nearby needs them: a pixel that needs fewer has no stops left.
 MotionBlurRun motion_blur_only(bool wanted, MotionBlurRun run) {
     run.last = wanted ? run.last : run.first - 1;
     return run;
 }
 
-// Where everything moves alike: exactly a box filter along the path.
+// If everything moves alike, this is exactly a box filter along the path.
 vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
@@ -287,7 +287,7 @@ vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
     return total > 0.0 ? sum / total : here;
 }
 
-// What is met at a stop, against what is here.
+// Compares the surface at a stop with the one of this pixel.
 struct MotionBlurMet { vec4 light, path; float cover, before, after; };
 
 MotionBlurMet motion_blur_met(ivec2 cell, vec4 own, float far, float near, vec2 times) {
@@ -351,7 +351,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
             same += (1.0 - met.after) * share * met.light;
             stays += (1.0 - met.after) * share * met.cover;
             bares += share * (1.0 - (1.0 - met.after) * met.cover);
-            // What is hidden is most like what is nearest to it.
+            // A hidden surface is guessed from the nearest visible part of it.
             float weight = met.after * share / max(dot(away, away), 1.0);
             behind += weight * met.light;
             nearby += weight * met.cover;

@@ -1,4 +1,4 @@
-// How eyes and photographers set themselves to the light of a scene.
+// How eyes and cameras adapt to the light of a scene.
 #include "lib/alpha.glsl"
 #include "lib/finite.glsl"
 

@@ -1,4 +1,4 @@
-// How surfaces hand on light. Vectors have length 1: n the normal, h halfway between the ways to the eye and to the
+// How surfaces reflect light. Vectors have length 1: n the normal, h halfway between the ways to the eye and to the
 // light. nv, nl and vh are the cosines between them; alpha is the square of what artists call roughness.
 
 const float BRDF_PI = 3.14159265;
@@ -9,14 +9,14 @@ vec3 fresnel(vec3 f0, float vh) {
     return f0 + (1.0 - f0) * (x2 * x2 * x);
 }
 
-// How many facets face h: GGX (Walter et al. 2007). 1 - (n.h)^2 is had as |n x h|^2, in which nothing cancels out.
+// The density of facets that face h: GGX (Walter et al. 2007). 1 - (n.h)^2 is had as |n x h|^2, in which nothing cancels out.
 float ggx_facets(vec3 n, vec3 h, float alpha) {
     vec3 off = cross(n, h);
     float along = alpha * dot(n, h), size = along * along + dot(off, off);
     return alpha * alpha / (BRDF_PI * size * size);
 }
 
-// How many of them are seen and lit, over 4 nv nl: Smith's, with correlated heights (Heitz 2014).
+// The share of facets that are seen and lit, over 4 nv nl: Smith's, with correlated heights (Heitz 2014).
 float ggx_visible(float nv, float nl, float alpha) {
     vec2 c = vec2(nv, nl), far = sqrt(c * c * (1.0 - alpha * alpha) + alpha * alpha);
     return 0.5 / (nl * far.x + nv * far.y);

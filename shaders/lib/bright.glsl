@@ -1,4 +1,4 @@
-// Which light is bright, and how glow joins a picture. The functions up to bright_power() answer with the light to keep,
+// Selects bright light, and adds glow to a picture. The functions up to bright_power() answer with the light to keep,
 // from the luminance (or another measure) of a pixel.
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
@@ -14,7 +14,7 @@ float bright_soft(float light, float threshold, float knee) {
     return max(eased * eased / (4.0 * width + 1e-5), above);
 }
 
-// All of what is much brighter than the threshold, little of what is darker.
+// Keeps all light far above the threshold, and little of the light below it.
 float bright_exponential(float light, float threshold, float power) {
     return light * (1.0 - exp(-pow(light / max(threshold, BRIGHT_NONE), power)));
 }

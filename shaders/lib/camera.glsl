@@ -4,7 +4,7 @@
 // u, v of the middle of a pixel.
 vec2 camera_uv(ivec2 at, ivec2 size) { return (vec2(at) + 0.5) / vec2(size); }
 
-// Where the camera stands.
+// The position of the camera.
 vec3 camera_eye(const vec4 rays[3]) { return vec3(rays[0].w, rays[1].w, rays[2].w); }
 
 // From the eye to what lies one unit deep: its length is how much longer the way is than the depth.
@@ -13,7 +13,7 @@ vec3 camera_ray(const vec4 rays[3], vec2 uv) {
     return vec3(dot(rays[0].xyz, seen), dot(rays[1].xyz, seen), dot(rays[2].xyz, seen));
 }
 
-// The place in the world that lies so deep.
+// The position in the world at a depth.
 vec3 camera_place(const vec4 rays[3], vec2 uv, float depth) { return camera_eye(rays) + depth * camera_ray(rays, uv); }
 
 // (u d, v d, d) of a place in the world: it is in view where d is above 0, at u, v = xy / d.

@@ -3,7 +3,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// How bright a pixel looks, whatever it covers.
+// The brightness of a pixel on a display, without its alpha.
 float display_tone(vec4 c) { return srgb_encode(max(luminance(straight(finite(c)).rgb), 0.0)); }
 
 vec4 to_display(vec4 c) {

@@ -1,8 +1,8 @@
-// What passes of data mean: depth is planar and positive, normals have length 1, and both say where nothing is.
+// The meaning of passes of data: depth is planar and positive, normals have length 1, and both say where nothing is.
 #include "lib/finite.glsl"
 
 const float GEOMETRY_FAR = 1e9;       // deeper is background, which renderers write as 1e10 or infinity
-const float GEOMETRY_NOTHING = 1e10;  // what we write there
+const float GEOMETRY_NOTHING = 1e10;  // the value that nodes write there
 const float GEOMETRY_LEAST = 0.1;     // a shorter normal is an average of hardly anything: background too
 const float GEOMETRY_WHOLE = 0.98;    // a shorter normal is an average of several surfaces
 
@@ -11,7 +11,7 @@ bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth <
 // 1 / depth, which is affine on every plane, and 0 on the background.
 float nearness(float depth) { return is_surface(depth) ? 1.0 / depth : 0.0; }
 
-// Where renderers see nothing, they write the origin.
+// Renderers write the origin as the position of the background.
 bool is_place(vec3 position) { return is_finite(position) && position != vec3(0.0); }
 
 // Of length 1 where antialiasing has shortened it, 0 on the background.

@@ -1,9 +1,9 @@
-// Colors that tell things apart by their numbers.
+// Colors that distinguish ids.
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
 
-// By chance, but never pale and never dark, and the first eight numbers well apart; black for 0, which is nothing.
+// Random, but never pale or dark, and well apart for the first eight ids; black for 0, which is no id.
 vec3 id_color(float id) {
     if (id == 0.0) return vec3(0.0);
     vec3 chance = unit_float(pcg3d(uvec3(floatBitsToUint(id), 16u, 12u)));

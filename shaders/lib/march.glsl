@@ -12,24 +12,24 @@ const float MARCH_INSIDE = 2.0;    // pixels, from the edge of something
 const float MARCH_ENDLESS = 1e18;
 
 struct March {
-    vec2 from, pace;   // position in pixels where it starts, and how it moves with `at`
-    float near, gain;  // the same of nearness
+    vec2 from, pace;   // start position in pixels, and its change with `at`
+    float near, gain;  // start nearness, and its change with `at`
     float at, last, nudge;
     vec3 plane;        // what the pixel holds that it comes from, or nothing, and
     vec2 middle;       // the middle of that pixel
     int level;         // cells have 4^level pixels to a side
     float gap;         // how far behind what is seen it passes
-    bool endless;      // at `last`, it is infinitely far
+    bool endless;      // true if it is infinitely far at `last`
     float sure;        // 1 where it met what is seen, less the deeper it came into something from the side
 };
 
 float march_near(March ray, float at) { return ray.near + ray.gain * at; }
 vec2 march_place(March ray) { return ray.from + ray.pace * ray.at; }
 
-// How far from its start it has come, in world units.
+// The length of the ray so far, in world units.
 float march_distance(March ray) { return ray.at / max(march_near(ray, ray.at), 1e-30); }
 
-// Where it leaves a box.
+// The `at` where the ray leaves a box.
 float march_leaves(March ray, vec2 low, vec2 high) {
     vec2 wall = mix(low, high, greaterThan(ray.pace, vec2(0.0)));
     vec2 way = mix((wall - ray.from) / ray.pace, vec2(MARCH_ENDLESS), equal(ray.pace, vec2(0.0)));
@@ -62,7 +62,7 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     return ray;
 }
 
-// The cell that it is in.
+// The cell that contains the ray's end.
 ivec2 march_cell(March ray, ivec2 size) {
     vec2 ahead = ray.from + ray.pace * (ray.at + ray.nudge);
     return ivec2(clamp(floor(ahead), vec2(0.0), vec2(size - 1))) >> (2 * ray.level);

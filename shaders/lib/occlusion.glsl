@@ -38,7 +38,7 @@ Slice slice_at(const vec4 rows[3], const vec4 rays[3], Seen seen, vec2 size, flo
     return Slice(along, pace, dot(within, along) < 0.0 ? -acos(lift) : acos(lift), share);
 }
 
-// How far apart neighboring pixels are where a surface faces the eye.
+// The distance of neighboring pixels on a surface that faces the eye.
 float pixel_pitch(const vec4 rays[3], float depth, vec2 size) {
     return depth * length(vec3(rays[0].x, rays[1].x, rays[2].x)) / size.x;
 }

@@ -1,6 +1,6 @@
-// The picture `image` at a fraction of its size and back, for what is so soft that fewer pixels hold it.
+// The picture `image` at a fraction of its size and back, for pictures so soft that fewer pixels are enough.
 
-// The mean of the pixels that a smaller one stands for.
+// The mean of the pixels that one smaller pixel covers.
 vec4 shrunk(int factor) {
     vec4 sum = vec4(0.0);
     for (int y = 0; y < factor; ++y)

@@ -7,7 +7,7 @@
 
 const int DEFERRED_LIGHTING_TILE = 16;            // pixels across
 const int DEFERRED_LIGHTING_BITS = 24;            // lights to a channel: as many as a float holds exactly
-const float DEFERRED_LIGHTING_EVERYWHERE = 1e18;  // beyond all places
+const float DEFERRED_LIGHTING_EVERYWHERE = 1e18;  // larger than every coordinate
 const float DEFERRED_LIGHTING_SMOOTH = 0.0016;    // the least alpha: highlights of lights without size stay finite
 
 struct LitSurface {
@@ -15,7 +15,7 @@ struct LitSurface {
     float nv, alpha;
 };
 
-// The place in the world, and in w whether anything is there.
+// The position in the world, and in w whether there is a surface.
 vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool placed) {
     vec3 place = placed ? position : camera_place(rays, camera_uv(pixel, extent), depth);
     bool there = is_finite(place) && all(lessThan(abs(place), vec3(GEOMETRY_FAR)));

@@ -24,7 +24,7 @@ float screen_reflections_roughness(vec2 material, bool linked, float roughness) 
     return clamp(linked ? finite(material).y : roughness, 0.0, 1.0);
 }
 
-// What a ray from this pixel meets: the place in the picture, how far away in the world, and how sure that is.
+// What a ray from this pixel meets: the position in the picture, the distance in the world, and the confidence.
 vec4 screen_reflections_ray(
     const vec4 rows[3], vec3 way, vec3 plane, float thickness, float longest, float fade, float border, bool sky,
     int steps
@@ -54,7 +54,7 @@ vec4 screen_reflections_mirror(
     return screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
 }
 
-// Light of what was met, times how sure that is.
+// The light of the surface that a ray met, times its confidence.
 vec4 screen_reflections_met(vec4 found) { return found.w > 0.0 ? found.w * finite(image_near(found.xy)) : vec4(0.0); }
 
 vec4 screen_reflections_sharp() { return screen_reflections_met(mirror_at(pixel)); }
@@ -168,7 +168,7 @@ vec4 screen_reflections(
 ) {
     vec4 safe = finite(image);
     vec3 part = screen_reflections_fresnel(normal, rough, material, albedo, mask, rays, reflectance, strength);
-    // What is mirrored is light that does not enter the surface.
+    // Light that is mirrored does not enter the surface.
     return vec4(safe.rgb * (1.0 - min(part, 1.0) * light.a) + safe.a * part * light.rgb, safe.a);
 }
 

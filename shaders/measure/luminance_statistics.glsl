@@ -2,7 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-const float luminance_statistics_none = -3.4e38;  // below every luminance: what is left if no pixel counts
+const float luminance_statistics_none = -3.4e38;  // below every luminance: the result if no pixel counts
 
 // The luminance of a pixel and how much it counts.
 vec2 luminance_statistics_light(vec4 image, bool alpha_weighted) {
@@ -10,13 +10,13 @@ vec2 luminance_statistics_light(vec4 image, bool alpha_weighted) {
     return alpha_weighted ? vec2(luminance(straight(image).rgb), image.a) : vec2(luminance(image.rgb), 1.0);
 }
 
-// What is summed: light, its logarithm and the count.
+// The sums: light, its logarithm and the count.
 vec3 luminance_statistics_terms(vec4 image, float delta, bool alpha_weighted) {
     vec2 light = luminance_statistics_light(image, alpha_weighted);
     return light.y * vec3(light.x, log(max(light.x, 0.0) + delta), 1.0);
 }
 
-// What is maximized: light and its negative.
+// The maxima: light and its negative.
 vec2 luminance_statistics_ends(vec4 image, bool alpha_weighted) {
     vec2 light = luminance_statistics_light(image, alpha_weighted);
     return light.y > 0.0 ? vec2(light.x, -light.x) : vec2(luminance_statistics_none);

@@ -5,7 +5,7 @@ const float eye_adaptation_dark = 1e-5;   // black is as dark as that: it has no
 const float eye_adaptation_most = 1e9;    // brighter than any sun
 const float eye_adaptation_cones = 0.1, eye_adaptation_rods = 0.4;  // seconds; Krawczyk et al. 2005
 
-// What is summed: the logarithm of light, and how much the pixel counts.
+// The sums: the logarithm of light, and the weight of the pixel.
 vec2 eye_adaptation_terms(vec4 image) {
     vec4 light = metered(image);
     return light.a * vec2(log(luminance(light.rgb) + eye_adaptation_dark), 1.0);

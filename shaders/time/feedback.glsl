@@ -4,7 +4,7 @@
 
 const float feedback_widest = 8.0;  // pixels of the past per pixel; where it shrinks more, it may alias
 
-// What comes back: finite, and no brighter than the ceiling. Light below 0 is none.
+// The light that is fed back: finite, not brighter than the ceiling, and not negative.
 vec4 feedback_first(vec4 image, float ceiling) {
     vec4 safe = finite(image);
     return vec4(clamp(safe.rgb, 0.0, ceiling), clamp(safe.a, 0.0, 1.0));

@@ -3,7 +3,7 @@
 
 const float light_trails_limit = 65504.0;  // as much as a half float holds: no sun outshines all that follows
 
-// What leaves a trail: light alone, which covers nothing. Lamps leave all of theirs; nothing is taken off.
+// Light that leaves a trail, without alpha. Lamps leave all of theirs: no threshold is subtracted.
 vec4 light_trails_bright(vec4 image, float threshold, float knee) {
     vec3 light = max(finite(image).rgb, 0.0);
     float from = threshold * (1.0 - knee), to = threshold * (1.0 + knee) + 1e-6;

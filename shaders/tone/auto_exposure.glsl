@@ -12,7 +12,7 @@ vec2 auto_exposure_light(vec4 image, float mask, float center_weight, vec2 cente
     return vec2(luminance(light.rgb), light.a * clamp(finite(mask), 0.0, 1e6) * spot);
 }
 
-// What is summed: light, its logarithm and the weight.
+// The sums: light, its logarithm and the weight.
 vec3 auto_exposure_terms(vec2 light) { return light.y * vec3(light.x, log(light.x + 1e-5), 1.0); }
 
 float auto_exposure_mean(vec3 sums, int metering) {

@@ -15,7 +15,7 @@ float photoreceptor_tone_map_log(vec4 image) {
     return light.a * photoreceptor_tone_map_dim(light.rgb);
 }
 
-// What is maximized: the logarithm of luminance and its negative.
+// The maxima: the logarithm of luminance and its negative.
 vec2 photoreceptor_tone_map_ends(vec4 image) {
     vec4 light = metered(image);
     return light.a > 0.0 ? vec2(1.0, -1.0) * photoreceptor_tone_map_dim(light.rgb) : vec2(-1e9);
@@ -44,7 +44,7 @@ vec4 photoreceptor_tone_map(
     return premultiplied(vec4(rgb, color.a));
 }
 
-// What is maximized: the brightest channel and the negative of the darkest.
+// The maxima: the brightest channel and the negative of the darkest.
 vec2 photoreceptor_tone_map_span(vec4 image) {
     vec4 color = straight(image);
     return color.a > ALPHA_NONE ? vec2(largest(color.rgb), -smallest(color.rgb)) : vec2(-1e9);
