@@ -54,14 +54,18 @@ def test_text_that_is_no_graph(text: str, says: str) -> None:
 
 
 def test_sixty_four_levels_are_fine() -> None:
-    text = '{"halation": 1, "ui": {"a": ' + "[" * 62 + "]" * 62 + "}}"
+    text = f'{{"halation": {FORMAT}, "ui": {{"a": ' + "[" * 62 + "]" * 62 + "}}"
     assert json.loads(dumps(loads(text, sandbox=UNRESTRICTED))) == json.loads(text)
 
 
 @pytest.mark.parametrize(
     ("body", "path", "says"),
     [
-        ('"halation": 2', "halation", "format 2 is newer than 1, the newest known here: update Halation"),
+        (
+            f'"halation": {FORMAT + 1}',
+            "halation",
+            f"format {FORMAT + 1} is newer than {FORMAT}, the newest known here: update Halation",
+        ),
         ('"halation": "1"', "halation", "expected a whole number, got a string"),
         ('"halation": null', "halation", "expected a whole number, got null"),
         ('"halation": 0', "halation", "expected a whole number >= 1"),
@@ -132,7 +136,7 @@ def test_sixty_four_levels_are_fine() -> None:
 )
 def test_json_paths(body: str, path: str, says: str) -> None:
     has_format = body.startswith('"halation"') and body != '"halation": 1'
-    text = f"{{{body}}}" if has_format else f'{{"halation": 1, {body}}}'
+    text = f"{{{body}}}" if has_format else f'{{"halation": {FORMAT}, {body}}}'
     found = fault(text)
     assert found.path == path
     with pytest.raises(DocumentError, match=says):

@@ -31,7 +31,7 @@ def test_the_text_of_a_graph() -> None:
   "controls": {
     "glow": {"label": "Glow", "target": "gain.gain"}
   },
-  "halation": 1,
+  "halation": FORMAT,
   "inputs": {
     "beauty": {"file": "shot.exr", "layer": "Combined", "type": "Image"}
   },
@@ -49,7 +49,7 @@ def test_the_text_of_a_graph() -> None:
   },
   "ui": {"nodes": {"gain": [10, 20.5], "soften": [200, 20]}, "zoom": 1.5}
 }
-"""
+""".replace("FORMAT", str(FORMAT))
     )
 
 

@@ -110,7 +110,7 @@ def test_it_refuses_what_reading_refuses(seed, rng: Random, wrong) -> None:
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        ("halation", 2),
+        ("halation", FORMAT + 1),
         ("halation", "1"),
         ("halation", 0),
         ("settings", []),
