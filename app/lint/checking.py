@@ -110,7 +110,7 @@ class GraphChecker:
             return self._report(file, text, whole_graph, self._find_problems(whole_graph, text))
 
     def _document_problem(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
-        problem, line = texts.unread(fault, text)
+        problem, line = texts.explain_fault(fault, text)
         if file and fault.file != file:  # it is in the file of a group
             problem = replace(problem, sentence=str(fault), at="")
         yield problem, line if not file or fault.file == file else 0, fault.exit_code
@@ -120,7 +120,7 @@ class GraphChecker:
         graph_problems = graph.problems(whole_graph, self.types)
         for problem in graph_problems:
             yield problem, 0, GraphError.exit_code if problem.severity == "error" else 0
-        for problem, line in texts.problems(whole_graph, text, self.types):
+        for problem, line in texts.find_text_problems(whole_graph, text, self.types):
             yield problem, line, 0
         if any(problem.severity == "error" for problem in graph_problems):
             return

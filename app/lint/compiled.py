@@ -22,7 +22,7 @@ from ..resources.picture import Picture
 from ..resources.provider import FrameFile, PictureProbe
 from ..resources.sandbox import Sandbox
 from ..resources.working_space import WorkingSpace
-from .rules.paths import named_paths
+from .rules.paths import list_paths
 
 if TYPE_CHECKING:
     from ..color.graph_faults import ColorFault
@@ -231,7 +231,7 @@ def _is_pointer(path: str, sandbox: Sandbox) -> bool:
 def _places(graph: Graph, inside: str = "", at: str = "", fixed: str = "") -> dict[str, tuple[str, str, str]]:
     """Who names a file first, by its path: node, socket and JSON path; `fixed` for what another file says."""
     places: dict[str, tuple[str, str, str]] = {}
-    for node, socket, where, path in named_paths(graph):
+    for node, socket, where, path in list_paths(graph):
         places.setdefault(str(PurePath(graph.folder, path)), (f"{inside}{node}", socket, fixed or f"{at}{where}"))
     for id, item in graph.nodes.items():
         if isinstance(item, Group):

@@ -89,7 +89,7 @@ def has_trait(item: Item | None, *traits: Trait) -> TypeGuard[Node]:
     return isinstance(item, Node) and not set(traits).isdisjoint(item.traits)
 
 
-def layered_path(item: Item) -> Value | None:
+def find_layered_path(item: Item) -> Value | None:
     """The path of a node that reads one layer of a picture, or None for other nodes."""
     values = item.values.values() if isinstance(item, Reader) else ()
     return next((value for value in values if value.layer_by), None)
@@ -97,7 +97,7 @@ def layered_path(item: Item) -> Value | None:
 
 def layer_read(item: Item, output: str) -> str:
     """The layer that a reader shows at an output, "" for other nodes. Outputs of a reader of renders are layers."""
-    if path := layered_path(item):
+    if path := find_layered_path(item):
         return getattr(item, path.layer_by)
     return output if isinstance(item, Reader) else ""
 

@@ -13,7 +13,7 @@ from ..graph import Graph, Problem
 from ..graph.frames import Pattern
 from ..graph.rules import Rule
 from ..resources.sandbox import Sandbox
-from .rules.paths import is_absolute, named_paths, who
+from .rules.paths import is_absolute, list_paths, who
 from .sheet import bodies
 
 PATH_CASE = Rule(
@@ -46,12 +46,12 @@ class Surroundings:
         folder = os.path.abspath(graph.folder)  # noqa: PTH100
         root = self.root(Path(folder))
         for body, inside, above in bodies(graph):
-            for node, socket, at, path in named_paths(body):
+            for node, socket, at, path in list_paths(body):
                 if is_absolute(path):
                     continue
                 asker = f"{inside}{who(node, socket)}"
                 problem = Problem(f"{inside}{node}", socket, "", PATH_CASE, f"{above}{at}")
-                if right := self._spelled(folder, path):
+                if right := self._find_spelling(folder, path):
                     sentence = f"{asker}: '{path}' is called '{right}' on disk: spell it like that"
                     yield replace(problem, sentence=sentence)
                 whole = Path(os.path.normpath(Path(folder, path)))
@@ -60,30 +60,30 @@ class Surroundings:
                     yield replace(problem, sentence=sentence, rule=OUTSIDE_REPOSITORY)
 
     def root(self, folder: Path) -> Path | None:
-        """The repository that a folder belongs to, if it is in one."""
+        """The root of the repository that a folder is in, or None."""
         key = str(folder)
         if key not in self._roots:
             home = (folder / ".git").exists()
             self._roots[key] = folder if home else self.root(folder.parent) if folder.parent != folder else None
         return self._roots[key]
 
-    def _spelled(self, folder: str, path: str) -> str:
-        """The path as the disk spells it, where only that is different; else nothing."""
-        here, right = folder, list[str]()
+    def _find_spelling(self, folder: str, path: str) -> str:
+        """The path with the upper and lower case of the disk, if only the case differs; else ""."""
+        here, parts = folder, list[str]()
         for part in PurePath(path).parts:
             if part != ".." and part not in self._in(here):
                 if _is_pattern(part):
-                    right.append(part)
+                    parts.append(part)
                     break
                 alike = self._alike(here).get(_plain(part), ())
                 if len(alike) != 1:
                     return ""
-                right.append(alike[0])
+                parts.append(alike[0])
             else:
-                right.append(part)
-            here = os.path.normpath(os.path.join(here, right[-1]))  # noqa: PTH118
-        found = "/".join(right)
-        return found if found != "/".join(PurePath(path).parts) else ""
+                parts.append(part)
+            here = os.path.normpath(os.path.join(here, parts[-1]))  # noqa: PTH118
+        spelling = "/".join(parts)
+        return spelling if spelling != "/".join(PurePath(path).parts) else ""
 
     def _alike(self, folder: str) -> dict[str, list[str]]:
         """What is in a folder, by its name without capitals."""

@@ -57,29 +57,29 @@ RULES = (*READING, OLD_VERSION, NOT_CANONICAL)
 _MARKER = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
 
 
-def unread(fault: DocumentError, text: str) -> tuple[Problem, int]:
-    """Why a text is no graph, and the line that is known for it, or 0."""
-    if fault.rule == SYNTAX.name and (found := _MARKER.search(text)):
-        words = "a merge was left unfinished here: keep what is right, and remove the lines of <, = and >"
-        return Problem("", "", words, CONFLICT_MARKERS), text.count("\n", 0, found.start()) + 1
+def explain_fault(fault: DocumentError, text: str) -> tuple[Problem, int]:
+    """The problem of a text that is not a graph, and its line, or 0 if the line is unknown."""
+    if fault.rule == SYNTAX.name and (marker := _MARKER.search(text)):
+        words = "a git merge is unfinished here: keep one side, and remove the lines of <, = and >"
+        return Problem("", "", words, CONFLICT_MARKERS), text.count("\n", 0, marker.start()) + 1
     rule = next((rule for rule in READING if rule.name == fault.rule), SCHEMA)
     words = ": ".join(part for part in (fault.path, fault.fault) if part)
     return Problem("", "", words, rule, fault.path), fault.line
 
 
-def problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterator[tuple[Problem, int]]:
+def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterator[tuple[Problem, int]]:
     """What is wrong with the text of a graph, and the line of it, or 0 where the JSON path says it."""
     try:
-        wanted = document.dumps(graph)
+        canonical = document.dumps(graph)
     except GraphError:
         return
     # A checkout on Windows may have other ends of lines, which is for git to say.
     lines = text.replace("\r\n", "\n")
-    if lines == wanted:
+    if lines == canonical:
         return
     if _grown(graph):
         yield from ((problem, 0) for problem in _old(parse(text, ""), types, ""))
-    pairs = enumerate(zip_longest(lines.split("\n"), wanted.split("\n")), 1)
+    pairs = enumerate(zip_longest(lines.split("\n"), canonical.split("\n")), 1)
     line = next((number for number, (here, there) in pairs if here != there), 1)
     words = "the layout is not the canonical one from here on: halation fmt rewrites it"
     yield Problem("", "", words, NOT_CANONICAL), line

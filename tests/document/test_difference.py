@@ -10,7 +10,7 @@ import pytest
 from edited_graphs import edit_randomly, make_graph, parse_graph
 from halation.document import dumps
 from halation.document.diff_merge import ABSENT, apply_difference, compare_graphs, describe_difference, describe_graph
-from halation.document.diff_merge.parts import text_of
+from halation.document.diff_merge.parts import write_parts
 from halation.graph import Expression, Graph, Group, Key, Keys, Output, Port, Settings, Unknown
 from halation.nodes import catalogue
 from hypothesis import given, settings
@@ -29,10 +29,10 @@ def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
         after = edit_randomly(rng, after)
     after = parse_graph(dumps(after))
     found = compare_graphs(before, after, layout=True)
-    assert dumps(parse_graph(text_of(apply_difference(before, found)))) == dumps(after)
+    assert dumps(parse_graph(write_parts(apply_difference(before, found)))) == dumps(after)
     assert bool(found) == (dumps(before) != dumps(after))
     logic = compare_graphs(before, after)
-    assert not compare_graphs(parse_graph(text_of(apply_difference(before, logic))), after)
+    assert not compare_graphs(parse_graph(write_parts(apply_difference(before, logic))), after)
     assert len(describe_difference(logic, before, after)) > 0 or not logic
     assert (describe_graph(before) == describe_graph(after)) == (not logic)
 

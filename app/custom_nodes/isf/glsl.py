@@ -1,7 +1,11 @@
-"""From a shader of the Interactive Shader Format to GLSL 4.10.
+"""Translates an ISF shader to GLSL 4.10.
 
-Rows of the format run from the bottom, ours from the top. No picture is turned over for that: positions are, where
-pictures are read and where a pixel asks which one it is.
+ISF is written in GLSL for OpenGL 2: `varying`, `texture2D`, `gl_FragColor`, and names that are keywords today. Such
+words are replaced one by one (`_translate`), so that line numbers stay and messages of drivers name the user's lines.
+Functions of the format, such as IMG_PIXEL, are GLSL functions that are written before the text.
+
+Row 0 is the bottom row in ISF and the top row here. No picture is flipped: positions are, where a function reads a
+picture and where the shader asks for its own position (gl_FragCoord). That costs nothing and loses nothing.
 """
 
 from __future__ import annotations
@@ -24,7 +28,7 @@ _TOKEN = re.compile(r"\.?\d[\w.]*|(?P<word>[A-Za-z_]\w*)")
 _QUALIFIED = re.compile(r"\s+(?:in|out|varying|uniform)\b")
 _CALLED = re.compile(r"\s*\(")
 
-WORDS: Mapping[str, str] = MappingProxyType(
+RENAMED_WORDS: Mapping[str, str] = MappingProxyType(
     {
         "main": "isf_main",
         "gl_FragColor": "isf_FragColor",
@@ -33,7 +37,7 @@ WORDS: Mapping[str, str] = MappingProxyType(
         "vv_vertShaderInit": "isf_vertShaderInit",
     }
 )
-CALLS: Mapping[str, str] = MappingProxyType(
+RENAMED_FUNCTIONS: Mapping[str, str] = MappingProxyType(
     {
         "texture": "isf_texture",
         "texture2D": "isf_texture",
@@ -44,9 +48,9 @@ CALLS: Mapping[str, str] = MappingProxyType(
         "dFdy": "isf_dFdy",
     }
 )
-"""Functions that see where rows begin."""
+"""Functions that depend on where row 0 is."""
 
-LATER = frozenset(
+LATER_KEYWORDS = frozenset(
     {
         "active",
         "asm",
@@ -92,10 +96,10 @@ LATER = frozenset(
         "writeonly",
     }
 )
-"""Words that became keywords after the GLSL that shaders are written in."""
+"""Keywords of GLSL 4.10 that were free in the GLSL of ISF."""
 
 QUALIFIERS = frozenset({"smooth", "flat", "noperspective", "centroid"})
-"""Names, unless a declaration follows."""
+"""Keywords that ISF uses as names unless a declaration follows."""
 
 _READING = """vec2 IMG_SIZE(sampler2D image) { return vec2(textureSize(image, 0)); }
 vec4 IMG_NORM_PIXEL(sampler2D image, vec2 at) { return textureLod(image, vec2(at.x, 1.0 - at.y), 0.0); }
@@ -167,8 +171,8 @@ _TYPES: Mapping[str, str] = MappingProxyType(
 )
 
 
-def shader_text(code: Code, header: Header) -> ShaderText:
-    """The program of a shader. Raises CodeFault."""
+def write_program(code: Code, header: Header) -> ShaderText:
+    """Write the program of a shader. Raises CodeFault."""
     types = _list_types(header)
     fragment, vertex = (
         guard_code(guard_loops(_translate(expand_code(text, types=types), way)), types)
@@ -181,10 +185,10 @@ def shader_text(code: Code, header: Header) -> ShaderText:
         raise CodeFault(0, "there is no GLSL after the head: write a void main() that sets gl_FragColor")
     used = words(fragment, vertex)
     declared = [
-        *_uniforms(header, used),
-        *(f"uniform sampler2D {rename_word(name)};" for name in samplers(header, used)),
+        *_declare_uniforms(header, used),
+        *(f"uniform sampler2D {rename_word(name)};" for name in list_samplers(header, used)),
     ]
-    declared += [*_rectangles(header, used), f"int {COUNTER} = 0;"]
+    declared += [*_define_host_names(header, used), f"int {COUNTER} = 0;"]
     if used & {QUOTIENT, REMAINDER}:
         declared.append((folder() / "lib" / "whole.glsl").read_text("utf-8"))
     where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
@@ -206,26 +210,28 @@ def shader_text(code: Code, header: Header) -> ShaderText:
     return ShaderText(painted, ShaderStage("\n".join([*declared, _VERTEX_START, _READING]), vertex, _VERTEX_END, file))
 
 
-def samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
-    """The pictures that the text reads, by the names that the head gives them."""
+def list_samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
+    """The names in the header of the pictures that the text reads."""
     pictures = (one.name for one in header.inputs if one.type in PICTURES)
     return tuple(
-        name for name in (*pictures, *header.buffers, *header.imported) if {rename_word(name), *_around(name)} & used
+        name
+        for name in (*pictures, *header.buffers, *header.imported)
+        if {rename_word(name), *_host_names(name)} & used
     )
 
 
-def values(header: Header, used: frozenset[str]) -> tuple[str, ...]:
-    """The other inputs that the text reads, by the names that the head gives them."""
+def list_values(header: Header, used: frozenset[str]) -> tuple[str, ...]:
+    """The names in the header of the other inputs that the text reads."""
     return tuple(one.name for one in header.inputs if one.type not in PICTURES and rename_word(one.name) in used)
 
 
 def rename_word(name: str) -> str:
-    """What a name of the head is called in the program."""
-    return f"isf_{name}" if name in LATER or name in QUALIFIERS else name
+    """The name in the program of a name in the header."""
+    return f"isf_{name}" if name in LATER_KEYWORDS or name in QUALIFIERS else name
 
 
 def _translate(text: str, varying: str) -> str:
-    """The text without macros with the words of today, line by line."""
+    """Replace words of old GLSL, so that each line stays in its place; macros are expanded already."""
 
     def word(found: re.Match[str]) -> str:
         name = found["word"]
@@ -233,11 +239,11 @@ def _translate(text: str, varying: str) -> str:
             return found[0]
         if name == "varying":
             return varying
-        if name in WORDS:
-            return WORDS[name]
-        if name in CALLS and _CALLED.match(text, found.end()):
-            return CALLS[name]
-        if name in LATER or (name in QUALIFIERS and not _QUALIFIED.match(text, found.end())):
+        if name in RENAMED_WORDS:
+            return RENAMED_WORDS[name]
+        if name in RENAMED_FUNCTIONS and _CALLED.match(text, found.end()):
+            return RENAMED_FUNCTIONS[name]
+        if name in LATER_KEYWORDS or (name in QUALIFIERS and not _QUALIFIED.match(text, found.end())):
             return f"isf_{name}"
         return name
 
@@ -252,25 +258,25 @@ def _list_types(header: Header) -> dict[str, str]:
     return types | functions | {"isf_FragCoord": "vec4", "isf_FragNormCoord": "vec2", "isf_FragColor": "vec4"}
 
 
-def _uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:
+def _declare_uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:
     # The macros of the top read the size, whatever the text does.
     for name, glsl in UNIFORMS.items():
         if name in used or name == "RENDERSIZE":
             yield f"uniform {glsl} {name};"
     types = {one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}
-    for name in values(header, used):
+    for name in list_values(header, used):
         yield f"uniform {types[name]} {rename_word(name)};"
 
 
-def _around(name: str) -> tuple[str, str, str]:
+def _host_names(name: str) -> tuple[str, str, str]:
     return f"_{name}_imgRect", f"_{name}_imgSize", f"_{name}_flip"
 
 
-def _rectangles(header: Header, used: frozenset[str]) -> Iterator[str]:
-    """What hosts know of pictures besides; no document says so, but shaders use it."""
-    for name in samplers(header, used):
+def _define_host_names(header: Header, used: frozenset[str]) -> Iterator[str]:
+    """Define names that ISF hosts provide for each picture; no document has them, but shaders use them."""
+    for name in list_samplers(header, used):
         size = f"vec2(textureSize({rename_word(name)}, 0))"
         texts = (f"vec4(0.0, 0.0, {size})", size, "false")
-        for word, text in zip(_around(name), texts, strict=True):
+        for word, text in zip(_host_names(name), texts, strict=True):
             if word in used:
                 yield f"#define {word} {text}"

@@ -1,4 +1,4 @@
-"""The head of a file in the Interactive Shader Format: a comment that holds JSON."""
+"""Reads the header of an ISF file: the JSON in its first comment."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TYPES = ("event", "bool", "long", "float", "point2D", "color", "image", "audio",
 PICTURES = ("image", "audio", "audioFFT")
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*|_[A-Za-z0-9][A-Za-z0-9_]*")
-_TAKEN = re.compile(
+_RESERVED_NAMES = re.compile(
     r"gl_\w*|isf_\w*|vv_\w*|halation_\w*|IMG_\w*|\w*__\w*|PASSINDEX|RENDERSIZE|TIME|TIMEDELTA|DATE|FRAMEINDEX|main"
 )
 
@@ -29,7 +29,7 @@ Section = dict[str, Any]
 
 @dataclass(frozen=True)
 class IsfInput:
-    """One of the inputs. Numbers are lists: one for a float, two for a point, four for a color."""
+    """An input of the shader. Numbers are tuples: of one for a float, two for a point, four for a color."""
 
     name: str
     type: str
@@ -38,12 +38,12 @@ class IsfInput:
     low: tuple[float, ...] = ()
     high: tuple[float, ...] = ()
     choices: tuple[tuple[int, str], ...] = ()
-    """Of a long: what it may be, and what that is called."""
+    """The values of a long, with their labels."""
 
 
 @dataclass(frozen=True)
 class Buffer:
-    """What passes draw into and read by name."""
+    """A buffer that passes draw into and read by name."""
 
     name: str
     persistent: bool = False
@@ -54,19 +54,19 @@ class Buffer:
 
 @dataclass(frozen=True)
 class Header:
-    """All that a head says. `passes` are names of buffers, empty for the picture itself; there is at least one."""
+    """What a header declares. `passes` are the buffers they draw into, "" for the picture; there is at least one."""
 
     doc: str
     inputs: tuple[IsfInput, ...]
     passes: tuple[str, ...]
     buffers: Mapping[str, Buffer]
     imported: Mapping[str, str]
-    """Files beside the shader by the names of their samplers."""
+    """Files in the folder of the shader, by the names of their samplers."""
     categories: tuple[str, ...] = field(default=())
 
 
 def read_header(text: str) -> Header:
-    """Read the head of a shader. Raises CodeFault with the line where something is wrong."""
+    """Read the header of a shader. Raises CodeFault with the line of the fault."""
     source = unify_lines(text)
     start = len(source) - len(source.lstrip())
     end = source.find("*/", start)
@@ -76,12 +76,12 @@ def read_header(text: str) -> Header:
 
 
 class _HeaderReader:
-    """The work in progress."""
+    """Reads one header."""
 
     def __init__(self, source: str, start: int, head: str) -> None:
         self.source, self.end, self.first = source, start + len(head), source.count("\n", 0, start) + 1
         try:
-            raw = json.loads(head, parse_constant=self._constant)
+            raw = json.loads(head, parse_constant=self._refuse_constant)
         except json.JSONDecodeError as fault:
             raise CodeFault(self.first + fault.lineno - 1, f"the head is no JSON: {_lower_first(fault.msg)}") from None
         except RecursionError:
@@ -93,11 +93,11 @@ class _HeaderReader:
         self.raw = cast(Section, raw)
 
     def read(self) -> Header:
-        inputs = self._inputs()
+        inputs = self._read_inputs()
         buffers: dict[str, Buffer] = {}
-        self._old_buffers(buffers)
-        passes = self._passes(buffers)
-        imported = self._imported()
+        self._read_old_buffers(buffers)
+        passes = self._read_passes(buffers)
+        imported = self._read_imported()
         used_names: set[str] = set()
         for name in (*(one.name for one in inputs), *buffers, *imported):
             if name in used_names:
@@ -113,35 +113,35 @@ class _HeaderReader:
                 for name in sorted(formula.names - size_names):
                     fault = f"the size '{formula.text}' of '{buffer.name}' reads '{name}', which is no number here"
                     self._fail(fault, buffer.name)
-        credit = self._text(self.raw, "CREDIT")
-        parts = (self._text(self.raw, "DESCRIPTION"), f"By {credit.removeprefix('by ')}." if credit else "")
-        categories = tuple(part for part in self._list(self.raw, "CATEGORIES") if isinstance(part, str))
+        credit = self._read_text(self.raw, "CREDIT")
+        parts = (self._read_text(self.raw, "DESCRIPTION"), f"By {credit.removeprefix('by ')}." if credit else "")
+        categories = tuple(part for part in self._read_list(self.raw, "CATEGORIES") if isinstance(part, str))
         doc = "\n".join(part for part in parts if part) or "A shader in the Interactive Shader Format."
         return Header(doc, inputs, passes, buffers, imported, categories)
 
     # --- inputs ------------------------------------------------------------------------------------------------------
 
-    def _inputs(self) -> tuple[IsfInput, ...]:
-        items = self._list(self.raw, "INPUTS")
+    def _read_inputs(self) -> tuple[IsfInput, ...]:
+        items = self._read_list(self.raw, "INPUTS")
         if len(items) > MAX_INPUTS:
             self._fail(f"there are {len(items)} INPUTS: {MAX_INPUTS} are the most", "INPUTS")
-        return tuple(self._input(self._section(item, "INPUTS")) for item in items)
+        return tuple(self._read_input(self._read_section(item, "INPUTS")) for item in items)
 
-    def _input(self, raw: Section) -> IsfInput:
-        name, kind = self._name(raw.get("NAME"), "an input"), raw.get("TYPE")
+    def _read_input(self, raw: Section) -> IsfInput:
+        name, kind = self._read_name(raw.get("NAME"), "an input"), raw.get("TYPE")
         if kind not in TYPES:
             self._fail(f"the input '{name}' has the TYPE {json.dumps(kind)[:40]}: known are {', '.join(TYPES)}", name)
-        label = self._text(raw, "LABEL")
+        label = self._read_text(raw, "LABEL")
         if kind in PICTURES:
             return IsfInput(name, kind, label)
         length = {"point2D": 2, "color": 4}.get(kind, 1)
-        default, low, high = (self._numbers(raw, key, name, length) for key in ("DEFAULT", "MIN", "MAX"))
+        default, low, high = (self._read_numbers(raw, key, name, length) for key in ("DEFAULT", "MIN", "MAX"))
         if low and high:
             low, high = (tuple(pick(a, b) for a, b in zip(low, high, strict=True)) for pick in (min, max))
-        return IsfInput(name, kind, label, default, low, high, self._choices(raw, name) if kind == "long" else ())
+        return IsfInput(name, kind, label, default, low, high, self._read_choices(raw, name) if kind == "long" else ())
 
-    def _choices(self, raw: Section, name: str) -> tuple[tuple[int, str], ...]:
-        values, labels = self._list(raw, "VALUES"), self._list(raw, "LABELS")
+    def _read_choices(self, raw: Section, name: str) -> tuple[tuple[int, str], ...]:
+        values, labels = self._read_list(raw, "VALUES"), self._read_list(raw, "LABELS")
         if not values and labels:
             values = list(range(len(labels)))
         numbers_by_label: dict[str, int] = {}
@@ -157,8 +157,8 @@ class _HeaderReader:
             numbers_by_label[label] = int(value)
         return tuple((value, label) for label, value in numbers_by_label.items())
 
-    def _numbers(self, raw: Section, key: str, name: str, length: int) -> tuple[float, ...]:
-        """What is given as one number or a list of them; nothing where nothing is."""
+    def _read_numbers(self, raw: Section, key: str, name: str, length: int) -> tuple[float, ...]:
+        """The numbers of an entry that is a number or a list of numbers; () if it is absent."""
         entry = raw.get(key)
         if entry is None:
             return ()
@@ -172,41 +172,41 @@ class _HeaderReader:
 
     # --- passes ------------------------------------------------------------------------------------------------------
 
-    def _passes(self, buffers: dict[str, Buffer]) -> tuple[str, ...]:
-        items = self._list(self.raw, "PASSES")
+    def _read_passes(self, buffers: dict[str, Buffer]) -> tuple[str, ...]:
+        items = self._read_list(self.raw, "PASSES")
         if len(items) > MAX_PASSES:
             self._fail(f"there are {len(items)} PASSES: {MAX_PASSES} are the most", "PASSES")
         targets: list[str] = []
         for item in items:
-            raw = self._section(item, "PASSES")
+            raw = self._read_section(item, "PASSES")
             target = raw.get("TARGET")
-            targets.append(self._name(target, "the TARGET of a pass") if target not in (None, "") else "")
+            targets.append(self._read_name(target, "the TARGET of a pass") if target not in (None, "") else "")
             if targets[-1]:
-                self._buffer(buffers, targets[-1], raw, bool(_flag(raw, "PERSISTENT")))
+                self._read_buffer(buffers, targets[-1], raw, bool(_is_set(raw, "PERSISTENT")))
         return tuple(targets) or ("",)
 
-    def _buffer(self, buffers: dict[str, Buffer], name: str, raw: Section, persistent: bool) -> None:
-        """Several passes may draw into one buffer: what any of them says of it holds."""
+    def _read_buffer(self, buffers: dict[str, Buffer], name: str, raw: Section, persistent: bool) -> None:
+        """Add what a pass says of its buffer; several passes may draw into one buffer."""
         before = buffers.get(name, Buffer(name))
         buffers[name] = Buffer(
             name,
             persistent or before.persistent,
-            bool(_flag(raw, "FLOAT")) or before.floating,
-            self._size(raw, "WIDTH", name) or before.width,
-            self._size(raw, "HEIGHT", name) or before.height,
+            bool(_is_set(raw, "FLOAT")) or before.floating,
+            self._read_size(raw, "WIDTH", name) or before.width,
+            self._read_size(raw, "HEIGHT", name) or before.height,
         )
 
-    def _old_buffers(self, buffers: dict[str, Buffer]) -> None:
-        """Version 1 names persistent buffers apart from passes."""
+    def _read_old_buffers(self, buffers: dict[str, Buffer]) -> None:
+        """Read PERSISTENT_BUFFERS, where version 1 of the format lists buffers apart from passes."""
         entries = self.raw.get("PERSISTENT_BUFFERS") or []
         if not isinstance(entries, list | dict):
             self._fail("PERSISTENT_BUFFERS is a list or an object", "PERSISTENT_BUFFERS")
         for item in cast("list[Any] | Section", entries):
             inner = cast(Section, entries).get(item) if isinstance(entries, dict) else None
             raw = cast(Section, inner) if isinstance(inner, dict) else {}
-            self._buffer(buffers, self._name(item, "a persistent buffer"), raw, True)
+            self._read_buffer(buffers, self._read_name(item, "a persistent buffer"), raw, True)
 
-    def _size(self, raw: Section, key: str, name: str) -> SizeFormula | None:
+    def _read_size(self, raw: Section, key: str, name: str) -> SizeFormula | None:
         entry = raw.get(key)
         if entry is None or entry == "":
             return None
@@ -218,17 +218,20 @@ class _HeaderReader:
         except SizeError as fault:
             self._fail(f"the {key} of '{name}', '{str(entry)[:60]}', cannot be read: {fault}", name)
 
-    def _imported(self) -> dict[str, str]:
-        given = self.raw.get("IMPORTED") or {}
-        if isinstance(given, list):
-            items = [(one.get("NAME"), one) for one in (self._section(item, "IMPORTED") for item in cast(Any, given))]
-        elif isinstance(given, dict):
-            items = [(name, self._section(item, "IMPORTED")) for name, item in cast(Section, given).items()]
+    def _read_imported(self) -> dict[str, str]:
+        section = self.raw.get("IMPORTED") or {}
+        if isinstance(section, list):
+            items = [
+                (entry.get("NAME"), entry)
+                for entry in (self._read_section(item, "IMPORTED") for item in cast(Any, section))
+            ]
+        elif isinstance(section, dict):
+            items = [(name, self._read_section(item, "IMPORTED")) for name, item in cast(Section, section).items()]
         else:
             self._fail("IMPORTED is an object", "IMPORTED")
-        found: dict[str, str] = {}
-        for said, raw in items:
-            name, path = self._name(said, "an imported picture"), self._text(raw, "PATH")
+        paths: dict[str, str] = {}
+        for name_entry, raw in items:
+            name, path = self._read_name(name_entry, "an imported picture"), self._read_text(raw, "PATH")
             parts = PurePosixPath(path).parts
             if not parts or "\\" in path or ":" in path or path.startswith("/") or ".." in parts or "\0" in path:
                 self._fail(
@@ -236,8 +239,8 @@ class _HeaderReader:
                     "folder of the shader or in one below",
                     name,
                 )
-            found[name] = path
-        return found
+            paths[name] = path
+        return paths
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -245,15 +248,15 @@ class _HeaderReader:
         at = self.source.find(f'"{near}"', 0, self.end) if near else -1
         raise CodeFault(self.source.count("\n", 0, at) + 1 if at >= 0 else self.first, sentence)
 
-    def _constant(self, word: str) -> NoReturn:
+    def _refuse_constant(self, word: str) -> NoReturn:
         self._fail(f"the head is no JSON: {word} is no number there")
 
-    def _section(self, item: Any, key: str) -> Section:
+    def _read_section(self, item: Any, key: str) -> Section:
         if not isinstance(item, dict):
             self._fail(f"{key} holds {json.dumps(item)[:40]}, which is no object", key)
         return cast(Section, item)
 
-    def _list(self, raw: Section, key: str) -> list[Any]:
+    def _read_list(self, raw: Section, key: str) -> list[Any]:
         entries = raw.get(key)
         if entries is None:
             return []
@@ -261,17 +264,17 @@ class _HeaderReader:
             self._fail(f"{key} is a list, in brackets", key)
         return cast("list[Any]", entries)
 
-    def _text(self, raw: Section, key: str) -> str:
+    def _read_text(self, raw: Section, key: str) -> str:
         entry = raw.get(key)
         return entry.strip() if isinstance(entry, str) else ""
 
-    def _name(self, name: Any, owner: str) -> str:
+    def _read_name(self, name: Any, owner: str) -> str:
         if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
             self._fail(
                 f"{owner} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
                 name if isinstance(name, str) else "",
             )
-        if _TAKEN.fullmatch(name):
+        if _RESERVED_NAMES.fullmatch(name):
             self._fail(f"{owner} is called '{name}', which means something else: choose another name", name)
         return name
 
@@ -280,8 +283,8 @@ def _is_number(item: Any) -> bool:
     return isinstance(item, int | float) and abs(item) < 3.4e38 and math.isfinite(item)
 
 
-def _flag(raw: Section, key: str) -> bool:
-    """True, 1, "1" and "true" are all found in files."""
+def _is_set(raw: Section, key: str) -> bool:
+    """True for true, 1, "1", "true" and "yes", all of which files have."""
     return str(raw.get(key, raw.get(key.lower(), ""))).strip().lower() in ("true", "1", "1.0", "yes")
 
 

@@ -14,7 +14,7 @@ from ...errors import GraphError
 from ...glsl import parse, words
 from ..code import Code, CustomNode, make_class
 from ..securing import check_length
-from .glsl import UNIFORMS, rename_word, samplers, shader_text, values
+from .glsl import UNIFORMS, list_samplers, list_values, rename_word, write_program
 from .header import PICTURES, Buffer, Header, read_header
 from .inputs import (
     LIGHT,
@@ -68,7 +68,7 @@ def make_isf_class(code: Code) -> type[CustomNode]:
     for part in (code.text, code.vertex):
         check_length(part)
     header = read_header(code.text)
-    text = shader_text(code, header)
+    text = write_program(code, header)
     used = words(*(stage.text for stage in (text.fragment, text.vertex) if stage))
     names = choose_input_names(header.inputs)
     shader = IsfShader(
@@ -76,8 +76,8 @@ def make_isf_class(code: Code) -> type[CustomNode]:
         text,
         PurePath(code.file).parent.as_posix() if code.file else "",
         names,
-        samplers(header, used),
-        values(header, used),
+        list_samplers(header, used),
+        list_values(header, used),
         tuple(name for name in UNIFORMS if name in used or name == "RENDERSIZE"),
     )
     sockets = {names[entry.name]: make_isf_socket(entry) for entry in header.inputs if entry.type in PICTURES}

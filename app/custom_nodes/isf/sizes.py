@@ -1,4 +1,4 @@
-"""Sizes of buffers: small formulas of `$WIDTH`, `$HEIGHT` and inputs, read and computed by ourselves."""
+"""Sizes of ISF buffers: formulas of `$WIDTH`, `$HEIGHT` and inputs, parsed here so that no file runs code."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from types import MappingProxyType
 MAX_LENGTH = 1000
 MAX_DEPTH = 50
 
-Run = Callable[[Mapping[str, float]], float]
+SizeEvaluator = Callable[[Mapping[str, float]], float]
 
 _TOKENS = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>\$?[A-Za-z_]\w*)|(?P<sign>.))")
 _OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
@@ -45,7 +45,7 @@ FUNCTIONS: Mapping[str, tuple[Callable[..., float], int]] = MappingProxyType(
         "clamp": (lambda low, x, high: min(max(x, low), high), 3),
     }
 )
-"""What they compute, and of how many numbers; 0 stands for any. `clamp(low, x, high)` is as exprtk has it."""
+"""Functions with their number of arguments, 0 for any. The order of `clamp(low, x, high)` is that of exprtk."""
 
 
 class SizeError(Exception):
@@ -58,7 +58,7 @@ class SizeFormula:
 
     text: str
     names: frozenset[str] = field(compare=False)
-    _run: Run = field(compare=False, repr=False)
+    _run: SizeEvaluator = field(compare=False, repr=False)
 
     def pixels(self, values: Mapping[str, float]) -> int:
         """The length, rounded down, at least 1. Raises SizeError where there is none."""
@@ -70,7 +70,7 @@ class SizeFormula:
             raise SizeError("it has no value") from None
         if not math.isfinite(length):
             raise SizeError("it is not finite")
-        # What is whole but for rounding is meant to be whole.
+        # A length that is an integer except for rounding errors is meant to be one.
         whole = round(length)
         return max(1, whole if abs(length - whole) <= 1e-9 * max(1.0, abs(length)) else math.floor(length))
 
@@ -79,38 +79,38 @@ def read_size(text: str) -> SizeFormula:
     """Read a formula. Raises SizeError."""
     if len(text) > MAX_LENGTH:
         raise SizeError(f"it has more than {MAX_LENGTH} characters")
-    return _SizeParser(text).whole()
+    return _SizeParser(text).parse()
 
 
 class _SizeParser:
-    """The work in progress: what is left of the tokens, last first."""
+    """A parser; `tokens` are those that are left, in reverse order."""
 
     def __init__(self, text: str) -> None:
         self.text = text
         matches = [match for match in _TOKENS.finditer(text.strip()) if match[0].strip()]
-        self.left = [(str(match.lastgroup), str(match[match.lastgroup or 0])) for match in reversed(matches)]
+        self.tokens = [(str(match.lastgroup), str(match[match.lastgroup or 0])) for match in reversed(matches)]
         self.names: set[str] = set()
         self.depth = 0
 
-    def whole(self) -> SizeFormula:
-        run = self._sum()
-        if self.left:
-            raise SizeError(f"'{self.left[-1][1]}' is not expected there")
+    def parse(self) -> SizeFormula:
+        run = self._parse_sum()
+        if self.tokens:
+            raise SizeError(f"'{self.tokens[-1][1]}' is not expected there")
         return SizeFormula(self.text, frozenset(self.names), run)
 
-    def _sum(self) -> Run:
+    def _parse_sum(self) -> SizeEvaluator:
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise SizeError(f"it nests deeper than {MAX_DEPTH}")
-        run = self._chain(("+", "-"), lambda: self._chain(("*", "/", "%"), self._read_signed))
+        run = self._parse_chain(("+", "-"), lambda: self._parse_chain(("*", "/", "%"), self._parse_signed))
         self.depth -= 1
         return run
 
-    def _chain(self, signs: tuple[str, ...], part: Callable[[], Run]) -> Run:
+    def _parse_chain(self, signs: tuple[str, ...], part: Callable[[], SizeEvaluator]) -> SizeEvaluator:
         first = part()
-        rest: list[tuple[Callable[[float, float], float], Run]] = []
-        while self._next() in signs:
-            sign = self.left.pop()[1]
+        rest: list[tuple[Callable[[float, float], float], SizeEvaluator]] = []
+        while self._next_sign() in signs:
+            sign = self.tokens.pop()[1]
             rest.append((_OPERATORS[sign], part()))
         if not rest:
             return first
@@ -123,48 +123,48 @@ class _SizeParser:
 
         return run
 
-    def _read_signed(self) -> Run:
+    def _parse_signed(self) -> SizeEvaluator:
         minus = False
-        while self._next() in ("-", "+"):
-            minus ^= self.left.pop()[1] == "-"
-        base = self._atom()
-        if self._next() == "^":
-            self.left.pop()
+        while self._next_sign() in ("-", "+"):
+            minus ^= self.tokens.pop()[1] == "-"
+        base = self._parse_operand()
+        if self._next_sign() == "^":
+            self.tokens.pop()
             self.depth += 1
             if self.depth > MAX_DEPTH:
                 raise SizeError(f"it nests deeper than {MAX_DEPTH}")
-            base = _raise_to(base, self._read_signed())
+            base = _raise_to(base, self._parse_signed())
             self.depth -= 1
         return (lambda values: -base(values)) if minus else base
 
-    def _atom(self) -> Run:
-        if not self.left:
+    def _parse_operand(self) -> SizeEvaluator:
+        if not self.tokens:
             raise SizeError("it ends too early")
-        kind, word = self.left.pop()
+        kind, word = self.tokens.pop()
         if kind == "number":
             number = float(word)
             return lambda values: number
         if word == "(":
-            run = self._sum()
-            self._expect(")")
+            run = self._parse_sum()
+            self._take_sign(")")
             return run
-        if kind == "name" and self._next() == "(":
-            return self._call(word)
+        if kind == "name" and self._next_sign() == "(":
+            return self._parse_call(word)
         if kind == "name":
             name = word.removeprefix("$")
             self.names.add(name)
             return lambda values: values[name]
         raise SizeError(f"'{word}' is not expected there")
 
-    def _call(self, word: str) -> Run:
+    def _parse_call(self, word: str) -> SizeEvaluator:
         if word not in FUNCTIONS:
             raise SizeError(f"there is no function '{word}': use {', '.join(FUNCTIONS)}")
-        self.left.pop()
-        arguments = [self._sum()]
-        while self._next() == ",":
-            self.left.pop()
-            arguments.append(self._sum())
-        self._expect(")")
+        self.tokens.pop()
+        arguments = [self._parse_sum()]
+        while self._next_sign() == ",":
+            self.tokens.pop()
+            arguments.append(self._parse_sum())
+        self._take_sign(")")
         call, count = FUNCTIONS[word]
         if count not in (0, len(arguments)):
             raise SizeError(f"'{word}' takes {count} numbers, not {len(arguments)}")
@@ -172,14 +172,14 @@ class _SizeParser:
             call(*[one(values) for one in arguments]) if len(arguments) > 1 or count else arguments[0](values)
         )
 
-    def _next(self) -> str:
-        return self.left[-1][1] if self.left else ""
+    def _next_sign(self) -> str:
+        return self.tokens[-1][1] if self.tokens else ""
 
-    def _expect(self, sign: str) -> None:
-        if self._next() != sign:
+    def _take_sign(self, sign: str) -> None:
+        if self._next_sign() != sign:
             raise SizeError(f"a '{sign}' is missing")
-        self.left.pop()
+        self.tokens.pop()
 
 
-def _raise_to(base: Run, power: Run) -> Run:
+def _raise_to(base: SizeEvaluator, power: SizeEvaluator) -> SizeEvaluator:
     return lambda values: math.pow(base(values), power(values))

@@ -76,7 +76,7 @@ def resolve_conflicts(document: Tree, choices: Mapping[str, Side]) -> Tree:
         if not covering:
             unresolved.append(conflict.entry())
         elif (side := choices[max(covering, key=len)]) != "ours":
-            document = _put_into_document(document, conflict.at, to_document(getattr(conflict, side)))
+            document = _set_in_document(document, conflict.at, to_document(getattr(conflict, side)))
     rest = {key: part for key, part in document.items() if key != CONFLICTS}
     return rest | ({CONFLICTS: unresolved} if unresolved else {})
 
@@ -94,17 +94,17 @@ def _read(item: Tree) -> Conflict:
     return Conflict(at, *(item.get(side, ABSENT) for side in ("base", "ours", "theirs")))
 
 
-def _put_into_document(item: Any, at: PartPath, part: Any) -> Any:
+def _set_in_document(item: Any, at: PartPath, part: Any) -> Any:
     """A document with the part at a path replaced; a key of an animation is found by its frame."""
     if not at:
         return part
     key, rest = at[0], at[1:]
     if is_list(item) and not isinstance(key, str):
         keys = {one["frame"]: one for one in item if is_tree(one) and "frame" in one}
-        keys[key] = _put_into_document(keys.get(key, {}), rest, part)
+        keys[key] = _set_in_document(keys.get(key, {}), rest, part)
         return [keys[frame] for frame in sorted(keys) if keys[frame] is not ABSENT]
     inside = dict(_items(item))
-    changed = _put_into_document(inside.get(str(key), [] if key == "keys" else {}), rest, part)
+    changed = _set_in_document(inside.get(str(key), [] if key == "keys" else {}), rest, part)
     unchanged = {name: one for name, one in inside.items() if name != key}
     return unchanged if changed is ABSENT else {**unchanged, key: changed}
 

@@ -19,7 +19,7 @@ from .parts import (
     local_path,
     parts_of,
     put_part,
-    sorted_keys,
+    sort_keys,
 )
 
 
@@ -70,7 +70,7 @@ def _changes(at: PartPath, before: Any, after: Any, layout: bool) -> Iterator[Pa
         yield PartChange(at, before, after)
         return
     entries_before, entries_after = _tree(before), _tree(after)
-    for key in sorted_keys(iter((entries_before, entries_after))):
+    for key in sort_keys(iter((entries_before, entries_after))):
         yield from _changes((*at, key), entries_before.get(key, ABSENT), entries_after.get(key, ABSENT), layout)
 
 

@@ -10,7 +10,7 @@ def merge_lines(base: Sequence[str], ours: Sequence[str], theirs: Sequence[str])
     """The lines with the changes of both sides, or None if both changed the same lines differently."""
     lines: list[str] = []
     start = (0, 0, 0)
-    for at, end in _shared_runs(base, ours, theirs):
+    for at, end in _find_shared_runs(base, ours, theirs):
         parts = [side[first:last] for side, first, last in zip((base, ours, theirs), start, at, strict=True)]
         before, ours_here, theirs_here = (list(part) for part in parts)
         if ours_here != before and theirs_here != before and ours_here != theirs_here:
@@ -21,7 +21,7 @@ def merge_lines(base: Sequence[str], ours: Sequence[str], theirs: Sequence[str])
     return lines
 
 
-def _shared_runs(
+def _find_shared_runs(
     base: Sequence[str], ours: Sequence[str], theirs: Sequence[str]
 ) -> list[tuple[tuple[int, int, int], tuple[int, int, int]]]:
     """Runs of lines that all three share: where each starts and ends in the three texts; an empty run at the end."""

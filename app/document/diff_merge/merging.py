@@ -34,8 +34,8 @@ from .parts import (
     local_path,
     parts_of,
     put_part,
-    sorted_keys,
-    text_of,
+    sort_keys,
+    write_parts,
 )
 from .references import LINKED, find_contested, references
 
@@ -70,7 +70,7 @@ def merge_graphs(base: Graph, ours: Graph, theirs: Graph) -> MergedGraph:
         text = dumps(_graph(add_conflicts(parts, merger.conflicts)))
     except HalationError:  # the merged parts are no valid graph
         merger = _PartMerger()
-        for name in sorted_keys(iter(sides)):
+        for name in sort_keys(iter(sides)):
             versions = tuple(side.get(name, ABSENT) for side in sides)
             if not equals(versions[1], versions[2]):
                 merger.note_conflict((name,), versions)
@@ -79,7 +79,7 @@ def merge_graphs(base: Graph, ours: Graph, theirs: Graph) -> MergedGraph:
 
 
 def _graph(parts: Tree) -> Graph:
-    return loads(text_of(parts), sandbox=None)
+    return loads(write_parts(parts), sandbox=None)
 
 
 @dataclass
@@ -124,7 +124,7 @@ class _PartMerger:
         """The merged version of an object, entry by entry. An empty one is absent if it is absent on a side."""
         trees = tuple(part if is_tree(part) else {} for part in sides)
         merge: Tree = {}
-        for key in sorted_keys(iter(trees)):
+        for key in sort_keys(iter(trees)):
             base, ours, theirs = (tree.get(key, ABSENT) for tree in trees)
             part = self.merge_part((*at, key), (base, ours, theirs))
             if part is not ABSENT:

@@ -56,7 +56,7 @@ def parts_of(graph: Graph) -> Tree:
     return _split_body(json.loads(dumps(graph)))
 
 
-def text_of(parts: Tree) -> str:
+def write_parts(parts: Tree) -> str:
     """The document that has these parts."""
     return pretty({"halation": FORMAT, **to_document(parts)})
 
@@ -140,7 +140,7 @@ def is_whole(at: PartPath, *versions: Any) -> bool:
     return len(here) == 2 and here[0] == "animation" and len({"keys" in item for item in present}) > 1
 
 
-def sorted_keys(versions: Iterator[Any]) -> list[Any]:
+def sort_keys(versions: Iterator[Any]) -> list[Any]:
     """The keys of several objects, each once, in order."""
     return sorted({key for item in versions if is_tree(item) for key in item})
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from ...graph import INPUTS, OUTPUTS, Expression
-from .parts import ABSENT, Tree, equals, is_tree, sorted_keys
+from .parts import ABSENT, Tree, equals, is_tree, sort_keys
 
 LINKED: Final = ("nodes", INPUTS, OUTPUTS, "links", "animation", "controls")
 """Sections whose entries are elements, or build on some."""
@@ -45,7 +45,7 @@ def _find_touched(base: Tree, side: Tree) -> frozenset[str]:
     touched: set[str] = set()
     for section in LINKED:
         before, after = base.get(section, {}), side.get(section, {})
-        for name in sorted_keys(iter((after,))):
+        for name in sort_keys(iter((after,))):
             if not equals(before.get(name, ABSENT), after[name]):
                 touched |= references(section, name, after[name])
     return frozenset(touched)

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 
 from ...graph import Graph
 from .difference import GraphDifference, compare_graphs
-from .parts import ABSENT, CONFLICTS, PartPath, Tree, equals, is_list, is_tree, local_path, path_text, sorted_keys
+from .parts import ABSENT, CONFLICTS, PartPath, Tree, equals, is_list, is_tree, local_path, path_text, sort_keys
 from .wording import animation_text, change_text, end_text, item_text, key_text, value_at, value_text
 
 Sign = Literal["+", "-", "~"]
@@ -130,13 +130,13 @@ class _PartDescription:
         text_before, text_after = item_text(before), item_text(after)
         if text_before != text_after:
             yield DifferenceLine("~", f"node {self.name}: {text_before} -> {text_after}")
-        for key in sorted_keys(iter((before, after))):
+        for key in sort_keys(iter((before, after))):
             old, new = before.get(key, ABSENT), after.get(key, ABSENT)
             if key in ("type", "muted", "path", "graph") or equals(old, new):
                 continue
             if key == "values":
                 values = [part if is_tree(part) else {} for part in (old, new)]
-                for name in sorted_keys(iter(values)):
+                for name in sort_keys(iter(values)):
                     pairs = [part.get(name, ABSENT) for part in values]
                     if not equals(*pairs):
                         yield from self._child("values", name)._describe_value(*pairs)

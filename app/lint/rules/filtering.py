@@ -28,19 +28,19 @@ _PLACES = frozenset({"pixel", "extent"})
 """What a shader says whose result depends on where a pixel is."""
 
 
-def find(sheet: GraphFacts) -> Iterator[Problem]:
-    """Nodes that filter a picture which another node has just filtered."""
+def find_double_filtering(sheet: GraphFacts) -> Iterator[Problem]:
+    """Nodes that resample a picture directly after another node that resamples it."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
         if has_trait(item, Trait.RESAMPLES):
-            before, between = _filtered(sheet, id)
+            before, between = _find_earlier_filter(sheet, id)
             if before and (remedy := _remedy(sheet, before, between, id)):
                 sentence = f"'{before}' and '{id}' filter the picture twice: {remedy}"
                 yield Problem(id, next(iter(item.inputs)), sentence, FILTERING_TWICE, f"nodes.{id}")
 
 
-def _filtered(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
-    """The node that filtered the picture of `id`, and of nothing else, with what is between; "" if there is none."""
+def _find_earlier_filter(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
+    """The node that resampled the picture of `id` before, and the nodes between them; "" if there is none."""
     between: list[str] = []
     port = sheet.first(id)
     while port and sheet.readers[port] == 1:
@@ -55,7 +55,7 @@ def _filtered(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
 
 
 def _picture(sheet: GraphFacts, id: str, item: Pointwise) -> str:
-    """The one input that is linked of a node that does the same to every pixel, so that it may as well come later."""
+    """The only linked input of a node that treats all pixels alike, so that it can also come after the filter."""
     fed = [name for name in (*item.inputs, *item.values) if Port(id, name) in sheet.graph.links]
     alike = len(fed) == len(item.outputs) == 1 and fed[0] in item.inputs and not isinstance(item, CustomNode)
     return fed[0] if alike and not sheet.library.uses(item.shader, _PLACES, id) else ""
@@ -71,7 +71,7 @@ def _remedy(sheet: GraphFacts, before: str, between: list[str], id: str) -> str:
     still = sheet.moving.isdisjoint((before, id))
     match first, second:
         case Transform(), Transform() if between and first.edge == second.edge and not _hard(first, second):
-            return f"put {_listed(between)} behind '{id}', so that the two transforms act as one"
+            return f"put {_join_names(between)} behind '{id}', so that the two transforms act as one"
         case Resize(), Resize() if still and _same_way(first, second):
             wide, high = (a * b for a, b in zip(first.scale, second.scale, strict=True))
             return f"one resize by {wide:.4g}, {high:.4g} does both"
@@ -93,13 +93,13 @@ def _hard(*items: Transform | Resize) -> bool:
 
 
 def _same_way(first: Resize, second: Resize) -> bool:
-    """False where a picture is made small and large again: what that loses may be meant."""
+    """False if one resize shrinks and the other enlarges: the loss of detail may be intended."""
     pairs = list(zip(first.scale, second.scale, strict=True))
     return all(max(pair) <= 1.0 for pair in pairs) or all(min(pair) >= 1.0 for pair in pairs)
 
 
-def _listed(names: list[str]) -> str:
+def _join_names(names: list[str]) -> str:
     return " and ".join(f"'{name}'" for name in names)
 
 
-CHECKS = (Check(FILTERING_TWICE, find),)
+CHECKS = (Check(FILTERING_TWICE, find_double_filtering),)

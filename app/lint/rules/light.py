@@ -10,7 +10,7 @@ from halation.nodes import Kind, Trait
 from ...custom_nodes import CustomNode
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
-from ..sheet import Check, GraphFacts, has_trait, layered_path
+from ..sheet import Check, GraphFacts, find_layered_path, has_trait
 
 DISPLAY_LIGHT = Rule(
     "display-light",
@@ -30,20 +30,20 @@ _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 """Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
 
 
-def display_light(sheet: GraphFacts) -> Iterator[Problem]:
+def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that work with light, behind a tone map. The first of each chain is named."""
     maker: dict[Port, str] = {}
     for id in sheet.graph.order():
         item = sheet.works(id)
         if item is None or isinstance(item, CustomNode):
             continue
-        pictures = [source for source in _pictures(sheet, id) if source]
+        pictures = [source for source in _list_image_sources(sheet, id) if source]
         made = {maker[source] for source in pictures if source in maker}
         if has_trait(item, Trait.NEEDS_SCENE_LIGHT) and pictures and pictures[0] in maker:
             name, by = next(iter(item.inputs)), maker[pictures[0]]
             sentence = f"'{id}' works with light, but '{by}' has made its picture ready for the display: put it before"
             yield Problem(id, name, f"{sentence} '{by}'", DISPLAY_LIGHT, f"links.{id}.{name}")
-        for name in _shown(sheet, id):
+        for name in _list_display_outputs(sheet, id):
             maker[Port(id, name)] = id
         keeps = not isinstance(item, Group) and not has_trait(item, Trait.NEEDS_SCENE_LIGHT, Trait.CHANGES_ENCODING)
         if keeps and made and all(source in maker for source in pictures):
@@ -51,39 +51,39 @@ def display_light(sheet: GraphFacts) -> Iterator[Problem]:
             maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
 
 
-def clipped_light(sheet: GraphFacts) -> Iterator[Problem]:
-    """Nodes that need light above white, right behind a file that has none."""
+def find_clipped_light(sheet: GraphFacts) -> Iterator[Problem]:
+    """Nodes that need light above white, directly after a file that cannot hold any."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
         if has_trait(item, Trait.NEEDS_HIGHLIGHTS) and (source := sheet.first(id)):
-            file = _file(sheet, source)
+            file = _find_file(sheet, source)
             if PurePath(file).suffix.lower() in _BYTES:
-                sentence = f"'{id}' wants light brighter than white, and '{file}' has none: read an EXR"
+                sentence = f"'{id}' needs light brighter than white, and '{file}' cannot hold any: read an EXR"
                 name = next(iter(item.inputs))
                 yield Problem(id, name, sentence, CLIPPED_LIGHT, f"links.{id}.{name}")
 
 
-def _pictures(sheet: GraphFacts, id: str) -> list[Port | None]:
-    """What feeds the inputs of a node that take an image."""
+def _list_image_sources(sheet: GraphFacts, id: str) -> list[Port | None]:
+    """The sources of the image inputs of a node."""
     inputs = signature(sheet.graph.nodes[id]).inputs
     return [sheet.source(Port(id, name)) for name, socket in inputs.items() if socket.kind is Kind.IMAGE]
 
 
-def _shown(sheet: GraphFacts, id: str) -> list[str]:
-    """Outputs of a node that are for a display, by what it is."""
+def _list_display_outputs(sheet: GraphFacts, id: str) -> list[str]:
+    """The outputs of a node that are display colors."""
     item = sheet.graph.nodes[id]
     if isinstance(item, Group):
         return [name for name, output in item.graph.outputs.items() if output.view == "none"]
     return [next(iter(item.outputs))] if has_trait(item, Trait.MAKES_DISPLAY_LIGHT) else []
 
 
-def _file(sheet: GraphFacts, source: Port) -> str:
-    """The file that a port shows, if any."""
+def _find_file(sheet: GraphFacts, source: Port) -> str:
+    """The file that a port reads, or ""."""
     if source.node == INPUTS:
         return sheet.graph.inputs[source.socket].file
     item = sheet.graph.nodes[source.node]
-    path = layered_path(item)
+    path = find_layered_path(item)
     return getattr(item, path.name) if path else ""
 
 
-CHECKS = (Check(DISPLAY_LIGHT, display_light), Check(CLIPPED_LIGHT, clipped_light))
+CHECKS = (Check(DISPLAY_LIGHT, find_display_light), Check(CLIPPED_LIGHT, find_clipped_light))

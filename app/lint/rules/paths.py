@@ -1,4 +1,4 @@
-"""Paths that only one machine understands."""
+"""Rules about paths that work on one machine only."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from ..sheet import Check, GraphFacts
 ABSOLUTE_PATH = Rule(
     "absolute-path",
     "warning",
-    "A path begins at the root of one machine: on another one the file is not there.",
+    "A path is absolute: on another machine the file is not there.",
     "Write the path from the folder of the graph file.",
 )
 BACKSLASH_PATH = Rule(
     "backslash-path",
     "warning",
-    "A path with backslashes is one name on every system but Windows.",
-    "Write it with slashes, which Windows takes too.",
+    "A path has backslashes, which separate folders on Windows only.",
+    "Write slashes, which work on Windows too.",
 )
 
 
-def named_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
-    """Every file that a graph names, groups aside: node, socket, JSON path in the graph, and the path as written."""
+def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
+    """Every path of a file in a graph, without groups: node, socket, JSON path in the graph, and the path itself."""
     config = graph.settings.color.config
     if config and not config.startswith(BUILT_IN):
         yield "", "", "settings.color.config", config
@@ -55,7 +55,7 @@ def is_absolute(path: str) -> bool:
 
 def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
     """Paths from the root."""
-    for node, socket, at, path in named_paths(sheet.graph):
+    for node, socket, at, path in list_paths(sheet.graph):
         if is_absolute(path):
             sentence = f"{who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
             yield Problem(node, socket, sentence, ABSOLUTE_PATH, at)
@@ -63,7 +63,7 @@ def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
 
 def backslash_path(sheet: GraphFacts) -> Iterator[Problem]:
     """Paths of Windows."""
-    for node, socket, at, path in named_paths(sheet.graph):
+    for node, socket, at, path in list_paths(sheet.graph):
         if "\\" in path and not is_absolute(path):
             better = path.replace("\\", "/")
             sentence = f"{who(node, socket)}: only Windows reads '{path}' as a path: write '{better}'"

@@ -34,12 +34,12 @@ _MOST_COUNTED = 10_000
 """Nodes that are counted for all dead ends together: many ends can share one long branch."""
 
 
-def unused_branch(sheet: GraphFacts) -> Iterator[Problem]:
-    """The ends of branches that lead nowhere."""
+def find_unused_branches(sheet: GraphFacts) -> Iterator[Problem]:
+    """The last nodes of branches that no output uses."""
     graph = sheet.graph
     if not graph.outputs:
         return
-    ends = [OUTPUTS, *_wanted(sheet)]
+    ends = [OUTPUTS, *_find_used_nodes(sheet)]
     needed = {*ends, *find_reachable(ends, graph.feeding)}
     unused = {id: graph.feeding[id] - needed for id in graph.nodes if id not in needed}
     count = 0
@@ -52,8 +52,8 @@ def unused_branch(sheet: GraphFacts) -> Iterator[Problem]:
             yield Problem(id, "", sentence, UNUSED_BRANCH, f"nodes.{id}")
 
 
-def unused_input(sheet: GraphFacts) -> Iterator[Problem]:
-    """Inputs that feed nothing."""
+def find_unused_inputs(sheet: GraphFacts) -> Iterator[Problem]:
+    """Inputs that are not linked to anything."""
     read = {source.socket for source in sheet.graph.links.values() if source.node == INPUTS}
     for name in sheet.graph.inputs:
         if name not in read:
@@ -61,8 +61,8 @@ def unused_input(sheet: GraphFacts) -> Iterator[Problem]:
             yield Problem(INPUTS, name, sentence, UNUSED_INPUT, f"inputs.{name}")
 
 
-def stale_layout(sheet: GraphFacts) -> Iterator[Problem]:
-    """Places of nodes that are gone."""
+def find_stale_layout(sheet: GraphFacts) -> Iterator[Problem]:
+    """Layout entries of nodes that no longer exist."""
     graph, places = sheet.graph, sheet.graph.ui.get("nodes")
     ends = {INPUTS: graph.inputs, OUTPUTS: graph.outputs}
     for name in cast("Mapping[str, Any]", places) if isinstance(places, Mapping) else ():
@@ -72,17 +72,21 @@ def stale_layout(sheet: GraphFacts) -> Iterator[Problem]:
             yield Problem("", "", sentence, STALE_LAYOUT, f"ui.nodes.{name}")
 
 
-def _wanted(sheet: GraphFacts) -> set[str]:
-    """Nodes that expressions read values of, and those that a viewer shows."""
+def _find_used_nodes(sheet: GraphFacts) -> set[str]:
+    """Nodes whose values expressions read, and nodes that a viewer shows."""
     graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
-    found = {
+    read_nodes = {
         find_named_value(graph, name)[0].node
         for item in graph.animation.values()
         if isinstance(item, Expression)
         for name in item.names
     }
-    shown = cast("Mapping[str, Any]", viewers).values() if isinstance(viewers, Mapping) else ()
-    return (found | {str(port).partition(".")[0] for port in shown}) & graph.nodes.keys()
+    viewer_ports = cast("Mapping[str, Any]", viewers).values() if isinstance(viewers, Mapping) else ()
+    return (read_nodes | {str(port).partition(".")[0] for port in viewer_ports}) & graph.nodes.keys()
 
 
-CHECKS = (Check(UNUSED_BRANCH, unused_branch), Check(UNUSED_INPUT, unused_input), Check(STALE_LAYOUT, stale_layout))
+CHECKS = (
+    Check(UNUSED_BRANCH, find_unused_branches),
+    Check(UNUSED_INPUT, find_unused_inputs),
+    Check(STALE_LAYOUT, find_stale_layout),
+)
