@@ -28,7 +28,7 @@ Exit codes:
 2    the command line is invalid
 3    the graph is invalid, or check --strict found warnings
 4    a picture cannot be read
-5    OpenGL is not usable, a shader was refused, or the device has no memory left
+5    OpenGL is not usable, a shader was refused or stopped, or the device has no memory left
 70   a bug in Halation; HALATION_DEBUG=1 shows where
 130  interrupted"""
 
