@@ -65,6 +65,7 @@ def _execute_opened(
 
     is_watched = needs_watchdog(graph)
     job = replace(job, inputs=resolve_inputs(graph, job.inputs))
+    _note_data_bindings(graph, job.inputs)
     targets = parsing.find_targets(graph, job.node)
     prefetcher = None if is_watched or job.processes > 1 else _begin_loading(job, graph, targets)
     if not job.frames and (not is_watched or parsing.have_frame_number(job.files)):
@@ -79,6 +80,15 @@ def _execute_opened(
         report = _render_here(job, graph, targets, prefetcher, progress, started)
     _print_report(report, time.perf_counter() - started, as_json)
     return 0
+
+
+def _note_data_bindings(graph: Graph, inputs: Mapping[str, str]) -> None:
+    """Print a note about each layer of data that is bound to an input for color."""
+    if any(":" in file for file in inputs.values()):
+        from ..lint.rules.data import find_data_bindings
+
+        for sentence in find_data_bindings(graph, inputs):
+            print_note(sentence)
 
 
 def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) -> Prefetcher | None:

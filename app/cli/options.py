@@ -228,6 +228,9 @@ def report_problems(path: Path, graph: Graph) -> None:
     errors.sort(key=lambda problem: problem.rule.name in ("unlinked-input", "unfed-output"))
     if errors:
         how = "" if str(path) == "-" else f": halation check {path}"
+        for problem in graph_problems:
+            if problem.rule.name == "unknown-key":  # a misspelt key is often why something else is missing
+                print_note(f"{path}: {problem.sentence}")
         more = f" (and {len(errors) - 1} more{how})" if len(errors) > 1 else ""
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
     for problem in graph_problems:

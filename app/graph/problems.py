@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from halation.nodes import Node, catalogue, plugins
@@ -28,6 +28,10 @@ CONTROLS = "controls"
 
 MAX_DEPTH = 32
 """How deep groups may nest."""
+
+_FILE_KEYS = ("inputs", "outputs", "controls", "nodes", "links", "settings", "animation", "ui")
+_NODE_KEYS = ("type", "version", "values", "muted", "code", "file", "path", "graph", "package")
+"""Keys of a graph file, and of a node in it, that a similar unknown key may stand for."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +174,10 @@ def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) ->
 
 def _links(graph: Graph) -> Iterator[Problem]:
     for target, fault in graph.link_faults.items():
-        sentence = f"'{graph.links[target]}' cannot feed '{target}': {fault}"
+        source = graph.links[target]
+        is_reversed = graph.link_fault(target, source) is None
+        hint = f'; a link names its target first: write "{source}": "{target}"' if is_reversed else ""
+        sentence = f"'{source}' cannot feed '{target}': {fault}{hint}"
         yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
 
 
@@ -241,13 +248,22 @@ def _default_fault(name: str, end: Input) -> str | None:
     return f"input '{name}': the default {end.default!r} does not fit: {end.kind} takes {expected_form}"
 
 
+def _suggest_key(key: str, keys: Iterable[str]) -> str:
+    """The key of the format that the user may mean, as the end of a sentence; "" if none is similar."""
+    hint = did_you_mean(key, keys)
+    return hint if "did you mean" in hint else ""
+
+
 def _leftovers(graph: Graph) -> Iterator[Problem]:
     """Unknown keys are kept, but whoever mistyped one should hear of it."""
     for path, keys in graph.extra.items():
         parts = path.split(".")
         item = graph.nodes.get(parts[1]) if len(parts) == 3 and parts[0] == "nodes" else None
         for key in keys if path else keys.keys() - {"$schema", CONFLICTS}:  # the first is for editors of text
-            hint = "" if item is None else did_you_mean(key, signature(item).values)
+            if item is None:
+                hint = _suggest_key(key, _FILE_KEYS if not path else _NODE_KEYS if parts[0] == "nodes" else ())
+            else:
+                hint = did_you_mean(key, signature(item).values)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""
             if key == "package" and len(parts) == 2 and getattr(graph.nodes.get(parts[1]), "required_package", ""):

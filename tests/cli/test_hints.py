@@ -35,6 +35,32 @@ def test_the_cause_is_named_first(fails, graphs):
     assert "img" in sentence and "1 more" in sentence
 
 
+def test_a_link_the_wrong_way_round(fails, graphs):
+    path = graphs(nodes={"blur": {"type": "gaussian_blur"}}, links={"light.out": "blur.image"})
+    sentence = fails(3, "render", path)
+    assert '; a link names its target first: write "blur.image": "light.out"' in sentence
+
+
+@pytest.mark.parametrize(("layer", "is_told"), [("Depth", True), ("Cool", False)])
+def test_data_in_place_of_color(cli, graphs, shot, tmp_path, layer, is_told):
+    path = graphs(nodes={"light": {"type": "exposure"}})
+    result = cli("render", path, "-i", f"beauty={shot}:{layer}", "-o", tmp_path / "out.exr")
+    assert result.code == 0
+    assert (f"'light' is about color, and the layer {layer} is data" in result.err) == is_told
+
+
+def test_misspelt_keys_are_told_beside_what_follows_from_them(cli, tmp_path):
+    path = tmp_path / "graph.json"
+    path.write_text(
+        '{"halation": 1, "outputs": {"image": {"type": "Image"}}, "link": {"outputs.image": "n.out"},'
+        ' "nodes": {"n": {"type": "noise", "version": 1, "value": {"octaves": 2}}}}'
+    )
+    result = cli("render", path, "-o", tmp_path / "out.png")
+    assert result.code == 3
+    assert "link means nothing to this version and is only kept; did you mean 'links'?" in result.err
+    assert "nodes.n.value means nothing to this version and is only kept; did you mean 'values'?" in result.err
+
+
 def test_a_file_that_is_not_there_has_no_line(cli, tmp_path):
     path = tmp_path / "nothere"
     assert cli("check", path).out == f"{path}: error: there is no such file [unreadable-graph]\n"

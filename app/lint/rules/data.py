@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from halation.nodes import Kind, Trait
 
-from ...graph import INPUTS, Port, Problem
+from ...graph import INPUTS, Graph, Port, Problem
 from ...graph.rules import Rule
+from ...media.layers import split_layer
 from ..sheet import Check, GraphFacts, has_trait, layer_read
 
 DATA_AS_COLOR = Rule(
@@ -44,7 +45,24 @@ def _data(sheet: GraphFacts, source: Port) -> str:
         layer = end.layer if end.layer or end.kind is Kind.IMAGE else source.socket
     else:
         layer = layer_read(sheet.graph.nodes[source.node], source.socket)
-    return layer if _DATA.fullmatch(layer) else ""
+    return layer if is_data_layer(layer) else ""
+
+
+def is_data_layer(name: str) -> bool:
+    """True for the name of a layer that is never color."""
+    return _DATA.fullmatch(name) is not None
+
+
+def find_data_bindings(graph: Graph, files: Mapping[str, str]) -> Iterator[str]:
+    """Sentences about layers of data that are bound, as `FILE:LAYER`, to inputs that feed nodes about color."""
+    for name, file in files.items():
+        layer = split_layer(file)[1]
+        if not layer or not is_data_layer(layer) or graph.inputs[name].kind is not Kind.IMAGE:
+            continue
+        for target, source in graph.links.items():
+            item = graph.nodes.get(target.node)
+            if source == Port(INPUTS, name) and Trait.NEEDS_COLOR in getattr(type(item), "traits", ()):
+                yield f"-i {name}={file}: '{target.node}' is about color, and the layer {layer} is data"
 
 
 CHECKS = (Check(DATA_AS_COLOR, find),)
