@@ -56,10 +56,8 @@ class Preview:
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
         self.errors: Mapping[str, HalationError] = MappingProxyType({})
         """The same as it was raised: a ShaderError knows the line."""
-        self.paused = False
-        self.timed = False
+        self.paused = self.timed = self.skims = False
         self.thumbnailing = True
-        self.skims = False
         self.ahead: int | None = None
         self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
