@@ -1,4 +1,9 @@
-"""Documents of older formats, brought up to date one format at a time."""
+"""Migrations: documents of older formats, converted to the newest one format at a time.
+
+A migration works on plain JSON, before anything is checked, and never on classes of this version: these change later,
+and an old migration must not change with them. Values of nodes are not converted here: each node converts its own
+(`upgrade`).
+"""
 
 from __future__ import annotations
 

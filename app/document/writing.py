@@ -1,4 +1,9 @@
-"""Graph -> JSON: only what differs from the default, in one canonical form."""
+"""From a Graph to the text of a document.
+
+Only what differs from the defaults is written, in one canonical form (`canonical`): sorted keys, fixed line breaks, the
+shortest numbers that read back equal. So equal graphs give equal bytes, and a diff shows only what changed. Unknown
+keys that reading kept are put back into their objects.
+"""
 
 from __future__ import annotations
 
