@@ -52,7 +52,9 @@ def build_cases(seed: int, count: int) -> Iterator[Case]:
             code = write_function(rng)
         language = "isf" if rng.random() < 0.15 else "glsl"
         words = rng.choices(COMMANDS, (6, 3, 1))[0]
-        yield Case(f"shader-{seed}-{number}", _writer(code, language), words, seconds=25.0, codes=CODES)
+        # The API tries code for a minute, as long as --timeout has it without an option.
+        seconds = 90.0 if words[0] == "api" else 25.0
+        yield Case(f"shader-{seed}-{number}", _writer(code, language), words, seconds=seconds, codes=CODES)
 
 
 def _writer(code: str, language: str) -> Callable[[Path], None]:
