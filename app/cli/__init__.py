@@ -8,7 +8,7 @@ import gc
 import os
 import sys
 from io import TextIOWrapper
-from typing import TextIO
+from typing import Literal, TextIO
 
 _INTERRUPTED = 130
 _YOUNG = 100_000
@@ -51,5 +51,5 @@ def _replace_closed_streams() -> None:
     sys.stdout, sys.stderr = sys.stdout or _open_stream(1, "w"), sys.stderr or _open_stream(2, "w")
 
 
-def _open_stream(descriptor: int, mode: str) -> TextIO:
+def _open_stream(descriptor: int, mode: Literal["r", "w"]) -> TextIO:
     return open(descriptor, mode, encoding="utf-8", closefd=False)

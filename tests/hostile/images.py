@@ -67,6 +67,7 @@ def write_corpus(folder: Path) -> list[Path]:
     for ending in PICTURES:
         output = oiio.ImageOutput.create(f"a.{ending}")
         if output is None:
+            oiio.geterror()  # it would be printed in the end
             continue
         buffer = oiio.ImageBuf(noise)
         buffer.write(str(folder / f"whole.{ending}"))
