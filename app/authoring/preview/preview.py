@@ -61,7 +61,7 @@ class Preview:
         self.ahead: int | None = None
         self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
-        self.clock = clock
+        self.clock: Callable[[], float] = time.perf_counter
         """Seconds for waits: until a graph rests, until patience ends. Budgets and measurements are in real time."""
         self.seconds = 0.0
         """How long the frame took that was finished last."""
