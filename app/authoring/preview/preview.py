@@ -37,10 +37,11 @@ class Preview:
     `timed` measures passes as they run. While `paused` nothing is computed; wants are remembered. `thumbnailing` draws
     small pictures of nodes whose results happen to be there. While it `skims`, frames that are there are only shown.
     `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done. What a `glimpse` shows of
-    pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment.
+    pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment, by the
+    `clock`; budgets and measurements are in real time.
     """
 
-    def __init__(self, renderer: Renderer, display: Display, clock: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(self, renderer: Renderer, display: Display) -> None:
         self.renderer, self._runner = renderer, renderer.runner
         self._thumbnails = Thumbnails(renderer, display)
         self._wish: PreviewRequest | None = None
@@ -62,7 +63,6 @@ class Preview:
         self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
         self.clock: Callable[[], float] = time.perf_counter
-        """Seconds for waits: until a graph rests, until patience ends. Budgets and measurements are in real time."""
         self.seconds = 0.0
         """How long the frame took that was finished last."""
         self._takes: list[FrameCache] = []
