@@ -10,6 +10,7 @@ from gui_driver import Ui
 from gui_keys import animation
 from halation import presets
 from halation.authoring.commands import AddComment, AddFrame, ArrangeElements, Disconnect, MakeGroup, ReplaceGraph
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.recovery.recovery import RecoveryFile
 from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRender, RenderState
 from halation.document import save
@@ -62,7 +63,7 @@ def window(ui: Ui) -> Screens:
     """All panels at once, with a node selected."""
     ui.session.apply(ArrangeElements(ui.editor.canvas.sizes or {}))
     ui.editor.canvas.fit()
-    ui.session.select(["bloom"])
+    ui.session.select([ElementId("bloom")])
     ui.settled()
     yield "window"
 
@@ -93,20 +94,20 @@ def inspector(ui: Ui) -> Screens:
         ui.wait(3)
         yield f"inspector_{name}"
     ui.session.bind("beauty", str(SAMPLES / "neon.exr"))
-    ui.session.select(["inputs.beauty"])
+    ui.session.select([ElementId("inputs.beauty")])
     ui.wait(3)
     yield "inspector_bound"
     ui.session.bind("beauty", None)
-    ui.session.select(["grade", "bloom"])
+    ui.session.select([ElementId("grade"), ElementId("bloom")])
     frame = ui.session.apply(AddFrame("Look", sizes=ui.editor.canvas.sizes or {}))
-    ui.session.select([f"frames.{frame}"])
+    ui.session.select([frame])
     ui.wait(3)
     yield "inspector_frame"
     comment = ui.session.apply(AddComment((40.0, -160.0), "Check the highlights\nwith the client."))
-    ui.session.select([f"comments.{comment}"])
+    ui.session.select([comment])
     ui.wait(3)
     yield "inspector_comment"
-    ui.session.select(["grade", "bloom"])
+    ui.session.select([ElementId("grade"), ElementId("bloom")])
     ui.session.apply(MakeGroup("look"))
     ui.wait(3)
     yield "inspector_group"
@@ -116,12 +117,12 @@ def inspector(ui: Ui) -> Screens:
 
 def fields(ui: Ui) -> Screens:
     """What fields open."""
-    ui.session.select(["grade"])
+    ui.session.select([ElementId("grade")])
     ui.wait(3)
     ui.click("field grade.gain", fraction=(0.03, 0.5))
     yield "color_picker"
     ui.keys("Escape")
-    ui.session.select(["tone_map"])
+    ui.session.select([ElementId("tone_map")])
     ui.wait(3)
     ui.click("field tone_map.operator")
     yield "choice"
@@ -137,7 +138,7 @@ def fields(ui: Ui) -> Screens:
     ui.ctx.sleep_no_skip(1.0, 0.1)
     yield "tooltip"
     ui.move((3.0, 3.0))
-    ui.session.select(["plate"])
+    ui.session.select([ElementId("plate")])
     ui.wait(3)
     ui.click("field plate.layer")
     ui.wait(10)
@@ -178,7 +179,7 @@ def viewer(ui: Ui) -> Screens:
     yield "viewer_menu"
     ui.keys("Escape")
     seen.table, seen.region, seen.measured, seen.markers = False, None, None, ()
-    ui.session.select(["vignette"])
+    ui.session.select([ElementId("vignette")])
     ui.session.view(Port("outputs", "lights"))
     ui.settled()
     yield "viewer_field"

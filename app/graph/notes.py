@@ -59,6 +59,11 @@ def move_keys(extra: Mapping[str, Mapping[str, Any]], old: str, new: str = "") -
     return other_keys | ({new + path.removeprefix(old): extra[path] for path in inside} if new else {})
 
 
+def keys_of_nodes(extra: Mapping[str, Mapping[str, Any]], ids: Container[str]) -> dict[str, Mapping[str, Any]]:
+    """The part of `extra` that belongs to some nodes."""
+    return {path: keys for path, keys in extra.items() if path.startswith("nodes.") and path.split(".", 2)[1] in ids}
+
+
 def _section(ui: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     section = ui.get(name)
     return cast("Mapping[str, Any]", section) if isinstance(section, Mapping) else {}

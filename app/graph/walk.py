@@ -77,11 +77,11 @@ def find_cyclic(steps: Mapping[N, Collection[N]]) -> frozenset[N]:
     return frozenset(cyclic)
 
 
-def find_reachable(starts: Iterable[str], steps: Steps) -> dict[str, str]:
+def find_reachable(starts: Iterable[N], steps: Mapping[N, Iterable[N]]) -> dict[N, N]:
     """Every name that `starts` lead to, nearest first, with the name that it was first reached from."""
-    reached_from, frontier = dict[str, str](), [*starts]
+    reached_from, frontier = dict[N, N](), [*starts]
     while frontier:
-        next_frontier: list[str] = []
+        next_frontier: list[N] = []
         for name in frontier:
             for after in steps.get(name, ()):
                 if after not in reached_from:

@@ -10,6 +10,7 @@ import pytest
 from halation import document
 from halation.authoring import commands as c
 from halation.authoring.commands import EditCommand
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Graph, Keys, Port
@@ -33,7 +34,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.DropFiles: lambda s, p: c.DropFiles([p / "group.json", p / "code.glsl", p / "a.png"]),
     c.Connect: lambda s, p: c.Connect(port("n0.out"), port("gain.image")),
     c.Disconnect: lambda s, p: c.Disconnect(port("n1.image")),
-    c.DisconnectAll: lambda s, p: c.DisconnectAll("n1"),
+    c.DisconnectAll: lambda s, p: c.DisconnectAll(ElementId("n1")),
     c.CutLinks: lambda s, p: c.CutLinks([port("n1.image"), port("n2.image")]),
     c.MoveLink: lambda s, p: c.MoveLink(port("n1.image"), port("gain.image")),
     c.SwapInputs: lambda s, p: c.SwapInputs("blend"),
@@ -64,22 +65,22 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.SetColorSettings: lambda s, p: c.SetColorSettings(working="ACEScg"),
     c.SetCanvasSize: lambda s, p: c.SetCanvasSize((64, 48)),
     c.AddFrame: lambda s, p: c.AddFrame("Look"),
-    c.EditFrame: lambda s, p: c.EditFrame("f1", "Other", (0.1, 0.2, 0.3)),
-    c.ResizeFrame: lambda s, p: c.ResizeFrame("f1", 0.0, 0.0, 500.0, 400.0),
+    c.EditFrame: lambda s, p: c.EditFrame(ElementId("frames.f1"), "Other", (0.1, 0.2, 0.3)),
+    c.ResizeFrame: lambda s, p: c.ResizeFrame(ElementId("frames.f1"), 0.0, 0.0, 500.0, 400.0),
     c.AddComment: lambda s, p: c.AddComment((1.0, 2.0), "text"),
-    c.EditComment: lambda s, p: c.EditComment("c1", "other"),
-    c.ResizeComment: lambda s, p: c.ResizeComment("c1", 0.0, 0.0, 321.0),
+    c.EditComment: lambda s, p: c.EditComment(ElementId("comments.c1"), "other"),
+    c.ResizeComment: lambda s, p: c.ResizeComment(ElementId("comments.c1"), 0.0, 0.0, 321.0),
     c.AddDot: lambda s, p: c.AddDot(port("n1.image"), (3.0, 4.0)),
-    c.JoinDot: lambda s, p: c.JoinDot("d1", port("blend.second")),
-    c.RemoveDot: lambda s, p: c.RemoveDot("d1"),
-    c.MoveElements: lambda s, p: c.MoveElements(["n1", "frames.f1"], 10.0, 20.0),
-    c.PlaceElement: lambda s, p: c.PlaceElement("n1", 10.0, 20.0),
+    c.JoinDot: lambda s, p: c.JoinDot(ElementId("dots.d1"), port("blend.second")),
+    c.RemoveDot: lambda s, p: c.RemoveDot(ElementId("dots.d1")),
+    c.MoveElements: lambda s, p: c.MoveElements([ElementId("n1"), ElementId("frames.f1")], 10.0, 20.0),
+    c.PlaceElement: lambda s, p: c.PlaceElement(ElementId("n1"), 10.0, 20.0),
     c.AlignSelection: lambda s, p: c.AlignSelection("left"),
     c.ArrangeElements: lambda s, p: c.ArrangeElements(),
     c.AddInput: lambda s, p: c.AddInput("extra"),
     c.AddOutput: lambda s, p: c.AddOutput("extra"),
-    c.RemoveEnd: lambda s, p: c.RemoveEnd("outputs.image"),
-    c.RenameEnd: lambda s, p: c.RenameEnd("inputs.beauty", "plate"),
+    c.RemoveEnd: lambda s, p: c.RemoveEnd(ElementId("outputs.image")),
+    c.RenameEnd: lambda s, p: c.RenameEnd(ElementId("inputs.beauty"), "plate"),
     c.SetInput: lambda s, p: c.SetInput("beauty", file="a.exr"),
     c.SetOutput: lambda s, p: c.SetOutput("image", view="none"),
     c.CutSelection: lambda s, p: c.CutSelection(),
@@ -128,8 +129,8 @@ def session(tmp_path: Path) -> Session:
     session.apply(c.AddFrame("Here", (0.0, 0.0)))
     session.apply(c.AddComment((0.0, 300.0), "text"))
     session.apply(c.AddDot(port("blend.first"), (50.0, 50.0)))
-    session.apply(c.PlaceElement("n1", 900.0, 700.0))
-    session.select(["n0", "n1"])
+    session.apply(c.PlaceElement(ElementId("n1"), 900.0, 700.0))
+    session.select([ElementId("n0"), ElementId("n1")])
     return session
 
 

@@ -40,9 +40,9 @@ def test_an_overview_comes_later(renders):
 
 def test_the_compiler_is_asked_to_wait(renders):
     with pytest.raises(OverviewPending) as pending:
-        renders.render(str(NEON), {})
+        renders.describe_render(str(NEON), {})
     assert waited(lambda: pending.value.ready() or None)
-    found = renders.render(str(NEON), {})
+    found = renders.describe_render(str(NEON), {})
     assert isinstance(found, Render) and found.camera is not None
 
 
@@ -52,11 +52,11 @@ def test_what_cannot_be_read_is_a_sentence(renders, tmp_path):
     broken.write_bytes(b"no picture at all")
     assert "broken.exr" in waited(lambda: renders.overview(broken))
     with pytest.raises(InputError, match="broken"):
-        renders.render(str(broken), {})
+        renders.describe_render(str(broken), {})
     seen = waited(lambda: renders.overview(NEON, {"depth": "Depht"}))
     assert seen.uses[Role.DEPTH].fault and seen.uses[Role.NORMAL].layer == "Normal"
     with pytest.raises(InputError, match="Depht"):
-        renders.render(str(NEON), {"depth": "Depht"})
+        renders.describe_render(str(NEON), {"depth": "Depht"})
 
 
 def test_what_is_where_comes_later(renders):

@@ -23,6 +23,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from halation.authoring.edits.element_id import ElementId
 from halation.resources.sandbox import UNRESTRICTED
 
 sys.path.append(str(Path(__file__).parents[1]))
@@ -122,7 +123,7 @@ def measure_drag(folder: Path) -> dict[str, float]:
     figures: dict[str, float] = {}
 
     def body(ui: Ui) -> None:
-        ui.session.select(["n9"])
+        ui.session.select([ElementId("n9")])
         ui.settled()
         seen, values, steps = set[int](), set[object](), 0
         left, y = ui.at("field n9.stops", (0.3, 0.5))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from gui_canvas import chain, empty, show
 from halation.authoring.commands import AddComment, AddFrame, DropFiles, MakeGroup, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.graph import Port
 
 
@@ -22,7 +23,7 @@ def test_adds_a_node_by_searching(gui) -> None:
         ui.wait(3)
         assert "gaussian_blur" in ui.session.graph.nodes
         assert ui.session.selection == {"gaussian_blur"}
-        x, y = ui.session.position("gaussian_blur")
+        x, y = ui.session.position(ElementId("gaussian_blur"))
         assert abs(x - at[0]) < 2 and abs(y - at[1]) < 2
 
     gui(body)
@@ -71,15 +72,15 @@ def test_selects_by_click_and_by_rectangle(gui) -> None:
 def test_moving_is_one_step_that_undo_takes_back(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
-        before, steps = ui.session.position("bloom"), ui.session.history.position
+        before, steps = ui.session.position(ElementId("bloom")), ui.session.history.position
         x, y = ui.at("title bloom", (0.2, 0.5))
         ui.drag((x, y), (x + 80, y + 120))
-        after = ui.session.position("bloom")
+        after = ui.session.position(ElementId("bloom"))
         scale = ui.editor.canvas.zoom
         assert abs(after[0] - before[0] - 80 / scale) < 2 and abs(after[1] - before[1] - 120 / scale) < 2
         assert ui.session.history.position == steps + 1
         ui.keys("Ctrl+Z")
-        assert ui.session.position("bloom") == before
+        assert ui.session.position(ElementId("bloom")) == before
 
     gui(body)
 
@@ -108,7 +109,7 @@ def test_a_value_dragged_on_a_node_is_one_step(gui) -> None:
         ui.drag((x, y), (x + 30, y))
         assert ui.session.value(Port("exposure", "stops")) > 0.5
         assert ui.session.history.position == steps + 1
-        assert ui.session.position("exposure") == (320.0, 0.0)
+        assert ui.session.position(ElementId("exposure")) == (320.0, 0.0)
 
     gui(body)
 
@@ -128,7 +129,7 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
         assert f"widget {port}" not in ui.editor.places
         ui.click("more bloom")
         ui.until(lambda: ui.editor.canvas.sizes["bloom"][1] > 200)
-        ui.editor.canvas.fit(("bloom",))
+        ui.editor.canvas.fit((ElementId("bloom"),))
         ui.wait(3)
         before = ui.session.value(port)
         ui.move(f"widget {port}")
@@ -142,17 +143,17 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
 def test_frames_take_along_what_lies_on_them(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom", "clip"))
-        ui.session.select(("exposure", "bloom"))
+        ui.session.select((ElementId("exposure"), ElementId("bloom")))
         frame = ui.session.apply(AddFrame("Light", sizes=ui.editor.canvas.sizes))
         ui.wait(3)
         before = {key: ui.session.position(key) for key in ("exposure", "bloom", "clip")}
-        x, y = ui.at(f"title frames.{frame}", (0.5, 0.5))
+        x, y = ui.at(f"title {frame}", (0.5, 0.5))
         ui.drag((x, y), (x + 10, y + 90))
         moved = {key: ui.session.position(key)[1] - place[1] for key, place in before.items()}
         assert moved["exposure"] > 50 and moved["bloom"] == moved["exposure"] and moved["clip"] == 0
-        width = ui.editor.canvas.sizes[f"frames.{frame}"][0]
-        ui.drag(ui.at(f"node frames.{frame}", (1.0, 0.8)), ui.at(f"node frames.{frame}", (1.1, 0.8)))
-        assert ui.editor.canvas.sizes[f"frames.{frame}"][0] > width * 1.05
+        width = ui.editor.canvas.sizes[frame][0]
+        ui.drag(ui.at(f"node {frame}", (1.0, 0.8)), ui.at(f"node {frame}", (1.1, 0.8)))
+        assert ui.editor.canvas.sizes[frame][0] > width * 1.05
 
     gui(body)
 
@@ -163,16 +164,16 @@ def test_renames_a_frame_and_writes_a_comment_in_place(gui) -> None:
         frame = ui.session.apply(AddFrame("", at=(0.0, 120.0)))
         comment = ui.session.apply(AddComment((400.0, 200.0), ""))
         ui.wait(3)
-        ui.double_click(f"title frames.{frame}", (0.3, 0.5))
+        ui.double_click(f"title {frame}", (0.3, 0.5))
         ui.wait(3)
         ui.type("Light")
-        ui.until(lambda: ui.session.graph.ui["frames"][frame]["title"] == "Light")
-        ui.double_click(f"node comments.{comment}")
+        ui.until(lambda: ui.session.graph.ui["frames"][frame.name]["title"] == "Light")
+        ui.double_click(f"node {comment}")
         ui.wait(3)
         ui.ctx.key_chars("Mind the gap")
         ui.wait(2)
         ui.click(empty(ui))
-        assert ui.session.graph.ui["comments"][comment]["text"] == "Mind the gap"
+        assert ui.session.graph.ui["comments"][comment.name]["text"] == "Mind the gap"
 
     gui(body)
 
@@ -180,7 +181,7 @@ def test_renames_a_frame_and_writes_a_comment_in_place(gui) -> None:
 def test_enters_and_leaves_groups(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom", "clip"))
-        ui.session.select(("bloom",))
+        ui.session.select((ElementId("bloom"),))
         group = ui.session.apply(MakeGroup("glow"))
         ui.wait(3)
         ui.double_click(f"title {group}", (0.3, 0.5))
@@ -308,7 +309,7 @@ def test_renames_a_node_in_place(gui) -> None:
 def test_every_group_keeps_its_view(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
-        ui.session.select(("bloom",))
+        ui.session.select((ElementId("bloom"),))
         group = ui.session.apply(MakeGroup("glow"))
         ui.wait(3)
         before = ui.editor.canvas.center, ui.editor.canvas.zoom

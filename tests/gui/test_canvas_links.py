@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from gui_canvas import chain, empty, show
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import with_places
 from halation.graph import Group, Port
 from halation.nodes import catalogue
@@ -121,11 +122,11 @@ def test_puts_dots_on_links_which_then_move_alone(gui) -> None:
         ui.drag((x, y - 60), (x, y + 60), button=1, keys="Shift")
         (dot,) = ui.session.graph.ui["dots"]
         assert list(ui.session.graph.ui["routes"]["bloom.image"]) == [dot]
-        before = ui.session.position(f"dots.{dot}")
-        x, y = ui.at(f"node dots.{dot}")
+        before = ui.session.position(dot)
+        x, y = ui.at(f"node {dot}")
         ui.drag((x, y), (x, y + 50))
-        assert ui.session.position(f"dots.{dot}")[1] > before[1] + 30
-        assert ui.session.position("bloom") == (640.0, 0.0)
+        assert ui.session.position(dot)[1] > before[1] + 30
+        assert ui.session.position(ElementId("bloom")) == (640.0, 0.0)
 
     gui(body)
 
@@ -166,7 +167,7 @@ def test_a_chain_dropped_on_a_link_is_inserted_and_what_follows_makes_room(gui) 
         show(ui, graph.connect(Port("vignette", "out"), Port("clip", "image")), 0.6)
         session, steps = ui.session, ui.session.history.position
         before = dict(session.positions)
-        session.select(("vignette", "clip"))
+        session.select((ElementId("vignette"), ElementId("clip")))
         ui.wait(3)
         ui.drag(ui.at("title vignette", (0.5, 0.5)), "link bloom.image", release=False)
         ui.wait(2)
@@ -200,7 +201,7 @@ def test_alt_takes_a_node_out_of_its_chain_while_it_is_dragged(gui) -> None:
         assert session.graph == before and session.history.position == steps and not session.history.can_redo
         ui.drag((x, y), (x, y + 150), keys="Alt")
         assert Port("bloom", "image") not in session.graph.links
-        assert session.position("bloom")[1] > 100 and session.history.position == steps + 1
+        assert session.position(ElementId("bloom"))[1] > 100 and session.history.position == steps + 1
         ui.keys("Ctrl+Z")
         assert session.graph == before
 

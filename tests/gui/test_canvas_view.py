@@ -5,6 +5,7 @@ from __future__ import annotations
 from gui_canvas import chain, empty, show
 from halation import presets
 from halation.authoring.commands import SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.canvas.brush import READABLE
 from halation.graph import Port
 
@@ -12,7 +13,7 @@ from halation.graph import Port
 def test_the_canvas_moves_on_while_something_is_dragged_to_its_border(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
-        view, before = ui.editor.canvas, ui.session.position("bloom")
+        view, before = ui.editor.canvas, ui.session.position(ElementId("bloom"))
         center, zoom = view.center, view.zoom
         x, y = ui.at("title bloom", (0.3, 0.5))
         low = 4.0
@@ -20,7 +21,7 @@ def test_the_canvas_moves_on_while_something_is_dragged_to_its_border(gui) -> No
         ui.until(lambda: view.center[0] < center[0] - 100.0)
         ui.ctx.mouse_up(0)
         ui.wait(3)
-        moved = before[0] - ui.session.position("bloom")[0]
+        moved = before[0] - ui.session.position(ElementId("bloom"))[0]
         assert moved > (x - low - 6.0) / zoom + 90.0, "it stays under the pointer while the canvas moves"
         still = view.center
         ui.wait(10)
@@ -86,7 +87,7 @@ def test_a_color_is_chosen_on_a_node_and_picked_from_the_picture(gui) -> None:
         ui.editor.dialogs.open.clear()
         ui.settled()
         port = Port("paper", "color")
-        ui.editor.canvas.fit(("paper",))
+        ui.editor.canvas.fit((ElementId("paper"),))
         ui.wait(4)
         ui.move(f"widget {port}")
         ui.wait(3)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from halation import document
 from halation.authoring.commands import InsertNode, SetCode, SetValue, SpliceChain
+from halation.authoring.edits.element_id import ElementId
 from halation.custom_nodes import CustomNode
 from halation.editor.problems.findings import list_problems
 from halation.editor.toolkit.keys import chord
@@ -139,7 +140,7 @@ def test_labels_and_colors_of_code_are_shown(gui, path) -> None:
             "{ return vec4(image.rgb * shade, 1.0); }",
         )
         ui.ctx.window_focus("//Graph")
-        ui.session.select("code")
+        ui.session.select(ElementId("code"))
         ui.wait(3)
         boxes = ui.window._panels["Graph"]._mouse.preview.scene.boxes
         assert [row.label for row in boxes["code"].layout.rows if row.value] == ["The Shade"]
@@ -169,7 +170,7 @@ def test_a_file_that_is_dropped_is_edited_and_saved(gui, path) -> None:
         file.write_text(GAIN.replace("= 2", "= 4"))
         ui.until(lambda: red(ui) == pytest.approx(1.0, abs=1e-3))
 
-        ui.session.select("gain")
+        ui.session.select(ElementId("gain"))
         ui.wait(3)
         ui.click("button code gain")
         ui.wait(5)

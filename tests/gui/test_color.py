@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.authoring.commands import SetColorSettings, SetInput
+from halation.authoring.edits.element_id import ElementId
 from halation.media import read_layer
 from halation.nodes import ColorSettings, Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -76,7 +77,7 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
 def test_the_space_of_a_file_is_said_and_can_be_chosen(gui, file) -> None:
     def body(ui) -> None:
         ui.session.apply(SetColorSettings(config="house.ocio"))
-        ui.session.select(("inputs.beauty",))
+        ui.session.select((ElementId("inputs.beauty"),))
         ui.settled()
         before = middle(ui)
         ui.session.apply(SetInput("beauty", color_space="house dim"))
@@ -119,7 +120,7 @@ def test_a_broken_environment_is_survived(gui, file, monkeypatch) -> None:
         assert "$OCIO" in (ui.editor.preview.fault("A") or "")
         ui.click("button view")
         ui.keys("Escape")
-        ui.session.select(("inputs.beauty",))
+        ui.session.select((ElementId("inputs.beauty"),))
         ui.wait(5)
 
     gui(body, file)

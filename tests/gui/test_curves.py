@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from halation.authoring.commands import ReplaceGraph, SetFrameRange, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.graph import Expression, Graph, Key, Keys, Port
 from toy_nodes import Gain, Soften
 
@@ -254,7 +255,7 @@ def test_an_empty_graph_is_asked_for_a_first_key(gui) -> None:
         ui.session.apply(ReplaceGraph("Add", Graph().add("one", Gain())))
         ui.editor.dialogs.open.clear()
         ui.ctx.window_focus("//Animation")
-        ui.session.select(["one"])
+        ui.session.select([ElementId("one")])
         ui.wait(4)
         ui.click("button keys add")
         ui.ctx.item_click("//$FOCUSED/gain##one.gain")

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from halation import document, presets
 from halation.authoring.commands import SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.graph import Port
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -31,7 +32,7 @@ def test_what_is_saved_is_what_was_made(gui, look: Path) -> None:
     before = document.load(look, sandbox=UNRESTRICTED)
 
     def body(ui) -> None:
-        ui.session.select(["tone"])
+        ui.session.select([ElementId("tone")])
         ui.session.apply(SetValue(Port("tone", "exposure"), 1.5))
         ui.wait()
         assert ui.session.dirty

@@ -7,6 +7,7 @@ from pathlib import Path
 import halation as hal
 import pytest
 from halation import document
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.viewer.ground import depth_at
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
@@ -46,7 +47,7 @@ def inside(ui, x: float, y: float) -> tuple[float, float]:
 
 
 def start(ui) -> None:
-    ui.session.select(["lens"])
+    ui.session.select([ElementId("lens")])
     ui.settled()
     ui.move(inside(ui, 0.5, 0.5))
     ui.settled()
@@ -100,7 +101,7 @@ def test_a_distance_is_picked_from_the_picture(gui, path: Path) -> None:
         ui.keys("E")
         ui.click(inside(ui, 0.5, 0.5), button=1)
         assert not ui.editor.viewer.picking
-        ui.session.select(["scene"])
+        ui.session.select([ElementId("scene")])
         ui.wait(3)
         assert "button viewer.pick_focus" not in ui.editor.places
 

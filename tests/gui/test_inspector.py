@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from halation import document
 from halation.authoring.commands import AddComment, AddFrame, AddNode, ExposeValue, MakeGroup, ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.graph import Graph, Group, Output, Port, Settings
 from halation.media import write_picture
 from halation.nodes import Kind, catalogue
@@ -107,7 +108,7 @@ def test_what_is_typed_is_kept_when_something_else_is_selected(gui, file) -> Non
         select(ui, "tone_map")
         ui.click("field tone_map.exposure")
         ui.type("3", enter=False)
-        ui.session.select(["grade"])
+        ui.session.select([ElementId("grade")])
         ui.wait(3)
         assert value(ui, "tone_map.exposure") == 3.0
         ui.click("field grade.gain", fraction=(0.03, 0.5))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.viewer.dome import flat
 from halation.editor.viewer.ground import depth_at
 from halation.editor.viewer.perspective import project
@@ -60,7 +61,7 @@ def inside(ui, x: float, y: float) -> tuple[float, float]:
 
 def start(ui) -> int:
     """Select the node; how many steps the history has."""
-    ui.session.select(["lit"])
+    ui.session.select([ElementId("lit")])
     ui.settled()
     ui.move(inside(ui, 0.02, 0.5))
     ui.settled()

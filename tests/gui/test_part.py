@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.authoring.commands import SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.preview import work as rounds
 from halation.document import save
 from halation.editor.window.status import _figures
@@ -45,7 +46,7 @@ def picture(ui, name: str) -> np.ndarray:
 
 def held(ui) -> None:
     """Begin to drag the light: the mouse stays down."""
-    ui.session.select(["light"])
+    ui.session.select([ElementId("light")])
     ui.settled()
     left, y = ui.at("field light.stops", (0.5, 0.5))
     ui.drag((left, y), (left + 20, y), release=False)

@@ -13,6 +13,7 @@ import OpenImageIO as oiio
 import pytest
 from gui_screens import SCREENS, write_many_things
 from halation import presets
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.theme.palette import PALETTES, RGB, Palette
 from halation.graph import Port
 from imgui_bundle import imgui
@@ -66,7 +67,7 @@ def test_pictures_of_the_editor(gui, theme: str) -> None:
         ui.session.view(Port("outputs", "image"))
         ui.session.view(Port("inputs", beauty), "B")
         ui.editor.viewer.toggle_comparison("wipe")
-        ui.session.select(["halo"])
+        ui.session.select([ElementId("halo")])
         ui.settled()
         ui.editor.canvas.fit()
         ui.wait(20)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 from halation.authoring.commands import ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.window.dropped_files import take_files
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
@@ -154,7 +155,7 @@ def test_keys_by_diamond_and_by_dragging(gui, tmp_path) -> None:
     def body(ui) -> None:
         session = ui.session
         start(ui, graph_of(path, "exposure", frames=(1, 12)))
-        session.select(["exposure"])
+        session.select([ElementId("exposure")])
         ui.wait(3)
         first = seen(ui)
         ui.click("diamond exposure.stops")
@@ -217,7 +218,7 @@ def test_an_expression_is_typed_after_an_equals_sign(gui, tmp_path) -> None:
     def body(ui) -> None:
         session = ui.session
         start(ui, graph_of(path, "exposure", frames=(1, 12)))
-        session.select(["exposure"])
+        session.select([ElementId("exposure")])
         ui.wait(3)
         ui.click("field exposure.stops")
         ui.type("=sin(frame / 12 * tau) * 2")

@@ -11,6 +11,7 @@ import pytest
 from gui_viewer import HEIGHT, PRESET, WIDTH, hover, inside, seen, shown_plainly
 from halation import document
 from halation.authoring.commands import AddInput, AddNode
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.viewer.geometry import Sight
 from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
@@ -38,7 +39,7 @@ def test_a_region_is_drawn_resized_and_cleared(gui) -> None:
 def test_a_position_is_dragged_on_the_picture_as_one_step(gui) -> None:
     def body(ui) -> None:
         ui.settled()
-        ui.session.select({"vignette"})
+        ui.session.select({ElementId("vignette")})
         ui.wait(3)
         ui.drag("handle vignette.center", inside(ui, 0.7, 0.25))
         ui.settled()
@@ -61,7 +62,7 @@ def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
     )
 
     def body(ui) -> None:
-        ui.session.select(["lit"])
+        ui.session.select([ElementId("lit")])
         ui.settled()
         steps = len(ui.session.history.steps)
         ui.drag("handle lit.lights 1", inside(ui, 0.7, 0.5))
@@ -236,7 +237,7 @@ def test_everything_that_is_hidden_in_a_narrow_panel_is_in_its_menu(gui) -> None
 def test_slow_pictures_are_coarser_while_something_is_dragged(gui) -> None:
     def body(ui) -> None:
         ui.settled()
-        ui.session.select({"vignette"})
+        ui.session.select({ElementId("vignette")})
         ui.wait(3)
         ui.editor.viewer.pace.took(1.0, 0.5)
         ui.drag("handle vignette.center", inside(ui, 0.7, 0.25), release=False)

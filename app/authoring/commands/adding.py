@@ -15,6 +15,7 @@ from ...graph import Group, Item, Port, did_you_mean
 from ...render_layers.render import is_render
 from ...watch.sequence_files import representative_file
 from ..edits import coding, elements, naming, paths, room, routes, wiring
+from ..edits.element_id import ElementId
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
 from ..state.open_document import OpenDocument
@@ -82,7 +83,7 @@ class AddMatte(EditCommand[str]):
     def apply(self, document: OpenDocument) -> Edited[str]:
         path = document.graph.value(Port(self.id, "path"))
         node = make_node(document, "cryptomatte").with_values(path=path, **({"layer": self.kind} if self.kind else {}))
-        x, y = document.positions[self.id]
+        x, y = document.positions[ElementId(self.id)]
         return add_item(document, "cryptomatte", node, (x, y - ABOVE), None, True)
 
 
@@ -102,18 +103,19 @@ class InsertNode(EditCommand[str]):
         if self.node in document.graph.nodes:
             graph, id = document.graph, self.node
             if self.at is not None:
-                graph = elements.with_places(graph, {id: self.at})
+                graph = elements.with_places(graph, {ElementId(id): self.at})
         else:
             id = document.graph.fresh_id(type_stem(self.node))
             graph = document.graph.add(id, make_node(document, self.node))
-            graph = elements.with_places(graph, {id: self.at or self._find_middle(document)})
-        graph = room.make_space(wiring.insert_node(graph, id, self.target), (id,), self.target, self.sizes)
-        return Edited(f"Insert {id}", id, graph, (id,))
+            graph = elements.with_places(graph, {ElementId(id): self.at or self._find_middle(document)})
+        node = ElementId(id)
+        graph = room.make_space(wiring.insert_node(graph, id, self.target), (node,), self.target, self.sizes)
+        return Edited(f"Insert {id}", id, graph, (node,))
 
     def _find_middle(self, document: OpenDocument) -> Place:
         """Halfway between the ends of the link."""
         source = document.graph.links.get(self.target, self.target)
-        ends = [elements.element_of(end) for end in (self.target, source)]
+        ends = [ElementId.of_port(end) for end in (self.target, source)]
         spots = [document.positions.get(key, (0.0, 0.0)) for key in ends]
         return (spots[0][0] + spots[1][0]) / 2.0, (spots[0][1] + spots[1][1]) / 2.0
 
@@ -133,7 +135,7 @@ class SpliceChain(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph
-        ids = {id for id in self.ids if id in graph.nodes}
+        ids = {ElementId(id) for id in self.ids if id in graph.nodes}
         places = {key: document.positions[key] for key in (*ids, *routes.inner_dots(graph, ids))}
         moved = {key: (x + self.by[0], y + self.by[1]) for key, (x, y) in places.items()}
         graph = wiring.splice_chain(elements.with_places(graph, moved), ids, self.target)
@@ -155,10 +157,10 @@ class DropFiles(EditCommand[tuple[str, ...]]):
         for number, path in enumerate(self.paths):
             id = graph.fresh_id(naming.node_stem(path))
             spot = (self.at[0], self.at[1] + number * DROP_STEP)
-            graph = elements.with_places(graph.add(id, _make_file_item(document, path)), {id: spot})
+            graph = elements.with_places(graph.add(id, _make_file_item(document, path)), {ElementId(id): spot})
             ids.append(id)
         label = naming.node_stem(self.paths[0]) if len(ids) == 1 else f"{len(ids)} files"
-        return Edited(f"Drop {label}", tuple(ids), graph, ids)
+        return Edited(f"Drop {label}", tuple(ids), graph, map(ElementId, ids))
 
 
 def make_node(document: OpenDocument, type_id: str) -> Node:
@@ -178,10 +180,10 @@ def type_stem(type_id: str) -> str:
 def add_item(document: OpenDocument, stem: str, item: Item, at: Place, link: Port | None, output: bool) -> Edited[str]:
     """A node added under a free id like `stem`, linked with `link` if that is given, and selected."""
     id = document.graph.fresh_id(stem)
-    graph = elements.with_places(document.graph.add(id, item), {id: at})
+    graph = elements.with_places(document.graph.add(id, item), {ElementId(id): at})
     if link is not None:
         graph = wiring.link_node(graph, id, link, output)
-    return Edited(f"Add {id}", id, graph, (id,))
+    return Edited(f"Add {id}", id, graph, (ElementId(id),))
 
 
 def load_group(document: OpenDocument, path: str | Path) -> Group:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..edits import clipboard, deleting, naming
+from ..edits.element_id import ElementId
 from ..edits.elements import Place
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited, require_selection
@@ -21,8 +22,8 @@ class CutSelection(EditCommand[str]):
 
 
 @dataclass(frozen=True)
-class PasteText(EditCommand[tuple[str, ...]]):
-    """Add what was copied, or the content of a whole graph file; gives the keys, which are selected.
+class PasteText(EditCommand[tuple[ElementId, ...]]):
+    """Add what was copied, or the content of a whole graph file; gives the new elements, which are selected.
 
     The upper left corner comes to `at`, else near where it was. With `keep_links`, links from what is not part of the
     text stay where that exists.
@@ -32,19 +33,19 @@ class PasteText(EditCommand[tuple[str, ...]]):
     at: Place | None = None
     keep_links: bool = False
 
-    def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
+    def apply(self, document: OpenDocument) -> Edited[tuple[ElementId, ...]]:
         part = clipboard.read_part(self.text, document.root.folder, document.types, sandbox=document.sandbox)
         graph, keys = clipboard.paste_part(document.graph, part, document.positions, self.at, self.keep_links)
         return Edited(f"Paste {naming.describe_elements(keys)}", keys, graph, keys)
 
 
 @dataclass(frozen=True)
-class DuplicateSelection(EditCommand[tuple[str, ...]]):
-    """Add the selection once more, fed by the same; gives the keys, which are selected."""
+class DuplicateSelection(EditCommand[tuple[ElementId, ...]]):
+    """Add the selection once more, fed by the same; gives the new elements, which are selected."""
 
     offset: Place = (24.0, 24.0)
 
-    def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
+    def apply(self, document: OpenDocument) -> Edited[tuple[ElementId, ...]]:
         part = clipboard.cut_part(document.graph, require_selection(document, "duplicate"))
         graph, keys = clipboard.paste_part(
             document.graph, part, document.positions, keep_links=True, offset=self.offset

@@ -19,6 +19,7 @@ from typing import Generic, TypeVar
 
 from ...errors import GraphError
 from ...graph import Graph, Port
+from ..edits.element_id import ElementId
 from ..edits.folding import Moves
 from ..state.open_document import OpenDocument
 
@@ -36,12 +37,12 @@ class Edited(Generic[T]):
     label: str
     outcome: T
     graph: Graph | None = None
-    select: Iterable[str] | None = None
+    select: Iterable[ElementId] | None = None
     merge: str = ""
     root: Graph | None = None
     moves: Moves | None = None
     """Ends and controls that got another name, which matters to the graph around a group."""
-    renamed: tuple[str, str] | None = None
+    renamed: tuple[ElementId, ElementId] | None = None
     """The old and the new name of an element: what the viewer shows and the files bound to inputs follow it."""
     view: Port | None = None
     """The port that the viewer shows afterwards."""
@@ -55,19 +56,19 @@ class EditCommand(ABC, Generic[T]):
         """What the document is to become. Raises HalationError with one sentence if the command makes no sense."""
 
 
-def require_selection(document: OpenDocument, verb: str) -> frozenset[str]:
+def require_selection(document: OpenDocument, verb: str) -> frozenset[ElementId]:
     """The selected elements. Raises GraphError if there are none."""
     if not document.selection:
         raise GraphError(f"nothing is selected: select what to {verb}")
     return document.selection
 
 
-def require_nodes(document: OpenDocument, verb: str) -> tuple[str, ...]:
-    """Ids of the selected nodes, in the order of the graph. Raises GraphError if there are none."""
-    ids = tuple(id for id in document.graph.nodes if id in document.selection)
-    if not ids:
+def require_nodes(document: OpenDocument, verb: str) -> tuple[ElementId, ...]:
+    """The selected nodes, in the order of the graph. Raises GraphError if there are none."""
+    nodes = tuple(id for id in map(ElementId, document.graph.nodes) if id in document.selection)
+    if not nodes:
         raise GraphError(f"no node is selected: select what to {verb}")
-    return ids
+    return nodes
 
 
 def count_links(targets: Collection[Port]) -> str:

@@ -7,32 +7,33 @@ from dataclasses import dataclass
 from ...errors import GraphError
 from ...graph import Port
 from ..edits import decor, naming, routes
-from ..edits.elements import Place, Sizes, clean_text, entries
+from ..edits.element_id import ElementId
+from ..edits.elements import Place, Sizes, clean_text, list_decor
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
 @dataclass(frozen=True)
-class AddFrame(EditCommand[str]):
-    """Add a frame around the selection, or at `at`; gives its id."""
+class AddFrame(EditCommand[ElementId]):
+    """Add a frame around the selection, or at `at`; gives it."""
 
     title: str = ""
     at: Place | None = None
     sizes: Sizes | None = None
 
-    def apply(self, document: OpenDocument) -> Edited[str]:
+    def apply(self, document: OpenDocument) -> Edited[ElementId]:
         around = () if self.at is not None else document.selection
         at = self.at or (0.0, 0.0)
-        graph, id = decor.add_frame(document.graph, around, document.positions, self.title, at, self.sizes)
+        graph, frame = decor.add_frame(document.graph, around, document.positions, self.title, at, self.sizes)
         label = f"Frame {self.title or naming.describe_elements(around)}" if around else "Add frame"
-        return Edited(label, id, graph, (f"frames.{id}",))
+        return Edited(label, frame, graph, (frame,))
 
 
 @dataclass(frozen=True)
 class EditFrame(EditCommand[None]):
     """Set the title or the display-referred color (0 to 1) of a frame; None leaves it."""
 
-    id: str
+    frame: ElementId
     title: str | None = None
     color: tuple[float, float, float] | None = None
     merge: str = ""
@@ -43,7 +44,7 @@ class EditFrame(EditCommand[None]):
             facts["title"] = clean_text(self.title)
         if self.color is not None:
             facts["color"] = tuple(round(float(part), 4) for part in self.color)
-        graph = decor.set_facts(document.graph, f"frames.{self.id}", **facts)
+        graph = decor.set_facts(document.graph, self.frame, **facts)
         return Edited("Edit frame", None, graph, merge=self.merge)
 
 
@@ -51,7 +52,7 @@ class EditFrame(EditCommand[None]):
 class ResizeFrame(EditCommand[None]):
     """Give a frame another rectangle."""
 
-    id: str
+    frame: ElementId
     x: float
     y: float
     width: float
@@ -59,33 +60,34 @@ class ResizeFrame(EditCommand[None]):
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        key = f"frames.{self.id}"
-        graph = decor.set_box(decor.set_facts(document.graph, key), key, self.x, self.y, self.width, self.height)
+        graph = decor.set_box(
+            decor.set_facts(document.graph, self.frame), self.frame, self.x, self.y, self.width, self.height
+        )
         return Edited("Resize frame", None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
-class AddComment(EditCommand[str]):
-    """Add a comment at that place; gives its id."""
+class AddComment(EditCommand[ElementId]):
+    """Add a comment at that place; gives it."""
 
     at: Place
     text: str = ""
 
-    def apply(self, document: OpenDocument) -> Edited[str]:
-        graph, id = decor.add_comment(document.graph, self.at, self.text)
-        return Edited("Add comment", id, graph, (f"comments.{id}",))
+    def apply(self, document: OpenDocument) -> Edited[ElementId]:
+        graph, comment = decor.add_comment(document.graph, self.at, self.text)
+        return Edited("Add comment", comment, graph, (comment,))
 
 
 @dataclass(frozen=True)
 class EditComment(EditCommand[None]):
     """Write something else in a comment."""
 
-    id: str
+    comment: ElementId
     text: str
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        graph = decor.set_facts(document.graph, f"comments.{self.id}", text=clean_text(self.text))
+        graph = decor.set_facts(document.graph, self.comment, text=clean_text(self.text))
         return Edited("Edit comment", None, graph, merge=self.merge)
 
 
@@ -93,48 +95,49 @@ class EditComment(EditCommand[None]):
 class ResizeComment(EditCommand[None]):
     """Put a comment somewhere and make it as wide; it is as high as its text."""
 
-    id: str
+    comment: ElementId
     x: float
     y: float
     width: float
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        key = f"comments.{self.id}"
-        graph = decor.set_box(decor.set_facts(document.graph, key), key, self.x, self.y, self.width, 0.0)
+        graph = decor.set_box(
+            decor.set_facts(document.graph, self.comment), self.comment, self.x, self.y, self.width, 0.0
+        )
         return Edited("Resize comment", None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)
-class AddDot(EditCommand[str]):
-    """Add a dot on the link that feeds `target`; gives its id."""
+class AddDot(EditCommand[ElementId]):
+    """Add a dot on the link that feeds `target`; gives it."""
 
     target: Port
     at: Place
 
-    def apply(self, document: OpenDocument) -> Edited[str]:
-        graph, id = routes.add_dot(document.graph, self.target, self.at)
-        return Edited("Add dot", id, graph, (f"dots.{id}",))
+    def apply(self, document: OpenDocument) -> Edited[ElementId]:
+        graph, dot = routes.add_dot(document.graph, self.target, self.at)
+        return Edited("Add dot", dot, graph, (dot,))
 
 
 @dataclass(frozen=True)
 class JoinDot(EditCommand[None]):
     """Let the link that feeds `target` pass a dot of another link from the same source."""
 
-    id: str
+    dot: ElementId
     target: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        return Edited("Join dot", None, routes.join_dot(document.graph, self.id, self.target))
+        return Edited("Join dot", None, routes.join_dot(document.graph, self.dot, self.target))
 
 
 @dataclass(frozen=True)
 class RemoveDot(EditCommand[None]):
     """Remove a dot; its links go on."""
 
-    id: str
+    dot: ElementId
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        if self.id not in entries(document.graph, "dots"):
-            raise GraphError(f"there is no dot '{self.id}'")
-        return Edited("Remove dot", None, routes.remove_dots(document.graph, [self.id]))
+        if self.dot not in list_decor(document.graph, "dot"):
+            raise GraphError(f"there is no dot '{self.dot.name}'")
+        return Edited("Remove dot", None, routes.remove_dots(document.graph, [self.dot]))

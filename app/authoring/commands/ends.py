@@ -9,7 +9,8 @@ from halation.nodes import Kind, Missing, Plain
 
 from ...errors import GraphError
 from ...graph import INPUTS, Graph, Input, Output, Port, problems
-from ..edits.elements import Place, clean_text, end_port, with_places
+from ..edits.element_id import ElementId
+from ..edits.elements import Place, clean_text, with_places
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
@@ -22,59 +23,60 @@ KEEP = Keep()
 
 
 @dataclass(frozen=True)
-class AddInput(EditCommand[str]):
-    """Add an input of the graph, selected; gives its key. `width` counts the channels of a Vector."""
+class AddInput(EditCommand[ElementId]):
+    """Add an input of the graph, selected; gives its id. `width` counts the channels of a Vector."""
 
     name: str
     kind: Kind | str = Kind.IMAGE
     width: int = 4
     at: Place | None = None
 
-    def apply(self, document: OpenDocument) -> Edited[str]:
+    def apply(self, document: OpenDocument) -> Edited[ElementId]:
         graph = document.graph.add_input(self.name, Input(Kind(self.kind), self.width))
-        return _add_end(graph, f"inputs.{self.name}", self.at)
+        return _add_end(graph, ElementId.of("input", self.name), self.at)
 
 
 @dataclass(frozen=True)
-class AddOutput(EditCommand[str]):
-    """Add an output of the graph, selected; gives its key. `width` counts the channels of a Vector."""
+class AddOutput(EditCommand[ElementId]):
+    """Add an output of the graph, selected; gives its id. `width` counts the channels of a Vector."""
 
     name: str
     kind: Kind | str = Kind.IMAGE
     width: int = 3
     at: Place | None = None
 
-    def apply(self, document: OpenDocument) -> Edited[str]:
+    def apply(self, document: OpenDocument) -> Edited[ElementId]:
         graph = document.graph.add_output(self.name, Output(Kind(self.kind), self.width))
-        return _add_end(graph, f"outputs.{self.name}", self.at)
+        return _add_end(graph, ElementId.of("output", self.name), self.at)
 
 
 @dataclass(frozen=True)
 class RemoveEnd(EditCommand[None]):
     """Remove an input or output and its links."""
 
-    key: str
+    end: ElementId
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        end, graph = _find_end(document.graph, self.key), document.graph
-        remove = graph.remove_input if end.node == INPUTS else graph.remove_output
-        return Edited(f"Remove {self.key}", None, remove(end.socket))
+        port, graph = _find_port(document.graph, self.end), document.graph
+        remove = graph.remove_input if port.node == INPUTS else graph.remove_output
+        return Edited(f"Remove {self.end}", None, remove(port.socket))
 
 
 @dataclass(frozen=True)
 class RenameEnd(EditCommand[None]):
     """Give an input or output another name; links and files bound to it follow."""
 
-    key: str
+    end: ElementId
     new: str
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        end, graph = _find_end(document.graph, self.key), document.graph
-        rename = graph.rename_input if end.node == INPUTS else graph.rename_output
-        graph, new_end = rename(end.socket, self.new), Port(end.node, self.new)
-        selection = [str(new_end) if key == self.key else key for key in document.ordered_selection]
-        label = f"Rename {self.key} to {self.new}"
-        return Edited(label, None, graph, selection, moves={end: new_end}, renamed=(self.key, str(new_end)))
+        port, graph = _find_port(document.graph, self.end), document.graph
+        rename = graph.rename_input if port.node == INPUTS else graph.rename_output
+        graph, new_port = rename(port.socket, self.new), Port(port.node, self.new)
+        new_end = ElementId.of_port(new_port)
+        selection = [new_end if element == self.end else element for element in document.ordered_selection]
+        label = f"Rename {self.end} to {self.new}"
+        return Edited(label, None, graph, selection, moves={port: new_port}, renamed=(self.end, new_end))
 
 
 @dataclass(frozen=True)
@@ -123,15 +125,16 @@ class SetOutput(EditCommand[None]):
         return Edited(f"Set outputs.{self.name}", None, graph, merge=self.merge)
 
 
-def _add_end(graph: Graph, key: str, at: Place | None) -> Edited[str]:
-    return Edited(f"Add {key}", key, with_places(graph, {key: at}) if at else graph, (key,))
+def _add_end(graph: Graph, end: ElementId, at: Place | None) -> Edited[ElementId]:
+    return Edited(f"Add {end}", end, with_places(graph, {end: at}) if at else graph, (end,))
 
 
-def _find_end(graph: Graph, key: str) -> Port:
-    end = end_port(key)
-    if end is None or end.socket not in (graph.inputs if end.node == INPUTS else graph.outputs):
-        raise GraphError(f"the graph has no '{key}'")
-    return end
+def _find_port(graph: Graph, end: ElementId) -> Port:
+    """The port of an input or output. Raises GraphError if the graph has none of that name."""
+    port = end.port
+    if port is None or port.socket not in (graph.inputs if port.node == INPUTS else graph.outputs):
+        raise GraphError(f"the graph has no '{end}'")
+    return port
 
 
 def _given_texts(**facts: str | None) -> dict[str, Any]:

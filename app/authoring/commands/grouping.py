@@ -8,6 +8,7 @@ from pathlib import Path
 from ...errors import GraphError
 from ...graph import Graph, Group
 from ..edits import folding, grouping, naming, paths, ungrouping
+from ..edits.element_id import ElementId
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
@@ -20,7 +21,7 @@ class MakeGroup(EditCommand[str]):
 
     def apply(self, document: OpenDocument) -> Edited[str]:
         graph, id = grouping.make_group(document.graph, document.selection, self.name)
-        return Edited(f"Group {naming.describe_elements(document.selection)}", id, graph, (id,))
+        return Edited(f"Group {naming.describe_elements(document.selection)}", id, graph, (ElementId(id),))
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ..edits import align, arranging, elements, naming
+from ..edits.element_id import ElementId
 from ..edits.elements import Sizes
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
@@ -15,13 +16,13 @@ from .command import EditCommand, Edited
 class MoveElements(EditCommand[None]):
     """Move elements by a distance."""
 
-    keys: Iterable[str]
+    elements: Iterable[ElementId]
     dx: float
     dy: float
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        places = {key: document.position(key) for key in self.keys}
+        places = {key: document.position(key) for key in self.elements}
         moved = {key: (x + self.dx, y + self.dy) for key, (x, y) in places.items()}
         graph = elements.with_places(document.graph, moved)
         return Edited(f"Move {naming.describe_elements(places)}", None, graph, merge=self.merge)
@@ -31,15 +32,15 @@ class MoveElements(EditCommand[None]):
 class PlaceElement(EditCommand[None]):
     """Put an element somewhere."""
 
-    key: str
+    element: ElementId
     x: float
     y: float
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        document.position(self.key)
-        graph = elements.with_places(document.graph, {self.key: (self.x, self.y)})
-        return Edited(f"Move {self.key}", None, graph, merge=self.merge)
+        document.position(self.element)
+        graph = elements.with_places(document.graph, {self.element: (self.x, self.y)})
+        return Edited(f"Move {self.element}", None, graph, merge=self.merge)
 
 
 @dataclass(frozen=True)

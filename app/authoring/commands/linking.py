@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ...errors import GraphError
 from ...graph import Port
 from ..edits import deleting, elements, naming, wiring
+from ..edits.element_id import ElementId
 from ..state.open_document import OpenDocument
 from .adding import make_node
 from .command import EditCommand, Edited, count_links, require_nodes, require_selection
@@ -39,15 +40,15 @@ class Disconnect(EditCommand[None]):
 class DisconnectAll(EditCommand[None]):
     """Remove every link of a node or end."""
 
-    key: str
+    element: ElementId
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         targets = [
             end
             for end, start in document.graph.links.items()
-            if self.key in (elements.element_of(end), elements.element_of(start))
+            if self.element in (ElementId.of_port(end), ElementId.of_port(start))
         ]
-        return Edited(f"Unlink {self.key}", None, wiring.cut_links(document.graph, targets))
+        return Edited(f"Unlink {self.element}", None, wiring.cut_links(document.graph, targets))
 
 
 @dataclass(frozen=True)
@@ -127,9 +128,9 @@ class RenameNode(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.rename(self.id, self.new)
-        selection = [self.new if key == self.id else key for key in document.ordered_selection]
-        label = f"Rename {self.id} to {self.new}"
-        return Edited(label, None, graph, selection, renamed=(self.id, self.new))
+        old, new = ElementId(self.id), ElementId(self.new)
+        selection = [new if element == old else element for element in document.ordered_selection]
+        return Edited(f"Rename {old} to {new}", None, graph, selection, renamed=(old, new))
 
 
 @dataclass(frozen=True)
@@ -156,6 +157,8 @@ class ToggleCollapse(EditCommand[None]):
         if not chosen:
             raise GraphError("no node is selected: select what to collapse")
         collapses = not all(elements.entry(graph, key).get("collapsed") is True for key in chosen)
-        facts: dict[str, Mapping[str, object]] = {key: {"collapsed": True if collapses else None} for key in chosen}
+        facts: dict[ElementId, Mapping[str, object]] = {
+            key: {"collapsed": True if collapses else None} for key in chosen
+        }
         label = f"{'Collapse' if collapses else 'Expand'} {naming.describe_elements(chosen)}"
         return Edited(label, None, elements.with_entries(graph, facts))

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Graph, Port
-from ..edits.elements import end_port, with_sections
+from ..edits.element_id import ElementId
+from ..edits.elements import with_sections
 from ..edits.ports import VIEWER_NUMBERS, is_viewable, output_ports
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
@@ -38,7 +39,7 @@ class ReplaceGraph(EditCommand[None]):
 
     label: str
     graph: Graph
-    select: Iterable[str] | None = None
+    select: Iterable[ElementId] | None = None
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
@@ -46,7 +47,7 @@ class ReplaceGraph(EditCommand[None]):
 
 
 def _find_active_port(document: OpenDocument) -> Port | None:
-    if end := end_port(document.active):
+    if end := document.active.port:
         return end
     graph = document.graph
     ports = output_ports(graph, document.active) if document.active in graph.nodes else []

@@ -7,15 +7,20 @@ from typing import Literal, get_args
 
 from ...errors import GraphError
 from ...graph import Graph
-from .elements import Place, Sizes
+from .element_id import ElementId
+from .elements import Place, Places, Sizes
 from .sizes import element_size
 
 Side = Literal["left", "right", "top", "bottom", "center x", "center y", "distribute x", "distribute y"]
 
 
 def align_elements(
-    graph: Graph, elements: Collection[str], side: str, places: Mapping[str, Place], sizes: Sizes | None = None
-) -> dict[str, Place]:
+    graph: Graph,
+    elements: Collection[ElementId],
+    side: str,
+    places: Places,
+    sizes: Sizes | None = None,
+) -> dict[ElementId, Place]:
     """The new places of some elements.
 
     `left` to `bottom` line up that edge with the outermost one, `center x` and `center y` the centers with their mean;
@@ -33,7 +38,7 @@ def align_elements(
     return {key: (starts[key], places[key][1]) if is_horizontal else (places[key][0], starts[key]) for key in elements}
 
 
-def _align_spans(spans: Mapping[str, tuple[float, float]], side: str) -> dict[str, float]:
+def _align_spans(spans: Mapping[ElementId, tuple[float, float]], side: str) -> dict[ElementId, float]:
     """Where each span (start, length) starts afterwards."""
     match side:
         case "left" | "top":
@@ -50,11 +55,11 @@ def _align_spans(spans: Mapping[str, tuple[float, float]], side: str) -> dict[st
     raise GraphError(f"'{side}' is no way to align: it is one of {', '.join(get_args(Side))}")
 
 
-def _distribute(spans: Mapping[str, tuple[float, float]]) -> dict[str, float]:
+def _distribute(spans: Mapping[ElementId, tuple[float, float]]) -> dict[ElementId, float]:
     order = sorted(spans, key=lambda key: (spans[key][0] + spans[key][1] / 2.0, key))
     first, last = spans[order[0]][0], sum(spans[order[-1]])
     gap = (last - first - sum(length for _, length in spans.values())) / (len(order) - 1)
-    starts, at = dict[str, float](), first
+    starts, at = dict[ElementId, float](), first
     for key in order:
         starts[key] = at
         at += spans[key][1] + gap

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 
 from ...graph import Graph, Port
 from .decor import find_frame_members, set_box
-from .elements import Place, Sizes, can_be_linked, element_of, entries, list_elements, with_places
+from .element_id import ElementId
+from .elements import Place, Places, Sizes, can_be_linked, list_decor, list_elements, with_places
 from .layout import bounds, lay_out
 from .routes import routes
 from .sizes import element_size
 
 
-def arrange(
-    graph: Graph, chosen: Collection[str] | None, places: Mapping[str, Place], sizes: Sizes | None = None
-) -> Graph:
+def arrange(graph: Graph, chosen: Collection[ElementId] | None, places: Places, sizes: Sizes | None = None) -> Graph:
     """A graph where some nodes and ends, or all of them, are laid out in layers from left to right.
 
     Their top left corner stays. Frames around only such elements go along and fit, dots are spread over their links.
@@ -25,27 +24,31 @@ def arrange(
     left, top, _, _ = bounds(graph, elements, places, sizes)
     new_places = {key: (x + left, y + top) for key, (x, y) in lay_out(graph, elements, sizes).items()}
     after = with_places(graph, new_places | _spread_dots(graph, {**places, **new_places}, set(elements), sizes))
-    for id in entries(graph, "frames"):
-        members = [key for key in find_frame_members(graph, id, places, sizes) if can_be_linked(key, graph)]
+    for frame in list_decor(graph, "frame"):
+        members = [key for key in find_frame_members(graph, frame, places, sizes) if can_be_linked(key, graph)]
         if members and set(members) <= set(elements):
             before, now = (bounds(graph, members, where, sizes) for where in (places, {**places, **new_places}))
-            box = bounds(graph, [f"frames.{id}"], places, sizes)
+            box = bounds(graph, [frame], places, sizes)
             low, high = [box[side] - before[side] for side in (0, 1)], [box[side] - before[side] for side in (2, 3)]
             x, y = now[0] + low[0], now[1] + low[1]
-            after = set_box(after, f"frames.{id}", x, y, now[2] + high[0] - x, now[3] + high[1] - y)
+            after = set_box(after, frame, x, y, now[2] + high[0] - x, now[3] + high[1] - y)
     return after
 
 
-def _spread_dots(graph: Graph, places: Mapping[str, Place], moved: set[str], sizes: Sizes | None) -> dict[str, Place]:
+def _spread_dots(graph: Graph, places: Places, moved: set[ElementId], sizes: Sizes | None) -> dict[ElementId, Place]:
     """New places for the dots of links whose both ends moved: evenly on the way."""
-    dot_places: dict[str, Place] = {}
+    dot_places: dict[ElementId, Place] = {}
     ends: dict[str, tuple[Port, Port]] = {str(end): (start, end) for end, start in graph.links.items()}
     for target, dots in routes(graph).items():
-        start, end = (element_of(port) for port in ends[target]) if target in ends else ("", "")
+        if target not in ends:
+            continue
+        start, end = map(ElementId.of_port, ends[target])
         if start in moved and end in moved:
             (x, y), (width, _) = places[start], element_size(graph, start, sizes)
             for number, dot in enumerate(dots, 1):
                 share = number / (len(dots) + 1)
                 across = (places[end][0] - x - width) * share
-                dot_places.setdefault(f"dots.{dot}", (x + width + across, y + (places[end][1] - y) * share + 12.0))
+                dot_places.setdefault(
+                    ElementId.of("dot", dot), (x + width + across, y + (places[end][1] - y) * share + 12.0)
+                )
     return dot_places

@@ -11,9 +11,11 @@ from ...document import dumps, loads
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
+from ...graph.notes import keys_of_nodes
 from ...resources.sandbox import Sandbox
 from . import timing
-from .elements import Place, element_of, end_port, entry, list_elements, with_entries, with_places
+from .element_id import ElementId
+from .elements import Place, Places, entry, list_elements, with_entries, with_places
 from .layout import positions, shift_off
 from .merging import merge_part, rename_dots
 from .paths import rebase_paths
@@ -24,34 +26,30 @@ _FROM = "from"
 """Where relative paths of the text start."""
 
 
-def cut_part(graph: Graph, chosen: Collection[str]) -> Graph:
+def cut_part(graph: Graph, chosen: Collection[ElementId]) -> Graph:
     """A graph of the chosen elements: with the links that lead to them, even from what was not chosen."""
     elements = [key for key in list_elements(graph) if key in chosen]
-    links = {end: start for end, start in graph.links.items() if element_of(end) in chosen}
-    inner = [end for end, start in links.items() if element_of(start) in chosen]
+    links = {end: start for end, start in graph.links.items() if ElementId.of_port(end) in chosen}
+    inner = [end for end, start in links.items() if ElementId.of_port(start) in chosen]
     passed = {end: dots for end in inner if (dots := routes(graph).get(str(end)))}
-    dots = {f"dots.{dot}" for route in passed.values() for dot in route}
+    dots = {ElementId.of("dot", dot) for route in passed.values() for dot in route}
     spots = positions(graph)
     copied_graph = Graph(
         nodes={id: item for id, item in graph.nodes.items() if id in chosen},
         links=links,
-        inputs={name: end for name, end in graph.inputs.items() if f"{INPUTS}.{name}" in chosen},
-        outputs={name: end for name, end in graph.outputs.items() if f"{OUTPUTS}.{name}" in chosen},
+        inputs={name: end for name, end in graph.inputs.items() if ElementId.of("input", name) in chosen},
+        outputs={name: end for name, end in graph.outputs.items() if ElementId.of("output", name) in chosen},
         muted=graph.muted.intersection(chosen),
         animation=timing.animation_of(graph, chosen),
         folder=graph.folder,
-        extra={
-            path: kept
-            for path, kept in graph.extra.items()
-            if ".".join(path.split(".")[1:2]) in chosen and path.startswith("nodes.")
-        },
+        extra=keys_of_nodes(graph.extra, chosen),
     )
-    laid = [key for key in elements if not key.startswith("dots.")] + sorted(dots)
+    laid = [key for key in elements if key.kind != "dot"] + sorted(dots)
     copied_graph = with_entries(copied_graph, {key: entry(graph, key) for key in laid})
     return with_routes(with_places(copied_graph, {key: spots[key] for key in laid}), passed)
 
 
-def copy_elements(graph: Graph, chosen: Collection[str]) -> str:
+def copy_elements(graph: Graph, chosen: Collection[ElementId]) -> str:
     """The chosen elements as text: a graph file, which says in `from` where its relative paths start."""
     copied_graph = cut_part(graph, chosen)
     folder = str(Path(graph.folder).absolute())
@@ -75,12 +73,12 @@ def read_part(text: str, folder: str, types: Types, sandbox: Sandbox) -> Graph:
 def paste_part(
     graph: Graph,
     part: Graph,
-    places: Mapping[str, Place],
+    places: Places,
     at: Place | None = None,
     keep_links: bool = False,
     offset: Place = (0.0, 0.0),
-) -> tuple[Graph, tuple[str, ...]]:
-    """A graph with the nodes, ends and decor of `part` added, and their keys.
+) -> tuple[Graph, tuple[ElementId, ...]]:
+    """A graph with the nodes, ends and decor of `part` added, and their ids.
 
     An input of `part` is the one of that name and type if there is one and a node reads it; an output takes the place
     of a loose one. With `keep_links`, links from what is not in `part` stay where that exists. Raises GraphError.
@@ -88,17 +86,17 @@ def paste_part(
     ends = _name_ends(graph, part)
     known = set(list_elements(graph))
     combined = merge_part(_add_ends(graph, part, ends), part, {})
-    names = {**combined.keys, **ends}
+    names = {**combined.names, **ends}
     put = {key: name for key, name in names.items() if name not in known}
     if not put:
         raise GraphError("there is nothing in it to paste")
     spots = _place_part({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)
     after = with_places(combined.graph, {put[key]: spot for key, spot in spots.items()})
-    folded = [name for key, name in put.items() if end_port(key) and entry(part, key).get("collapsed") is True]
+    folded = [name for key, name in put.items() if key.port and entry(part, key).get("collapsed") is True]
     after = with_entries(after, {name: {"collapsed": True} for name in folded})
     passed = routes(part)
     for target, source in sorted(part.links.items()):
-        inside = element_of(source) in names
+        inside = ElementId.of_port(source) in names
         if (target.node in part.nodes and source.node in part.nodes) or not (inside or keep_links):
             continue
         end, start = _rename_port(target, names), _rename_port(source, names) if inside else source
@@ -107,27 +105,29 @@ def paste_part(
     return after, tuple(put.values())
 
 
-def _name_ends(graph: Graph, part: Graph) -> dict[str, str]:
+def _name_ends(graph: Graph, part: Graph) -> dict[ElementId, ElementId]:
     """What the ends of `part` are called in the graph: an equal one that serves, else one under a free name."""
-    read = {source for target, source in part.links.items() if element_of(target) != element_of(source)}
-    end_names: dict[str, str] = {}
+    read = {source for target, source in part.links.items() if ElementId.of_port(target) != ElementId.of_port(source)}
+    end_names: dict[ElementId, ElementId] = {}
     for name, end in part.inputs.items():
         own = graph.inputs.get(name)
         serves = own is not None and (own.kind, own.width) == (end.kind, end.width) and Port(INPUTS, name) in read
-        end_names[f"{INPUTS}.{name}"] = f"{INPUTS}.{name if serves else fresh_name(name, graph.inputs)}"
+        new_name = name if serves else fresh_name(name, graph.inputs)
+        end_names[ElementId.of("input", name)] = ElementId.of("input", new_name)
     for name, end in part.outputs.items():
         own = graph.outputs.get(name)
         port = Port(OUTPUTS, name)
         serves = own is not None and (own.kind, own.width) == (end.kind, end.width)
         serves = serves and port in part.links and port not in graph.links
-        end_names[f"{OUTPUTS}.{name}"] = f"{OUTPUTS}.{name if serves else fresh_name(name, graph.outputs)}"
+        new_name = name if serves else fresh_name(name, graph.outputs)
+        end_names[ElementId.of("output", name)] = ElementId.of("output", new_name)
     return end_names
 
 
-def _add_ends(graph: Graph, part: Graph, ends: Mapping[str, str]) -> Graph:
+def _add_ends(graph: Graph, part: Graph, ends: Mapping[ElementId, ElementId]) -> Graph:
     inputs, outputs = dict(graph.inputs), dict(graph.outputs)
-    for key, name in ends.items():
-        old, new = end_port(key), end_port(name)
+    for old_id, new_id in ends.items():
+        old, new = old_id.port, new_id.port
         if old and new and old.node == INPUTS:
             inputs.setdefault(new.socket, part.inputs[old.socket])
         elif old and new:
@@ -135,15 +135,13 @@ def _add_ends(graph: Graph, part: Graph, ends: Mapping[str, str]) -> Graph:
     return replace(graph, inputs=inputs, outputs=outputs)
 
 
-def _place_part(
-    spots: Mapping[str, Place], places: Mapping[str, Place], at: Place | None, offset: Place
-) -> dict[str, Place]:
+def _place_part(spots: Places, places: Places, at: Place | None, offset: Place) -> dict[ElementId, Place]:
     """Places of what is pasted: the upper left corner at `at`, else moved by `offset`, and nothing exactly covered."""
     x, y = min((x for x, _ in spots.values()), default=0.0), min((y for _, y in spots.values()), default=0.0)
     dx, dy = (at[0] - x, at[1] - y) if at else offset
     return shift_off({key: (x + dx, y + dy) for key, (x, y) in spots.items()}, places.values())
 
 
-def _rename_port(port: Port, names: Mapping[str, str]) -> Port:
-    name = names[element_of(port)]
-    return end_port(name) or Port(name, port.socket)
+def _rename_port(port: Port, names: Mapping[ElementId, ElementId]) -> Port:
+    name = names[ElementId.of_port(port)]
+    return name.port or Port(name, port.socket)

@@ -1,4 +1,4 @@
-"""What lies on the canvas, by key: nodes (`blur`), ends (`inputs.beauty`), `frames.f1`, `comments.c1`, `dots.d1`."""
+"""What `graph.ui` says of the elements of a graph: where they lie, how large they are, what is written on them."""
 
 from __future__ import annotations
 
@@ -7,89 +7,77 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any, TypeGuard
 
-from ...graph import INPUTS, OUTPUTS, Graph, Port
-
-DECOR = ("frames", "comments", "dots")
-"""The sections of `ui` whose entries are elements of their own."""
+from ...graph import Graph
+from .element_id import DECOR, DecorKind, ElementId, decor_section
 
 Place = tuple[float, float]
 """Canvas position of an element's top left."""
 
-Sizes = Mapping[str, tuple[float, float]]
-"""Width and height of elements by key."""
+Places = Mapping[ElementId, Place]
+"""Where elements lie."""
+
+Sizes = Mapping[ElementId, tuple[float, float]]
+"""Width and height of elements."""
 
 
-def list_elements(graph: Graph) -> tuple[str, ...]:
-    """Every element of a graph: nodes, ends, then decor."""
-    ends = (*(f"{INPUTS}.{name}" for name in graph.inputs), *(f"{OUTPUTS}.{name}" for name in graph.outputs))
-    decor = (f"{section}.{id}" for section in DECOR for id in entries(graph, section))
-    return (*graph.nodes, *ends, *decor)
+def list_elements(graph: Graph) -> tuple[ElementId, ...]:
+    """Every element of a graph: nodes, inputs and outputs, then decor."""
+    return (
+        *map(ElementId, graph.nodes),
+        *(ElementId.of("input", name) for name in graph.inputs),
+        *(ElementId.of("output", name) for name in graph.outputs),
+        *(element for kind in DECOR for element in list_decor(graph, kind)),
+    )
 
 
-def element_of(port: Port) -> str:
-    """The key of the element that shows a port."""
-    return str(port) if port.node in (INPUTS, OUTPUTS) else port.node
+def can_be_linked(element: ElementId, graph: Graph) -> bool:
+    """True for what links can meet: nodes, inputs and outputs."""
+    return element in graph.nodes or element.port is not None
 
 
-def end_port(key: str) -> Port | None:
-    """The port that an end's key stands for; None for any other element."""
-    side, dot, name = key.partition(".")
-    return Port(side, name) if dot and side in (INPUTS, OUTPUTS) else None
+def list_decor(graph: Graph, kind: DecorKind) -> Mapping[ElementId, Mapping[str, Any]]:
+    """All frames, comments or dots of a graph, with what is known of them; malformed ones are left out."""
+    section = _section(graph, decor_section(kind))
+    return {ElementId.of(kind, name): facts for name, facts in section.items() if name and _is_object(facts)}
 
 
-def can_be_linked(key: str, graph: Graph) -> bool:
-    """True for what links can meet: nodes and ends."""
-    return key in graph.nodes or end_port(key) is not None
-
-
-def is_note(key: str) -> bool:
-    """True for what is only there to be read: frames and comments."""
-    section, dot, _ = key.partition(".")
-    return bool(dot) and section in ("frames", "comments")
-
-
-def entries(graph: Graph, section: str) -> Mapping[str, Mapping[str, Any]]:
-    """The well-formed entries of a section of `ui`."""
-    return {id: entry for id, entry in _section(graph, section).items() if _is_object(entry)}
-
-
-def entry(graph: Graph, key: str) -> Mapping[str, Any]:
+def entry(graph: Graph, element: ElementId) -> Mapping[str, Any]:
     """What `ui` says of an element, empty if nothing."""
-    section, id = _address(key)
-    facts = _section(graph, section).get(id)
+    section, key = element.ui_entry
+    facts = _section(graph, section).get(key)
     return facts if _is_object(facts) else {}
 
 
-def place(graph: Graph, key: str) -> Place | None:
+def place(graph: Graph, element: ElementId) -> Place | None:
     """Where an element was put, or None."""
-    facts = entry(graph, key)
+    facts = entry(graph, element)
     x, y = facts.get("x"), facts.get("y")
     return (float(x), float(y)) if _is_number(x) and _is_number(y) else None
 
 
-def with_entries(graph: Graph, changes: Mapping[str, Mapping[str, Any]]) -> Graph:
-    """`ui` with facts about elements added by key; a fact of None goes."""
+def with_entries(graph: Graph, changes: Mapping[ElementId, Mapping[str, Any]]) -> Graph:
+    """`ui` with facts about elements added; a fact of None goes."""
     sections: dict[str, dict[str, Any]] = {}
-    for key, facts in changes.items():
-        section, id = _address(key)
-        entries_by_id = sections.setdefault(section, dict(_section(graph, section)))
-        entries_by_id[id] = {name: fact for name, fact in {**entry(graph, key), **facts}.items() if fact is not None}
+    for element, facts in changes.items():
+        section, key = element.ui_entry
+        entries = sections.setdefault(section, dict(_section(graph, section)))
+        entries[key] = {name: fact for name, fact in {**entry(graph, element), **facts}.items() if fact is not None}
     return with_sections(graph, sections)
 
 
-def without_entries(graph: Graph, elements: Iterable[str]) -> Graph:
+def without_entries(graph: Graph, elements: Iterable[ElementId]) -> Graph:
     """`ui` without what it says of some elements."""
     sections: dict[str, dict[str, Any]] = {}
-    for key in elements:
-        section, id = _address(key)
-        sections.setdefault(section, dict(_section(graph, section))).pop(id, None)
+    for element in elements:
+        section, key = element.ui_entry
+        sections.setdefault(section, dict(_section(graph, section))).pop(key, None)
     return with_sections(graph, sections)
 
 
-def with_places(graph: Graph, places: Mapping[str, Place]) -> Graph:
+def with_places(graph: Graph, places: Mapping[ElementId, Place]) -> Graph:
     """`ui` with elements somewhere else."""
     return with_entries(
-        graph, {key: {"x": round_coordinate(x), "y": round_coordinate(y)} for key, (x, y) in places.items()}
+        graph, {element: {"x": round_coordinate(x), "y": round_coordinate(y)} for element, (x, y) in places.items()}
     )
 
 
@@ -102,12 +90,12 @@ def with_sections(graph: Graph, sections: Mapping[str, Mapping[str, Any]]) -> Gr
     return graph if ui == graph.ui else replace(graph, ui=ui)
 
 
-def fresh_id(graph: Graph, section: str) -> str:
+def fresh_decor(graph: Graph, kind: DecorKind) -> ElementId:
     """A free id for a frame, comment or dot: `f1`, `f2`, ..."""
-    taken, number = entries(graph, section), 1
-    while f"{section[0]}{number}" in taken:
+    taken, number = list_decor(graph, kind), 1
+    while (element := ElementId.of(kind, f"{kind[0]}{number}")) in taken:
         number += 1
-    return f"{section[0]}{number}"
+    return element
 
 
 def round_coordinate(number: float) -> float:
@@ -128,11 +116,6 @@ def _section(graph: Graph, name: str) -> Mapping[str, Any]:
 
 def _is_object(item: object) -> TypeGuard[Mapping[str, Any]]:
     return isinstance(item, dict | MappingProxyType)
-
-
-def _address(key: str) -> tuple[str, str]:
-    section, _, id = key.partition(".")
-    return (section, id) if section in DECOR and id else ("nodes", key)
 
 
 def _is_number(item: object) -> TypeGuard[float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from halation.nodes import Kind, Socket, Value
@@ -10,11 +10,13 @@ from halation.nodes import Kind, Socket, Value
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
 from ...graph.names import check_name, fresh_name
+from ...graph.notes import keys_of_nodes
 from . import timing
+from .element_id import ElementId
 from .elements import (
     Place,
+    Places,
     entry,
-    is_note,
     list_elements,
     place,
     with_entries,
@@ -23,6 +25,7 @@ from .elements import (
     without_entries,
 )
 from .layout import GAP, bounds, positions
+from .ports import read_port
 from .routes import routes, tidy_routes
 from .sizes import WIDTH, element_size
 
@@ -30,7 +33,7 @@ _KINDS = {"float": Kind.FIELD, "int": Kind.FIELD, "bool": Kind.FIELD, "color": K
 """What an input is that feeds a value of that type."""
 
 
-def make_group(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Graph, str]:
+def make_group(graph: Graph, chosen: Collection[ElementId], name: str = "") -> tuple[Graph, str]:
     """A graph where the chosen nodes and decor are a group, and its id.
 
     Every source outside that feeds chosen nodes becomes an input, every output of theirs that is read outside an
@@ -69,13 +72,13 @@ def make_group(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[G
     )
     timing.check_names(graph, body, inner)
     timing.check_names(graph, outer, around)
-    notes = [key for key in list_elements(graph) if key in chosen and is_note(key)]
-    return tidy_routes(with_places(without_entries(outer, notes), {id: group_corner(graph, ids, spots)})), id
+    notes = [key for key in list_elements(graph) if key in chosen and key.is_note]
+    return tidy_routes(with_places(without_entries(outer, notes), {ElementId(id): group_corner(graph, ids, spots)})), id
 
 
-def group_corner(graph: Graph, ids: Collection[str], spots: Mapping[str, Place]) -> Place:
+def group_corner(graph: Graph, ids: Iterable[str], spots: Places) -> Place:
     """Where a group goes that stands for some nodes: their center, less half a node."""
-    left, top, right, bottom = bounds(graph, ids, spots)
+    left, top, right, bottom = bounds(graph, map(ElementId, ids), spots)
     return round((left + right - WIDTH) / 2.0, 2), round((top + bottom) / 2.0 - GAP[1], 2)
 
 
@@ -115,7 +118,7 @@ def _find_crossings(graph: Graph, ids: set[str]) -> _Crossing:
 
 def _vertical_order(graph: Graph, target: Port) -> tuple[float, float, Port]:
     """Targets from top to bottom, so that the sockets of a group lie as its links did."""
-    spot = place(graph, target.node) or (0.0, 0.0)
+    spot = place(graph, ElementId(target.node)) or (0.0, 0.0)
     return spot[1], spot[0], target
 
 
@@ -133,9 +136,7 @@ def _kind(graph: Graph, source: Port, target: Port) -> tuple[Kind, int]:
     return Kind.IMAGE, 4
 
 
-def _body(
-    graph: Graph, ids: list[str], chosen: Collection[str], crossing: _Crossing, spots: Mapping[str, Place]
-) -> Graph:
+def _body(graph: Graph, ids: list[str], chosen: Collection[ElementId], crossing: _Crossing, spots: Places) -> Graph:
     links = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
     links |= {end: Port(INPUTS, name) for end, name in crossing.entering.items()}
     links |= {Port(OUTPUTS, name): start for start, name in crossing.leaving.items()}
@@ -155,46 +156,48 @@ def _body(
     )
     inner = {str(end) for end in graph.links if end.node in ids and graph.links[end].node in ids}
     passed = {target: dots for target, dots in routes(graph).items() if target in inner}
-    dots = {f"dots.{dot}" for route in passed.values() for dot in route}
-    moved = [key for key in list_elements(graph) if key in ids or key in dots or (key in chosen and is_note(key))]
+    dots = {ElementId.of("dot", dot) for route in passed.values() for dot in route}
+    moved = [key for key in list_elements(graph) if key in ids or key in dots or (key in chosen and key.is_note)]
     body = with_entries(body, {key: entry(graph, key) for key in moved})
     return tidy_routes(with_places(with_sections(body, {"routes": passed}), _spots(body, graph, ids, spots)))
 
 
-def _spots(body: Graph, graph: Graph, ids: list[str], spots: Mapping[str, Place]) -> dict[str, Place]:
+def _spots(body: Graph, graph: Graph, ids: list[str], spots: Places) -> dict[ElementId, Place]:
     """Nodes where they were, inputs left of them, outputs right of them."""
-    left, top, right, _ = bounds(graph, ids, spots)
-    found = {id: spots[id] for id in ids}
-    for ends, side, x in ((body.inputs, INPUTS, left - WIDTH - GAP[0]), (body.outputs, OUTPUTS, right + GAP[0])):
+    left, top, right, _ = bounds(graph, map(ElementId, ids), spots)
+    places = {ElementId(id): spots[ElementId(id)] for id in ids}
+    inputs = [ElementId.of("input", name) for name in body.inputs]
+    outputs = [ElementId.of("output", name) for name in body.outputs]
+    for ends, x in ((inputs, left - WIDTH - GAP[0]), (outputs, right + GAP[0])):
         y = top
-        for name in ends:
-            found[f"{side}.{name}"] = (x, y)
-            y += element_size(body, f"{side}.{name}")[1] + GAP[1]
-    return found
+        for end in ends:
+            places[end] = (x, y)
+            y += element_size(body, end)[1] + GAP[1]
+    return places
 
 
 def _outer_ui(graph: Graph, id: str, ids: list[str], crossing: _Crossing) -> Mapping[str, object]:
     """`ui` where routes and viewers of crossing links belong to the group."""
-    known = routes(graph)
-    kept = {target: dots for target, dots in known.items() if target.partition(".")[0] not in ids}
+    all_routes, inside = routes(graph), {str(end) for end in graph.links if end.node in ids}
+    outer_routes = {target: dots for target, dots in all_routes.items() if target not in inside}
     for target, name in crossing.entering.items():
-        if str(target) in known:
-            kept.setdefault(f"{id}.{name}", known[str(target)])
+        if str(target) in all_routes:
+            outer_routes.setdefault(f"{id}.{name}", all_routes[str(target)])
     viewers = graph.ui.get("viewers")
     leaving = {str(start): f"{id}.{name}" for start, name in crossing.leaving.items()}
-    shown = {
+    outer_viewers = {
         number: leaving.get(str(port), port)
         for number, port in (viewers.items() if isinstance(viewers, Mapping) else ())
-        if str(port) in leaving or str(port).partition(".")[0] not in ids
+        if str(port) in leaving or (viewed := read_port(port)) is None or viewed.node not in ids
     }
-    after = with_sections(graph, {"routes": kept, "viewers": shown})
-    return without_entries(after, ids).ui
+    after = with_sections(graph, {"routes": outer_routes, "viewers": outer_viewers})
+    return without_entries(after, map(ElementId, ids)).ui
 
 
 def _extra(graph: Graph, ids: Collection[str], inside: bool) -> dict[str, Mapping[str, object]]:
     """Unknown keys of some nodes, or all others."""
-    mine = {path for path in graph.extra for id in ids if path == f"nodes.{id}" or path.startswith(f"nodes.{id}.")}
-    return {path: found for path, found in graph.extra.items() if (path in mine) == inside}
+    of_nodes = keys_of_nodes(graph.extra, ids)
+    return of_nodes if inside else {path: facts for path, facts in graph.extra.items() if path not in of_nodes}
 
 
 def _check_no_way_back(graph: Graph, ids: set[str]) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 
-from ...graph import INPUTS, OUTPUTS, Graph
-from .elements import Place, Sizes, can_be_linked, element_of, end_port, list_elements, place, with_places
+from ...graph import Graph
+from .element_id import ElementId
+from .elements import Place, Places, Sizes, can_be_linked, list_elements, place, with_places
 from .layers import place_boxes
 from .sizes import element_size
 
@@ -16,7 +17,7 @@ OFFSET = 24.0
 """How far an element moves that would exactly cover another."""
 
 
-def positions(graph: Graph, sizes: Sizes | None = None) -> dict[str, Place]:
+def positions(graph: Graph, sizes: Sizes | None = None) -> dict[ElementId, Place]:
     """The place of every element: as saved, else laid out beside what it is linked to."""
     places = {key: spot for key in list_elements(graph) if (spot := place(graph, key)) is not None}
     missing = [key for key in list_elements(graph) if key not in places]
@@ -48,22 +49,22 @@ def pin_places(graph: Graph, before: Graph | None = None) -> Graph:
     return with_places(graph, {key: places[key] for key in missing})
 
 
-def lay_out(graph: Graph, elements: Collection[str], sizes: Sizes | None = None) -> dict[str, Place]:
+def lay_out(graph: Graph, elements: Collection[ElementId], sizes: Sizes | None = None) -> dict[ElementId, Place]:
     """A layered layout of some nodes and ends, from 0,0 on; parts that no link holds together lie below each other."""
     rest = {key: element_size(graph, key, sizes) for key in list_elements(graph) if key in set(elements)}
     links = [pair for pair in element_links(graph) if pair[0] in rest and pair[1] in rest]
-    places: dict[str, Place] = {}
-    top, unlinked = 0.0, list[str]()
+    places: dict[ElementId, Place] = {}
+    top, unlinked = 0.0, list[ElementId]()
     for part in _connected_parts(list(rest), links):
         if len(part) == 1:
             unlinked += part
             continue
-        boxes = {key: rest[key] for key in part}
+        boxes: dict[str, tuple[float, float]] = {key: rest[key] for key in part}
         inside = [(start, end) for start, end in links if start in boxes]
-        ends = [key for key in part if key.startswith(f"{OUTPUTS}.")]
-        starts = [key for key in part if key.startswith(f"{INPUTS}.")]
+        ends = [key for key in part if key.kind == "output"]
+        starts = [key for key in part if key.kind == "input"]
         spots = place_boxes(part, inside, boxes, starts, ends, GAP)
-        places |= {key: (x, y + top) for key, (x, y) in spots.items()}
+        places |= {key: (spots[key][0], spots[key][1] + top) for key in part}
         top += max(spots[key][1] + boxes[key][1] for key in part) + GAP[1]
     x = 0.0
     for key in unlinked:
@@ -72,15 +73,15 @@ def lay_out(graph: Graph, elements: Collection[str], sizes: Sizes | None = None)
     return places
 
 
-def element_links(graph: Graph) -> list[tuple[str, str]]:
+def element_links(graph: Graph) -> list[tuple[ElementId, ElementId]]:
     """All links as pairs of elements, source first, without those that lead nowhere."""
     elements = set(list_elements(graph))
-    pairs = [(element_of(source), element_of(target)) for target, source in sorted(graph.links.items())]
+    pairs = [(ElementId.of_port(source), ElementId.of_port(target)) for target, source in sorted(graph.links.items())]
     return [pair for pair in pairs if pair[0] in elements and pair[1] in elements]
 
 
 def bounds(
-    graph: Graph, elements: Iterable[str], places: Mapping[str, Place], sizes: Sizes | None = None
+    graph: Graph, elements: Iterable[ElementId], places: Places, sizes: Sizes | None = None
 ) -> tuple[float, float, float, float]:
     """Left, top, right and bottom of some elements; zeros for none."""
     boxes = [(*places[key], *element_size(graph, key, sizes)) for key in elements]
@@ -94,7 +95,7 @@ def bounds(
     )
 
 
-def shift_off(places: Mapping[str, Place], others: Collection[Place]) -> dict[str, Place]:
+def shift_off(places: Places, others: Collection[Place]) -> dict[ElementId, Place]:
     """`places` moved together until none is exactly where one of the `others` is."""
     step, occupied = 0, set(others)
     while any((x + step * OFFSET, y + step * OFFSET) in occupied for x, y in places.values()):
@@ -102,17 +103,17 @@ def shift_off(places: Mapping[str, Place], others: Collection[Place]) -> dict[st
     return {key: (x + step * OFFSET, y + step * OFFSET) for key, (x, y) in places.items()}
 
 
-def _connected_parts(names: list[str], links: list[tuple[str, str]]) -> list[list[str]]:
+def _connected_parts(names: list[ElementId], links: list[tuple[ElementId, ElementId]]) -> list[list[ElementId]]:
     """The names that links hold together, in the order of `names`."""
-    beside: dict[str, list[str]] = {name: [] for name in names}
+    beside: dict[ElementId, list[ElementId]] = {name: [] for name in names}
     for start, end in links:
         beside[start].append(end)
         beside[end].append(start)
-    visited, parts = set[str](), list[list[str]]()
+    visited, parts = set[ElementId](), list[list[ElementId]]()
     for start in names:
         if start in visited:
             continue
-        todo, part = [start], set[str]()
+        todo, part = [start], set[ElementId]()
         while todo:
             name = todo.pop()
             if name not in part:
@@ -123,13 +124,13 @@ def _connected_parts(names: list[str], links: list[tuple[str, str]]) -> list[lis
     return parts
 
 
-def _sort_by_column(graph: Graph, elements: list[str]) -> list[str]:
+def _sort_by_column(graph: Graph, elements: list[ElementId]) -> list[ElementId]:
     """Some elements, each after what feeds it where there are no loops."""
     rank = {key: column[0] for key, column in lay_out(graph, elements).items()}
     return sorted(elements, key=lambda key: (rank[key], elements.index(key)))
 
 
-def _place_beside(graph: Graph, key: str, places: Mapping[str, Place], sizes: Sizes | None) -> Place:
+def _place_beside(graph: Graph, key: ElementId, places: Places, sizes: Sizes | None) -> Place:
     """Right of what feeds an element, else left of what it feeds, else below everything."""
     links = element_links(graph)
     feeders = [start for start, end in links if end == key and start in places]
@@ -142,14 +143,13 @@ def _place_beside(graph: Graph, key: str, places: Mapping[str, Place], sizes: Si
         nearest = min(readers, key=lambda one: places[one][0])
         spot = (places[nearest][0] - width - GAP[0], places[nearest][1])
     else:
-        side = end_port(key)
         left, _, right, _ = bounds(graph, places, places, sizes)
-        x = right + GAP[0] if side and side.node == OUTPUTS else left
+        x = right + GAP[0] if key.kind == "output" else left
         spot = (x, _bottom(graph, places, sizes))
     return _find_free_place(graph, key, spot, places, sizes)
 
 
-def _find_free_place(graph: Graph, key: str, spot: Place, places: Mapping[str, Place], sizes: Sizes | None) -> Place:
+def _find_free_place(graph: Graph, key: ElementId, spot: Place, places: Places, sizes: Sizes | None) -> Place:
     """The nearest place below `spot` where an element covers no other node or end."""
     width, height = element_size(graph, key, sizes)
     boxes = [(*at, *element_size(graph, one, sizes)) for one, at in places.items() if can_be_linked(one, graph)]
@@ -165,5 +165,5 @@ def _find_free_place(graph: Graph, key: str, spot: Place, places: Mapping[str, P
         y = max(covered_bottoms) + GAP[1] / 2.0
 
 
-def _bottom(graph: Graph, places: Mapping[str, Place], sizes: Sizes | None) -> float:
+def _bottom(graph: Graph, places: Places, sizes: Sizes | None) -> float:
     return bounds(graph, places, places, sizes)[3] + GAP[1] if places else 0.0

@@ -8,25 +8,28 @@ from dataclasses import dataclass, replace
 from halation.nodes import Node
 
 from ...graph import INPUTS, OUTPUTS, Graph, Port
+from ...graph.notes import keys_of_nodes
 from . import timing
-from .elements import DECOR, Place, entries, entry, with_entries, with_places
+from .element_id import DECOR, ElementId
+from .elements import Places, entry, list_decor, with_entries, with_places
 from .naming import name_copy
 from .routes import routes, with_routes
 
 
 @dataclass(frozen=True)
 class MergedPart:
-    """`graph` holds everything; `keys` says what nodes and decor of the part are called there."""
+    """`graph` holds everything; `names` says what nodes and decor of the part are called there."""
 
     graph: Graph
-    keys: Mapping[str, str]
+    names: Mapping[ElementId, ElementId]
 
     def port(self, port: Port) -> Port | None:
         """Where a port of a node of the part is now; None for ports that are no node's."""
-        return Port(self.keys[port.node], port.socket) if port.node in self.keys else None
+        node = ElementId(port.node)
+        return Port(self.names[node].name, port.socket) if node in self.names else None
 
 
-def merge_part(graph: Graph, part: Graph, places: Mapping[str, Place]) -> MergedPart:
+def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
     """`graph` with the nodes and decor of `part` at `places`, and the links among those nodes.
 
     Paths of `part` must start where those of `graph` do. Ends, controls and links from elsewhere are left out.
@@ -56,14 +59,16 @@ def merge_part(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged
             },
         },
     )
-    for section in DECOR:
-        for id in entries(part, section):
-            names[f"{section}.{id}"] = f"{section}.{name_copy(id, entries(after, section))}"
-            after = with_entries(after, {names[f"{section}.{id}"]: entry(part, f"{section}.{id}")})
-    after = with_entries(after, {names[id]: entry(part, id) for id in part.nodes if entry(part, id)})
-    merged_part = MergedPart(
-        with_places(after, {names[key]: spot for key, spot in places.items() if key in names}), names
-    )
+    new_ids = {ElementId(old): ElementId(new) for old, new in names.items()}
+    for kind in DECOR:
+        for old, facts in list_decor(part, kind).items():
+            taken = {other.name for other in list_decor(after, kind)}
+            new_ids[old] = ElementId.of(kind, name_copy(old.name, taken))
+            after = with_entries(after, {new_ids[old]: facts})
+    nodes = map(ElementId, part.nodes)
+    after = with_entries(after, {new_ids[node]: facts for node in nodes if (facts := entry(part, node))})
+    after = with_places(after, {new_ids[old]: spot for old, spot in places.items() if old in new_ids})
+    merged_part = MergedPart(after, new_ids)
     ends = {str(end): end for end in part.links if end.node in names and part.links[end].node in names}
     new_routes = {
         Port(names[ends[target].node], ends[target].socket): rename_dots(merged_part, dots)
@@ -75,15 +80,13 @@ def merge_part(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged
 
 def rename_dots(merged_part: MergedPart, dots: tuple[str, ...]) -> tuple[str, ...]:
     """Dots of the part as they are called now."""
-    return tuple(merged_part.keys[f"dots.{dot}"].removeprefix("dots.") for dot in dots)
+    return tuple(merged_part.names[ElementId.of("dot", dot)].name for dot in dots)
 
 
 def _extra(part: Graph, names: Mapping[str, str]) -> dict[str, Mapping[str, object]]:
     """Unknown keys of the nodes, by where they are now."""
     extra: dict[str, Mapping[str, object]] = {}
-    for path, facts in part.extra.items():
-        section, _, rest = path.partition(".")
-        id, dot, tail = rest.partition(".")
-        if section == "nodes" and id in names:
-            extra[f"nodes.{names[id]}{dot}{tail}"] = facts
+    for path, facts in keys_of_nodes(part.extra, names).items():
+        section, id, *inside = path.split(".", 2)
+        extra[".".join((section, names[id], *inside))] = facts
     return extra

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...graph import Graph, Port, Unknown, signature
 from ...graph.names import name_fault
+from .element_id import ElementId
 
 
 def node_stem(path: str | Path) -> str:
@@ -35,8 +36,8 @@ def value_label(graph: Graph, port: Port) -> str:
     return (value.label if value else "") or port.socket.replace("_", " ")
 
 
-def describe_elements(keys: Collection[str]) -> str:
+def describe_elements(elements: Collection[ElementId]) -> str:
     """Some elements for the label of a step: `blur`, `3 nodes`, `4 elements`."""
-    if len(keys) == 1:
-        return next(iter(keys))
-    return f"{len(keys)} {'elements' if any('.' in key for key in keys) else 'nodes'}"
+    if len(elements) == 1:
+        return next(iter(elements))
+    return f"{len(elements)} {'nodes' if all(element.kind == 'node' for element in elements) else 'elements'}"

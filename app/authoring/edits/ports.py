@@ -12,6 +12,14 @@ VIEWER_NUMBERS = range(1, 10)
 """The number keys that recall a port."""
 
 
+def read_port(text: object) -> Port | None:
+    """The port that a text of `graph.ui` names, such as `blur.out`; None if it names none."""
+    try:
+        return Port.parse(text) if isinstance(text, str) else None
+    except GraphError:
+        return None
+
+
 def output_ports(graph: Graph, id: str) -> list[Port]:
     """The outputs of a node."""
     return [Port(id, name) for name in signature(graph.node(id)).outputs]
@@ -44,7 +52,7 @@ def numbered_ports(graph: Graph) -> Mapping[int, Port]:
     section, ports = graph.ui.get("viewers"), dict[int, Port]()
     for number in VIEWER_NUMBERS:
         text = section.get(str(number)) if isinstance(section, Mapping) else None
-        node, dot, socket = text.partition(".") if isinstance(text, str) else ("", "", "")
-        if dot and is_viewable(graph, Port(node, socket)):
-            ports[number] = Port(node, socket)
+        port = read_port(text)
+        if port is not None and is_viewable(graph, port):
+            ports[number] = port
     return MappingProxyType(ports)

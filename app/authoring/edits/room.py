@@ -7,7 +7,8 @@ from collections.abc import Collection
 from ...graph import Graph, Port
 from ...graph.walk import find_reachable
 from .decor import find_frame_members, set_box
-from .elements import Place, Sizes, element_of, entries, with_places
+from .element_id import ElementId
+from .elements import Places, Sizes, list_decor, with_places
 from .layout import bounds, element_links, positions
 from .routes import inner_dots
 from .sizes import element_size
@@ -18,7 +19,7 @@ MARGIN = 40.0
 Box = tuple[float, float, float, float]
 
 
-def make_space(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | None = None) -> Graph:
+def make_space(graph: Graph, ids: Collection[ElementId], target: Port, sizes: Sizes | None = None) -> Graph:
     """A graph where nodes that were put into the link to `target` cover neither what feeds them nor what they feed.
 
     They move right of what feeds them, and everything that depends on them moves right by as much as is needed; what
@@ -31,16 +32,20 @@ def make_space(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | 
     if ahead > 0.0:
         graph = with_places(graph, {id: (places[id][0] + ahead, places[id][1]) for id in ids})
         places = positions(graph, sizes)
-    after: dict[str, list[str]] = {}
+    after: dict[ElementId, list[ElementId]] = {}
     for start, end in links:
         after.setdefault(start, []).append(end)
-    behind = {element_of(target), *find_reachable([element_of(target)], after)} - {*ids}
+    behind = {ElementId.of_port(target), *find_reachable([ElementId.of_port(target)], after)} - {*ids}
     by = _measure_overlap(graph, ids, behind, places, sizes)
     return _push_right(graph, behind, by, places, sizes) if by > 0.0 else graph
 
 
 def _measure_overlap(
-    graph: Graph, left: Collection[str], right: Collection[str], places: dict[str, Place], sizes: Sizes | None
+    graph: Graph,
+    left: Collection[ElementId],
+    right: Collection[ElementId],
+    places: Places,
+    sizes: Sizes | None,
 ) -> float:
     """How far the elements at the right must move so that none is in the way of those at the left."""
     overlap = 0.0
@@ -53,22 +58,20 @@ def _measure_overlap(
     return overlap
 
 
-def _push_right(
-    graph: Graph, elements: Collection[str], by: float, places: dict[str, Place], sizes: Sizes | None
-) -> Graph:
+def _push_right(graph: Graph, elements: Collection[ElementId], by: float, places: Places, sizes: Sizes | None) -> Graph:
     """A graph where elements lie further right, with the dots between them, and the frames that they fill."""
     moved_elements = {*elements, *inner_dots(graph, elements)}
     after = with_places(graph, {key: (places[key][0] + by, places[key][1]) for key in moved_elements})
-    for id in entries(graph, "frames"):
-        members = {key for key in find_frame_members(graph, id, places, sizes) if not key.startswith("frames.")}
+    for frame in list_decor(graph, "frame"):
+        members = {key for key in find_frame_members(graph, frame, places, sizes) if key.kind != "frame"}
         if members & moved_elements:
-            left, top, right, bottom = bounds(graph, [f"frames.{id}"], places, sizes)
+            left, top, right, bottom = bounds(graph, [frame], places, sizes)
             if members <= moved_elements:
                 left += by
-            after = set_box(after, f"frames.{id}", left, top, right + by - left, bottom - top)
+            after = set_box(after, frame, left, top, right + by - left, bottom - top)
     return after
 
 
-def _box(graph: Graph, key: str, places: dict[str, Place], sizes: Sizes | None) -> Box:
+def _box(graph: Graph, key: ElementId, places: Places, sizes: Sizes | None) -> Box:
     (x, y), (width, height) = places[key], element_size(graph, key, sizes)
     return x, y, x + width, y + height

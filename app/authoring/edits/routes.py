@@ -6,18 +6,19 @@ from collections.abc import Collection, Iterable, Mapping
 
 from ...errors import GraphError
 from ...graph import Graph, Port
-from .elements import Place, element_of, entries, fresh_id, place, with_places, with_sections, without_entries
+from .element_id import ElementId
+from .elements import Place, fresh_decor, list_decor, place, with_places, with_sections, without_entries
 
 Route = tuple[str, ...]
 
 
 def routes(graph: Graph) -> dict[str, Route]:
     """The dots of every link, by target, from source to target."""
-    dots_by_id, section = entries(graph, "dots"), graph.ui.get("routes")
+    dot_names, section = {dot.name for dot in list_decor(graph, "dot")}, graph.ui.get("routes")
     if not isinstance(section, Mapping):
         return {}
     known_routes = {
-        target: tuple(dot for dot in dots if dot in dots_by_id) for target, dots in section.items() if _is_list(dots)
+        target: tuple(dot for dot in dots if dot in dot_names) for target, dots in section.items() if _is_list(dots)
     }
     return {target: dots for target, dots in known_routes.items() if dots}
 
@@ -27,12 +28,17 @@ def dots_on_link(graph: Graph, target: Port) -> Route:
     return routes(graph).get(str(target), ())
 
 
-def inner_dots(graph: Graph, ids: Collection[str]) -> tuple[str, ...]:
-    """Keys of the dots that only links between some elements pass."""
-    ends = {str(end): element_of(end) in ids and element_of(start) in ids for end, start in graph.links.items()}
+def inner_dots(graph: Graph, elements: Collection[ElementId]) -> tuple[ElementId, ...]:
+    """The dots that only links between some elements pass."""
+    ends = {
+        str(end): ElementId.of_port(end) in elements and ElementId.of_port(start) in elements
+        for end, start in graph.links.items()
+    }
     dots_inside = [(dot, ends.get(target, False)) for target, dots in routes(graph).items() for dot in dots]
     shared_dots = {dot for dot, inside in dots_inside if not inside}
-    return tuple(dict.fromkeys(f"dots.{dot}" for dot, inside in dots_inside if inside and dot not in shared_dots))
+    return tuple(
+        dict.fromkeys(ElementId.of("dot", dot) for dot, inside in dots_inside if inside and dot not in shared_dots)
+    )
 
 
 def with_routes(graph: Graph, changed: Mapping[Port, Iterable[str]]) -> Graph:
@@ -49,41 +55,41 @@ def tidy_routes(graph: Graph) -> Graph:
     live_routes = {target: dots for target, dots in routes(graph).items() if target in ends}
     graph = with_sections(graph, {"routes": live_routes}) if graph.ui.get("routes") != live_routes else graph
     used = {dot for dots in live_routes.values() for dot in dots}
-    return without_entries(graph, [f"dots.{dot}" for dot in entries(graph, "dots") if dot not in used])
+    return without_entries(graph, [dot for dot in list_decor(graph, "dot") if dot.name not in used])
 
 
-def add_dot(graph: Graph, target: Port, at: Place) -> tuple[Graph, str]:
+def add_dot(graph: Graph, target: Port, at: Place) -> tuple[Graph, ElementId]:
     """A dot on the link that feeds `target`, and its id; it goes where it makes the shortest detour."""
     if target not in graph.links:
         raise GraphError(f"nothing is linked to '{target}': a dot needs a link")
-    dot = fresh_id(graph, "dots")
-    graph = with_places(graph, {f"dots.{dot}": at})
-    return with_routes(graph, {target: _insert_dot(graph, dots_on_link(graph, target), dot, at)}), dot
+    dot = fresh_decor(graph, "dot")
+    graph = with_places(graph, {dot: at})
+    return with_routes(graph, {target: _insert_dot(graph, dots_on_link(graph, target), dot.name, at)}), dot
 
 
-def join_dot(graph: Graph, dot: str, target: Port) -> Graph:
+def join_dot(graph: Graph, dot: ElementId, target: Port) -> Graph:
     """A graph where the link to `target` passes a dot of another link from the same source."""
     if target not in graph.links:
         raise GraphError(f"nothing is linked to '{target}': only a link can pass a dot")
     sources = {str(end): source for end, source in graph.links.items()}
     for end, dots in routes(graph).items():
-        if dot in dots and sources.get(end) == graph.links[target]:
-            return with_routes(graph, {target: dots[: dots.index(dot) + 1]})
+        if dot.name in dots and sources.get(end) == graph.links[target]:
+            return with_routes(graph, {target: dots[: dots.index(dot.name) + 1]})
     raise GraphError(f"the dot carries another signal than the link to '{target}': links join where they start alike")
 
 
-def remove_dots(graph: Graph, removed: Iterable[str]) -> Graph:
+def remove_dots(graph: Graph, removed: Collection[ElementId]) -> Graph:
     """A graph without those dots; links go on without them."""
-    dots = set(removed)
-    live_routes = {target: tuple(dot for dot in passed if dot not in dots) for target, passed in routes(graph).items()}
+    names = {dot.name for dot in removed}
+    live_routes = {target: tuple(dot for dot in passed if dot not in names) for target, passed in routes(graph).items()}
     graph = with_sections(graph, {"routes": {target: passed for target, passed in live_routes.items() if passed}})
-    return without_entries(graph, [f"dots.{dot}" for dot in dots])
+    return without_entries(graph, removed)
 
 
 def split_route(graph: Graph, dots: Route, x: float) -> tuple[Route, Route]:
     """A route cut in two: what lies left of `x` up to the first dot that does not, and the rest."""
     for index, dot in enumerate(dots):
-        spot = place(graph, f"dots.{dot}")
+        spot = place(graph, ElementId.of("dot", dot))
         if spot is not None and spot[0] >= x:
             return dots[:index], dots[index:]
     return dots, ()

@@ -7,28 +7,29 @@ from typing import Literal
 
 from ...graph import Graph
 from ...graph.walk import find_reachable
+from .element_id import NO_ELEMENT, ElementId
 from .elements import list_elements
 from .layout import element_links
 
 SelectMode = Literal["replace", "extend", "add", "remove", "toggle"]
 """What picked elements do to a selection. `extend` replaces it too, but the active element stays the active one."""
 
-Steps = Callable[[str, str], tuple[tuple[str, str], ...]]
+Steps = Callable[[ElementId, ElementId], tuple[tuple[ElementId, ElementId], ...]]
 """The ways to follow along a link, given its source and target."""
 
 
 def combine_selection(
-    selection: Collection[str], active: str, picked: Sequence[str], mode: SelectMode
-) -> tuple[list[str], str]:
-    """The elements that are selected after some were picked, and which of them is active ("": the last)."""
+    selection: Collection[ElementId], active: ElementId, picked: Sequence[ElementId], mode: SelectMode
+) -> tuple[list[ElementId], ElementId]:
+    """The elements that are selected after some were picked, and which of them is active, empty for the last."""
     old = set(selection)
     match mode:
         case "replace":
-            return [*picked], ""
+            return [*picked], NO_ELEMENT
         case "extend":
             return [*picked], active
         case "add":
-            return [*(old - set(picked)), *picked], ""
+            return [*(old - set(picked)), *picked], NO_ELEMENT
         case "remove":
             return sorted(old - set(picked)), active
         case "toggle":
@@ -36,28 +37,28 @@ def combine_selection(
             return [*sorted(old - set(picked)), *added], added[-1] if added else active
 
 
-def invert_selection(elements: Iterable[str], selection: Collection[str]) -> tuple[str, ...]:
+def invert_selection(elements: Iterable[ElementId], selection: Collection[ElementId]) -> tuple[ElementId, ...]:
     """The elements that are not selected."""
     return tuple(key for key in elements if key not in selection)
 
 
-def find_upstream(graph: Graph, selection: Collection[str]) -> tuple[str, ...]:
+def find_upstream(graph: Graph, selection: Collection[ElementId]) -> tuple[ElementId, ...]:
     """The selection and everything that it depends on."""
     return _spread(graph, selection, lambda start, end: ((end, start),))
 
 
-def find_downstream(graph: Graph, selection: Collection[str]) -> tuple[str, ...]:
+def find_downstream(graph: Graph, selection: Collection[ElementId]) -> tuple[ElementId, ...]:
     """The selection and everything that depends on it."""
     return _spread(graph, selection, lambda start, end: ((start, end),))
 
 
-def find_linked(graph: Graph, selection: Collection[str]) -> tuple[str, ...]:
+def find_linked(graph: Graph, selection: Collection[ElementId]) -> tuple[ElementId, ...]:
     """The selection and everything that links hold together with it."""
     return _spread(graph, selection, lambda start, end: ((start, end), (end, start)))
 
 
-def _spread(graph: Graph, selection: Collection[str], steps: Steps) -> tuple[str, ...]:
-    ways: dict[str, list[str]] = {}
+def _spread(graph: Graph, selection: Collection[ElementId], steps: Steps) -> tuple[ElementId, ...]:
+    ways: dict[ElementId, list[ElementId]] = {}
     for link in element_links(graph):
         for start, end in steps(*link):
             ways.setdefault(start, []).append(end)

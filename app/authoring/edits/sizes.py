@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 from ...graph import Graph, signature
+from .element_id import ElementId
 from .elements import Sizes, entry
 
 WIDTH, HEADER, ROW = 180.0, 34.0, 22.0
 COMMENT = (200.0, 60.0)
 
 
-def element_size(graph: Graph, key: str, measured: Sizes | None = None) -> tuple[float, float]:
+def element_size(graph: Graph, element: ElementId, measured: Sizes | None = None) -> tuple[float, float]:
     """Width and height of an element: as measured, as saved, or a guess from its sockets."""
-    if measured and key in measured:
-        return measured[key]
-    section = key.partition(".")[0]
-    facts = entry(graph, key)
-    if section == "dots" and key not in graph.nodes:
+    if measured and element in measured:
+        return measured[element]
+    facts = entry(graph, element)
+    if element.kind == "dot":
         return 0.0, 0.0
-    if section in ("frames", "comments") and key not in graph.nodes:
+    if element.is_note:
         width, height = facts.get("w"), facts.get("h")
         return _number(width, COMMENT[0]), _number(height, COMMENT[1])
-    if key not in graph.nodes or facts.get("collapsed") is True:
+    if element not in graph.nodes or facts.get("collapsed") is True:
         return WIDTH, HEADER
-    face = signature(graph.nodes[key])
+    face = signature(graph.nodes[element])
     return WIDTH, HEADER + ROW * max(len(face.inputs) + len(face.outputs), 1)
 
 

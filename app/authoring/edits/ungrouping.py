@@ -10,17 +10,19 @@ from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
 from ...graph.notes import move_keys
 from . import timing
-from .elements import list_elements, with_sections, without_entries
+from .element_id import ElementId
+from .elements import Place, list_elements, with_sections, without_entries
 from .folding import find_group
 from .grouping import group_corner
 from .layout import positions
 from .merging import MergedPart, merge_part, rename_dots
 from .paths import rebase_paths
+from .ports import read_port
 from .routes import routes, tidy_routes
 
 
-def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
-    """A graph where the content of a group stands in its place, and the keys of that content.
+def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[ElementId, ...]]:
+    """A graph where the content of a group stands in its place, and the elements of that content.
 
     The picture stays the same: an input of the group that nothing feeds, but that has a file or default of its own,
     becomes an input of the graph. Raises GraphError for a muted group, which shows something else than its content.
@@ -39,13 +41,12 @@ def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
         links={**links, **merged_part.graph.links},
         controls=opened_group.controls(),
         animation=timing.join_animation(
-            graph, body, id, {name: merged_part.keys[name] for name in body.nodes if name in merged_part.keys}
+            graph, body, id, {name: merged_part.names[ElementId(name)].name for name in body.nodes}
         ),
     )
     after = opened_group.with_layout(after)
-    return tidy_routes(after), tuple(
-        merged_part.keys[key] for key in merged_part.keys if merged_part.keys[key] in set(list_elements(after))
-    )
+    elements = set(list_elements(after))
+    return tidy_routes(after), tuple(element for element in merged_part.names.values() if element in elements)
 
 
 class _OpenedGroup:
@@ -88,11 +89,11 @@ class _OpenedGroup:
         outer, inner, passed = routes(self.graph), routes(self.body), routes(after)
         for target, source in self.body.links.items():
             if source.node == INPUTS and (end := self.found.port(target)):
-                dots = outer.get(f"{self.id}.{source.socket}", ())
+                dots = outer.get(str(Port(self.id, source.socket)), ())
                 passed[str(end)] = (*dots, *rename_dots(self.found, inner.get(str(target), ())))
         for target, source in self.graph.links.items():
             if source.node == self.id != target.node:
-                dots = rename_dots(self.found, inner.get(f"{OUTPUTS}.{source.socket}", ()))
+                dots = rename_dots(self.found, inner.get(str(Port(OUTPUTS, source.socket)), ()))
                 passed[str(target)] = (*dots, *outer.get(str(target), ()))
         ends = {str(end) for end in after.links}
         passed = {target: dots for target, dots in passed.items() if dots and target in ends}
@@ -101,11 +102,10 @@ class _OpenedGroup:
     def _viewers(self) -> dict[str, object]:
         section, viewers = self.graph.ui.get("viewers"), dict[str, object]()
         for number, text in section.items() if isinstance(section, Mapping) else ():
-            node, _, socket = str(text).partition(".")
-            port = self._source(self.body.links.get(Port(OUTPUTS, socket))) if node == self.id else None
-            if node != self.id:
+            viewed = read_port(text)
+            if viewed is None or viewed.node != self.id:
                 viewers[number] = text
-            elif port is not None:
+            elif port := self._source(self.body.links.get(Port(OUTPUTS, viewed.socket))):
                 viewers[number] = str(port)
         return viewers
 
@@ -128,16 +128,16 @@ class _OpenedGroup:
 def _remove_group(graph: Graph, id: str) -> Graph:
     """The graph without a group, and without the links to it."""
     return replace(
-        without_entries(graph, [id]),
+        without_entries(graph, [ElementId(id)]),
         nodes={name: item for name, item in graph.nodes.items() if name != id},
         links={end: start for end, start in graph.links.items() if id not in (end.node, start.node)},
         extra=move_keys(graph.extra, f"nodes.{id}"),
     )
 
 
-def _content_places(graph: Graph, id: str, body: Graph) -> dict[str, tuple[float, float]]:
+def _content_places(graph: Graph, id: str, body: Graph) -> dict[ElementId, Place]:
     """Where the content goes: around the place of the group, as it lay inside."""
     spots = positions(body)
     inner = group_corner(body, list(body.nodes), spots)
-    here = positions(graph)[id]
+    here = positions(graph)[ElementId(id)]
     return {key: (round(x - inner[0] + here[0], 2), round(y - inner[1] + here[1], 2)) for key, (x, y) in spots.items()}

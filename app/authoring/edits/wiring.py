@@ -11,6 +11,7 @@ from ...errors import GraphError
 from ...graph import Graph, Item, Port, conversion, make_socket, signature
 from ...graph.values import coerce, value_fault
 from ...graph.walk import describe_loop, find_route
+from .element_id import ElementId
 from .elements import place
 from .routes import dots_on_link as dots_of
 from .routes import split_route, with_routes
@@ -133,7 +134,7 @@ def _put_chain_between(graph: Graph, first: str, last: str, target: Port) -> Gra
     entrance = first_target(graph.disconnect(target), source, first, values=False)
     after = graph.disconnect(target).connect(source, entrance)
     after = after.connect(first_source(after, last, target), target)
-    spot = place(graph, first)
+    spot = place(graph, ElementId(first))
     left, right = split_route(graph, dots, spot[0]) if spot else (dots, ())
     return with_routes(after, {entrance: left, target: right})
 

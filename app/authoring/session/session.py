@@ -24,7 +24,7 @@ from ..commands.coding import LinkCodeFile
 from ..commands.command import EditCommand, Edited
 from ..commands.grouping import LinkGroup
 from ..edits import coding, elements, folding, layout, paths, routes
-from ..edits.elements import end_port
+from ..edits.element_id import NO_ELEMENT, ElementId
 from ..edits.folding import GroupPath
 from ..edits.ports import is_viewable, output_ports
 from ..edits.selection import SelectMode, combine_selection
@@ -95,10 +95,10 @@ class Session(OpenDocument):
 
     # --- where the user is, and what is seen -------------------------------------------------------------------------
 
-    def select(self, keys: str | Iterable[str], mode: SelectMode = "replace") -> None:
-        """Select elements, or change what is selected by them; unknown keys are left out."""
+    def select(self, elements: ElementId | Iterable[ElementId], mode: SelectMode = "replace") -> None:
+        """Select elements, or change what is selected by them; unknown ones are left out."""
         self.seal()
-        picked = [keys] if isinstance(keys, str) else list(keys)
+        picked = [elements] if isinstance(elements, ElementId) else list(elements)
         self._select(*combine_selection(self.selection, self.active, picked, mode))
 
     def enter(self, id: str) -> None:
@@ -116,7 +116,7 @@ class Session(OpenDocument):
         if place == self.place:
             return
         self.seal()
-        group = self.place[len(place)] if self.place[: len(place)] == place else ""
+        group = ElementId(self.place[len(place)] if self.place[: len(place)] == place else "")
         self._move_to(Snapshot(self.root, place, frozenset({group} if group else ()), group))
 
     def seek(self, frame: float) -> None:
@@ -130,14 +130,14 @@ class Session(OpenDocument):
         self._views[self.place, side] = (port,)
         self.revision += 1
 
-    def view_node(self, id: str, side: Side = "A") -> None:
-        """Show a node's first output, or the one after that which is shown; an end by its key."""
-        if end := end_port(id):
+    def view_element(self, element: ElementId, side: Side = "A") -> None:
+        """Show a node's first output, or the one after that which is shown; an input or output of the graph itself."""
+        if end := element.port:
             self.view(end, side)
             return
-        ports = output_ports(self.graph, id)
+        ports = output_ports(self.graph, element)
         if not ports:
-            raise GraphError(f"node '{id}' has no output to show")
+            raise GraphError(f"node '{element}' has no output to show")
         viewed = self.viewed(side) if (self.place, side) in self._views else None
         self.view(ports[(ports.index(viewed) + 1) % len(ports)] if viewed in ports else ports[0], side)
 
@@ -326,8 +326,8 @@ class Session(OpenDocument):
         folding.check_depth(root)
         keys = set(elements.list_elements(graph))
         chosen = [key for key in (self.selection if edited.select is None else edited.select) if key in keys]
-        last = chosen[-1] if chosen else ""
-        active = last if edited.select is not None else self.active if self.active in keys else ""
+        last = chosen[-1] if chosen else NO_ELEMENT
+        active = last if edited.select is not None else self.active if self.active in keys else NO_ELEMENT
         self._add_step(edited.label, Snapshot(root, self.place, frozenset(chosen), active), edited.merge)
 
     def _add_step(self, label: str, after: Snapshot, merge: str = "") -> None:
@@ -340,11 +340,11 @@ class Session(OpenDocument):
         self._snapshot = snapshot
         self.revision += 1
 
-    def _select(self, keys: Iterable[str], active: str = "") -> None:
+    def _select(self, keys: Iterable[ElementId], active: ElementId) -> None:
         """Select elements that exist; the active one is `active` if it is among them, else the last."""
         existing = set(self.elements)
         chosen = [key for key in keys if key in existing]
-        active = active if active in chosen else chosen[-1] if chosen else ""
+        active = active if active in chosen else chosen[-1] if chosen else NO_ELEMENT
         if (frozenset(chosen), active) != (self.selection, self.active):
             self._move_to(Snapshot(self.root, self.place, frozenset(chosen), active))
 
@@ -375,7 +375,7 @@ class Session(OpenDocument):
         while place and not folding.is_place(root, place):
             place = place[:-1]
         keys = set(elements.list_elements(folding.body_at(root, place))) if place == self.place else set()
-        self._move_to(Snapshot(root, place, self.selection & keys, self.active if self.active in keys else ""))
+        self._move_to(Snapshot(root, place, self.selection & keys, self.active if self.active in keys else NO_ELEMENT))
 
     def _write_code(self, path: Path, text: str) -> Path:
         write_text_atomically(path, text, sandbox=self.sandbox)
@@ -385,9 +385,9 @@ class Session(OpenDocument):
             self.revision += 1
         return path
 
-    def _follow_rename(self, old: str, new: str) -> None:
-        """Let views and bound files follow an element to its new key; the old one stays for when that is undone."""
-        old_end, new_end = end_port(old), end_port(new)
+    def _follow_rename(self, old: ElementId, new: ElementId) -> None:
+        """Let views and bound files follow an element to its new name; the old one stays for when that is undone."""
+        old_end, new_end = old.port, new.port
         if old_end and new_end and old_end.node == INPUTS and not self.place and old_end.socket in self._bound:
             self._bound[new_end.socket] = self._bound[old_end.socket]
 

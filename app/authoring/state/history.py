@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ...graph import Graph
+from ..edits.element_id import NO_ELEMENT, ElementId
 
 MOST = 1000
 """Steps that are kept; older ones are forgotten."""
@@ -17,8 +18,8 @@ class Snapshot:
 
     root: Graph
     place: tuple[str, ...] = ()
-    selection: frozenset[str] = frozenset()
-    active: str = ""
+    selection: frozenset[ElementId] = frozenset()
+    active: ElementId = NO_ELEMENT
 
 
 @dataclass(frozen=True)

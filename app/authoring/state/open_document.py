@@ -38,7 +38,8 @@ from ...graph import (
 from ...graph.graph import find_value
 from ...resources.sandbox import Sandbox
 from ..edits import clipboard, coding, decor, elements, folding, layout, paths, wiring
-from ..edits.elements import Place, Sizes
+from ..edits.element_id import ElementId
+from ..edits.elements import Place, Places, Sizes
 from ..edits.folding import GroupPath
 from ..edits.key_frames import list_key_frames, whole_key_frames
 from ..edits.ports import default_view, is_viewable, numbered_ports
@@ -97,17 +98,17 @@ class OpenDocument:
         return self._snapshot.place
 
     @property
-    def selection(self) -> frozenset[str]:
-        """Keys of the selected elements."""
+    def selection(self) -> frozenset[ElementId]:
+        """The selected elements."""
         return self._snapshot.selection
 
     @property
-    def active(self) -> str:
-        """Key of the element selected last, or ""."""
+    def active(self) -> ElementId:
+        """The element selected last; empty if there is none."""
         return self._snapshot.active
 
     @property
-    def ordered_selection(self) -> list[str]:
+    def ordered_selection(self) -> list[ElementId]:
         """The selected elements, the active one last."""
         return [*sorted(self.selection - {self.active}), *([self.active] if self.active else [])]
 
@@ -118,24 +119,24 @@ class OpenDocument:
         return self._memo.get("graph", source, lambda: layout.pin_places(folding.body_at(*source), before))
 
     @property
-    def positions(self) -> Mapping[str, Place]:
+    def positions(self) -> Places:
         """Where every element of `graph` lies."""
         return self._memo.get("positions", (self.graph.ui, self.elements), lambda: layout.positions(self.graph))
 
     @property
-    def elements(self) -> tuple[str, ...]:
-        """Keys of all elements of `graph`; the same object until they change."""
+    def elements(self) -> tuple[ElementId, ...]:
+        """All elements of `graph`; the same object until they change."""
         return self._memo.get("elements", (self.graph,), self._list_elements)
 
-    def position(self, key: str) -> Place:
+    def position(self, element: ElementId) -> Place:
         """Where an element lies. Raises GraphError if there is none."""
-        if key not in self.positions:
-            raise GraphError(f"there is no '{key}' on the canvas")
-        return self.positions[key]
+        if element not in self.positions:
+            raise GraphError(f"there is no '{element}' on the canvas")
+        return self.positions[element]
 
-    def frame_members(self, id: str, sizes: Sizes | None = None) -> frozenset[str]:
+    def frame_members(self, frame: ElementId, sizes: Sizes | None = None) -> frozenset[ElementId]:
         """The elements inside a frame."""
-        return decor.find_frame_members(self.graph, id, self.positions, sizes)
+        return decor.find_frame_members(self.graph, frame, self.positions, sizes)
 
     @property
     def folder(self) -> Path:
@@ -180,8 +181,8 @@ class OpenDocument:
         return find_problems(self._memo, "all problems", self.root, self.types)
 
     @property
-    def problems(self) -> Mapping[str, tuple[Problem, ...]]:
-        """What is wrong with `graph`, by element; what belongs to none is under ""."""
+    def problems(self) -> Mapping[ElementId, tuple[Problem, ...]]:
+        """What is wrong with `graph`, by element; what belongs to none is under the empty id."""
         problems = find_problems(self._memo, "problems", self.graph, self.types) if self.place else self.all_problems
         return self._memo.get(
             "problems by element", (problems, self.elements), lambda: sort_problems(problems, self.elements)
@@ -370,8 +371,8 @@ class OpenDocument:
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _list_elements(self) -> tuple[str, ...]:
-        """The same tuple as before where the keys are the same, so that what is computed of it stays."""
+    def _list_elements(self) -> tuple[ElementId, ...]:
+        """The same tuple as before where the elements are the same, so that what is computed of it stays."""
         keys, before = elements.list_elements(self.graph), self._memo.last("elements")[1]
         return before if keys == before else keys
 

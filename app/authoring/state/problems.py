@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from halation.nodes import Node
 
-from ...graph import INPUTS, OUTPUTS, Graph, Problem
+from ...graph import Graph, Port, Problem
 from ...lint.live import find_remarks, recheck_remarks
+from ..edits.element_id import NO_ELEMENT, ElementId
 from .memo import Memo
 
 
@@ -24,12 +25,13 @@ def find_problems(memo: Memo, name: str, graph: Graph, types: Mapping[str, type[
     return memo.get(name, (graph, types), compute)
 
 
-def sort_problems(problems: tuple[Problem, ...], elements: tuple[str, ...]) -> Mapping[str, tuple[Problem, ...]]:
-    """Problems by the key of the element that shows them, in the order in which they were found."""
-    by_key: dict[str, tuple[Problem, ...]] = {}
+def sort_problems(
+    problems: tuple[Problem, ...], elements: Collection[ElementId]
+) -> Mapping[ElementId, tuple[Problem, ...]]:
+    """Problems by the element that shows them, in the order in which they were found; others under the empty id."""
+    sorted_problems: dict[ElementId, tuple[Problem, ...]] = {}
     for problem in problems:
-        node = problem.node.partition("/")[0]
-        key = f"{node}.{problem.socket}" if node in (INPUTS, OUTPUTS) else node
-        key = key if key in elements else ""
-        by_key[key] = (*by_key.get(key, ()), problem)
-    return by_key
+        element = ElementId.of_port(Port(problem.node.partition("/")[0], problem.socket))
+        element = element if element in elements else NO_ELEMENT
+        sorted_problems[element] = (*sorted_problems.get(element, ()), problem)
+    return sorted_problems

@@ -139,7 +139,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.view",
         "View",
-        lambda context: context.session.view_node(context.session.active),
+        lambda context: context.session.view_element(context.session.active),
         "Graph",
         "V",
         "graph",
@@ -150,7 +150,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.view_b",
         "View as B",
-        lambda context: context.session.view_node(context.session.active, "B"),
+        lambda context: context.session.view_element(context.session.active, "B"),
         "Graph",
         "Shift+V",
         "graph",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
@@ -58,7 +59,7 @@ _BUTTONS = (
 class _FitState:
     """The elements of the last fit, the view that it gave, and its inputs."""
 
-    keys: Collection[str] = ()
+    keys: Collection[ElementId] = ()
     view: tuple[Point, float] = ((0.0, 0.0), 0.0)
     size: Point = (0.0, 0.0)
     scene: CanvasScene | None = None
@@ -85,7 +86,7 @@ class Canvas:
         self._legend = Legend(context)
         self._places = PlaceRecorder(context)
         self._pictures = ThumbnailSlots()
-        self._hot = ""
+        self._hot = NO_ELEMENT
         self._group_path: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
@@ -149,9 +150,9 @@ class Canvas:
             view.fit()
 
     def _build_scene(self) -> CanvasScene:
-        session, pictures = self._context.session, self._pictures.list_keys(self._context)
+        session, pictures = self._context.session, self._pictures.list_elements(self._context)
         gesture = self._mouse.gesture
-        expanded_key = self._expanded_key if isinstance(gesture, LinkGesture) else ""
+        expanded_key = self._expanded_key if isinstance(gesture, LinkGesture) else NO_ELEMENT
         graph = session.graph_now
         frame = None if graph is session.graph else session.frame
         inputs = (session.revision, frame, pictures, expanded_key, frozenset(self._builder.expanded))
@@ -165,11 +166,12 @@ class Canvas:
         return self._scene
 
     @property
-    def _expanded_key(self) -> str:
+    def _expanded_key(self) -> ElementId:
         """The node that shows all its values because a link is dragged over it."""
         scene = self._mouse.preview.scene
-        key = scene.find_node(*self._pointer) if scene.boxes else ""
-        return key if key and isinstance(self._mouse.gesture, LinkGesture) and self._mouse.gesture.output else ""
+        key = scene.find_node(*self._pointer) if scene.boxes else NO_ELEMENT
+        gesture = self._mouse.gesture
+        return key if isinstance(gesture, LinkGesture) and gesture.output else NO_ELEMENT
 
     _pointer: Point = (0.0, 0.0)
 
@@ -235,17 +237,18 @@ class Canvas:
         self._paint_gesture(brush, frame)
         self._draw_tooltip(facts, scene)
 
-    def _find_hot(self, frame: CanvasFrame, scene: CanvasScene) -> str:
+    def _find_hot(self, frame: CanvasFrame, scene: CanvasScene) -> ElementId:
         """The node whose fields are widgets: the one with an active field, else the one under the pointer."""
         if self._live.holder:
             return self._live.holder
         if self._live.open:
-            return self._live.open[0].node
+            return ElementId.of_port(self._live.open[0])
         if imgui.is_any_item_active() and isinstance(self._mouse.gesture, Idle):
             return self._hot
-        return scene.find_node(*frame.pointer) if frame.hovered and isinstance(self._mouse.gesture, Idle) else ""
+        is_idle = frame.hovered and isinstance(self._mouse.gesture, Idle)
+        return scene.find_node(*frame.pointer) if is_idle else NO_ELEMENT
 
-    def _paint_node(self, brush: DrawContext, box: ElementBox, facts: LookFacts, hot: str) -> None:
+    def _paint_node(self, brush: DrawContext, box: ElementBox, facts: LookFacts, hot: ElementId) -> None:
         layout = box.layout
         if layout is None:
             return
@@ -346,7 +349,7 @@ class Canvas:
             self._builder.expanded ^= {requests.toggle}
         if view.renaming or requests.rename:
             self._naming.begin(view.renaming or requests.rename)
-            view.renaming = ""
+            view.renaming = NO_ELEMENT
         self._naming.draw(brush, self._mouse.preview.scene)
         if self._context.store.current.minimap and self._mouse.preview.scene.boxes:
             self._minimap.draw(brush, frame.panel, self._mouse.preview.scene)

@@ -6,6 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
 from ...authoring.edits import routes
+from ...authoring.edits.element_id import ElementId
+from ...authoring.edits.selection import SelectMode
 from ...authoring.edits.wiring import splice_chain
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
@@ -35,16 +37,16 @@ class Band:
     """A rectangle that selects."""
 
     start: Point
-    mode: str = "replace"
+    mode: SelectMode = "replace"
 
 
 @dataclass(frozen=True)
 class MoveGesture:
     """Elements follow the mouse; until it has moved far enough, this is a click on `key`."""
 
-    key: str
+    key: ElementId
     start: Point
-    keys: frozenset[str] = frozenset()
+    keys: frozenset[ElementId] = frozenset()
     offset: Point = (0.0, 0.0)
     alone: bool = False
     """True selects only `key` if it stays a click."""
@@ -61,7 +63,7 @@ class MoveGesture:
 class ResizeGesture:
     """An edge of a frame or comment follows the mouse."""
 
-    key: str
+    key: ElementId
     edges: str
     start: Point
     before: Rect
@@ -91,10 +93,10 @@ Gesture = Idle | PanGesture | Band | MoveGesture | ResizeGesture | CutGesture | 
 IDLE = Idle()
 
 
-def find_touched(scene: CanvasScene, rect: Rect) -> tuple[str, ...]:
+def find_touched(scene: CanvasScene, rect: Rect) -> tuple[ElementId, ...]:
     """The elements that a selection rectangle touches; frames only if it contains all of them."""
     left, top, right, bottom = rect
-    keys: list[str] = []
+    keys: list[ElementId] = []
     for key, box in scene.boxes.items():
         if box.sort == "frame":
             if left <= box.x and right >= box.x + box.w and top <= box.y and bottom >= box.y + box.h:
@@ -129,7 +131,9 @@ def resize_to(resize: ResizeGesture, to: Point, snap: bool) -> ResizeGesture:
     return replace(resize, rect=(left, top, right, bottom))
 
 
-def add_members(keys: Collection[str], scene: CanvasScene, members: Collection[frozenset[str]]) -> frozenset[str]:
+def add_members(
+    keys: Collection[ElementId], scene: CanvasScene, members: Collection[frozenset[ElementId]]
+) -> frozenset[ElementId]:
     """The elements that move together: `keys`, and all elements on frames among them."""
     return frozenset(keys).union(*members) & scene.boxes.keys()
 
@@ -178,10 +182,12 @@ def find_refused_pin(scene: CanvasScene, link: LinkGesture, at: Point, reach: fl
     return None
 
 
-def find_insertion(graph: Graph, scene: CanvasScene, keys: Collection[str], at: Point, reach: float) -> Port | None:
+def find_insertion(
+    graph: Graph, scene: CanvasScene, keys: Collection[ElementId], at: Point, reach: float
+) -> Port | None:
     """The target of the link that moved nodes would be put into: they are a chain without other links, and fit."""
     ids = [key for key in keys if key in graph.nodes]
-    if not ids or any(key not in graph.nodes and not key.startswith("dots.") for key in keys):
+    if not ids or any(key not in graph.nodes and key.kind != "dot" for key in keys):
         return None
     if any(wire.crosses_border(keys) for wire in scene.wires):
         return None
@@ -196,16 +202,16 @@ def find_insertion(graph: Graph, scene: CanvasScene, keys: Collection[str], at: 
     return wire.target
 
 
-def add_crossing_dots(graph: Graph, crossings: dict[Port, Point]) -> tuple[Graph, tuple[str, ...]]:
-    """A graph with a dot where each link was crossed; links from the same source share one. Also the new keys."""
-    shared: dict[Port, str] = {}
+def add_crossing_dots(graph: Graph, crossings: dict[Port, Point]) -> tuple[Graph, tuple[ElementId, ...]]:
+    """A graph with a dot where each link was crossed; links from the same source share one. Also the new dots."""
+    shared: dict[Port, ElementId] = {}
     for target, at in sorted(crossings.items()):
         source = graph.links[target]
         if source in shared:
             graph = routes.join_dot(graph, shared[source], target)
         else:
             graph, shared[source] = routes.add_dot(graph, target, at)
-    return graph, tuple(f"dots.{dot}" for dot in shared.values())
+    return graph, tuple(shared.values())
 
 
 def make_band_rect(band: Band, to: Point) -> Rect:

@@ -10,6 +10,7 @@ from typing import Literal
 from halation.nodes import Kind, Node, Plain, Socket, Value
 
 from ...authoring.edits.coding import LANGUAGES
+from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
@@ -113,10 +114,9 @@ def find_value_kind(value: Value) -> Kind | None:
     return {"color": Kind.COLOR, "vector": Kind.VECTOR}.get(value.type, Kind.NUMBER)
 
 
-def make_end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> NodeLayout:
+def make_end_layout(end: ElementId, socket: Socket, picture: bool, doc: str = "") -> NodeLayout:
     """An input or output of the graph: a slim box with one pin."""
-    side, _, name = key.partition(".")
-    is_input = side == "inputs"
+    name, is_input = end.name, end.kind == "input"
     pin = Pin(name, socket.kind, END_WIDTH if is_input else 0.0, HEADER / 2, socket.optional)
     height = HEADER + (PICTURE * END_WIDTH / WIDTH + PAD if picture else 0.0)
     return NodeLayout(
@@ -124,7 +124,7 @@ def make_end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> N
         END_WIDTH,
         height,
         name,
-        category=side[:-1],
+        category="input" if is_input else "output",
         doc=doc,
         ins={} if is_input else {name: pin},
         outs={name: pin} if is_input else {},

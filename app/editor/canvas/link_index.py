@@ -10,6 +10,7 @@ import numpy as np
 from halation.nodes import Kind
 from numpy.typing import NDArray
 
+from ...authoring.edits.element_id import ElementId
 from ...graph import Port
 from .geometry import (
     SAMPLES,
@@ -29,14 +30,14 @@ class Wire:
 
     target: Port
     source: Port
-    stops: tuple[str, ...]
-    """Keys of the elements that it joins, from the source on."""
+    stops: tuple[ElementId, ...]
+    """The elements that it joins, from the source on."""
     kind: Kind | None
     curves: tuple[Curve, ...]
     fault: str = ""
     muted: bool = False
 
-    def crosses_border(self, keys: Collection[str]) -> bool:
+    def crosses_border(self, keys: Collection[ElementId]) -> bool:
         """True if exactly one end is among `keys`."""
         return (self.stops[0] in keys) != (self.stops[-1] in keys)
 
@@ -68,7 +69,7 @@ class LinkIndex:
         """The link that each of `lines` belongs to."""
         return [wire for wire in self.wires for _ in wire.curves]
 
-    def find_near(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
+    def find_near(self, x: float, y: float, reach: float, skip: Collection[ElementId] = ()) -> Wire | None:
         """The link nearest to a point within reach, leaving out those that join one of `skip`."""
         if not len(self.lines):
             return None

@@ -9,6 +9,7 @@ from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetExpression, SetValue
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.session import Session
 from ...graph import Port
 from ..fields.choice_field import toggle_field
@@ -27,6 +28,9 @@ from .sketch import Sketch
 
 if TYPE_CHECKING:
     from .context import CanvasContext
+
+_FIELD = "canvas "
+"""What the ids of fields on nodes begin with, before the port."""
 
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 
@@ -52,12 +56,12 @@ class LiveFields:
     _edits: list[tuple[Port, Edit]] = field(default_factory=list[tuple[Port, Edit]])
 
     @property
-    def holder(self) -> str:
-        """The node whose field is dragged or typed in, "" if none."""
+    def holder(self) -> ElementId:
+        """The node whose field is dragged or typed in; empty if there is none."""
         if self.fields is None:
-            return ""
-        id = self.fields.typing.id if self.fields.typing else self.fields.drag_id or self.fields.pressed
-        return id.removeprefix("canvas ").partition(".")[0]
+            return NO_ELEMENT
+        field_id = self.fields.typing.id if self.fields.typing else self.fields.drag_id or self.fields.pressed
+        return ElementId.of_port(_port_of(field_id)) if field_id else NO_ELEMENT
 
     def begin(self) -> None:
         """Call before any node is drawn."""
@@ -90,7 +94,7 @@ class LiveFields:
         self, fields: Fields, brush: DrawContext, rect: Rect, port: Port, row: NodeRow, value: Value, plain: Plain
     ) -> None:
         low, high = brush.project_corners(rect)
-        width, id = high[0] - low[0], f"canvas {port}"
+        width, id = high[0] - low[0], f"{_FIELD}{port}"
         imgui.set_cursor_screen_pos(low)
         edit: Edit | None = None
         if value.type in ("float", "int"):
@@ -121,7 +125,7 @@ class LiveFields:
             return
         self._draw_popups(fields)
         if last_edit := fields.end():
-            self._edits.append((Port.parse(last_edit[0].removeprefix("canvas ")), last_edit[1]))
+            self._edits.append((_port_of(last_edit[0]), last_edit[1]))
         if fields.eyedropper:
             self.context.viewer.picking = fields.eyedropper.removeprefix("canvas ")
         self.context.interface.dragging = self.context.interface.dragging or fields.dragging
@@ -174,6 +178,11 @@ class LiveFields:
                 imgui.set_item_default_focus()
         if imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
+
+
+def _port_of(field_id: str) -> Port:
+    """The port whose field has that id; a field of a vector adds `#` and the number of its part."""
+    return Port.parse(field_id.removeprefix(_FIELD).partition("#")[0])
 
 
 def _apply_edit(session: Session, port: Port, edit: Edit) -> None:

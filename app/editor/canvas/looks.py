@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ...authoring.edits.elements import element_of
+from ...authoring.edits.element_id import ElementId
 from ...graph import Problem
 from .brush import CanvasColors
 from .gestures import Gesture, LinkGesture
@@ -27,30 +27,30 @@ class LookFacts:
 
     context: CanvasContext
     ink: CanvasColors
-    viewed: Mapping[str, str]
-    badges: Mapping[str, str]
-    lit: Mapping[str, frozenset[tuple[bool, str]]] | None
-    costs: Mapping[str, tuple[float, int]]
+    viewed: Mapping[ElementId, str]
+    badges: Mapping[ElementId, str]
+    lit: Mapping[ElementId, frozenset[tuple[bool, str]]] | None
+    costs: Mapping[ElementId, tuple[float, int]]
     total: float
-    hot: str
+    hot: ElementId
     prefix: str
-    selection: frozenset[str]
-    active: str
+    selection: frozenset[ElementId]
+    active: ElementId
     muted: frozenset[str]
-    problems: Mapping[str, tuple[Problem, ...]]
+    problems: Mapping[ElementId, tuple[Problem, ...]]
     pictures: bool
 
-    def faults(self, key: str) -> tuple[str, ...]:
+    def faults(self, key: ElementId) -> tuple[str, ...]:
         """The errors of an element."""
         errors = tuple(problem.sentence for problem in self.problems.get(key, ()) if problem.severity == "error")
         fault = self.context.preview.faults.get(self.prefix + key, "")
         return (*errors, fault) if fault and fault not in errors else errors
 
-    def warnings(self, key: str) -> tuple[str, ...]:
+    def warnings(self, key: ElementId) -> tuple[str, ...]:
         """The warnings of an element."""
         return tuple(problem.sentence for problem in self.problems.get(key, ()) if problem.severity == "warning")
 
-    def make_look(self, key: str, live: frozenset[str]) -> NodeLook:
+    def make_look(self, key: ElementId, live: frozenset[str]) -> NodeLook:
         """Make the look of one node or end."""
         faults = self.faults(key)
         warnings = () if faults else self.warnings(key)
@@ -77,7 +77,7 @@ class LookFacts:
             overlay_color=color,
         )
 
-    def _describe_cost(self, key: str) -> tuple[str, int]:
+    def _describe_cost(self, key: ElementId) -> tuple[str, int]:
         if key not in self.costs:
             return "", 0
         seconds, size = self.costs[key]
@@ -86,22 +86,24 @@ class LookFacts:
         return f"{seconds * 1e3:.1f} ms   {_format_size(size)}", color
 
 
-def gather_look_facts(context: CanvasContext, ink: CanvasColors, gesture: Gesture, hot: str) -> LookFacts:
+def gather_look_facts(context: CanvasContext, ink: CanvasColors, gesture: Gesture, hot: ElementId) -> LookFacts:
     """Gather the facts for the looks of all nodes in this frame."""
     session = context.session
-    viewed: dict[str, str] = {}
+    viewed: dict[ElementId, str] = {}
     for side in ("A", "B"):
         if port := session.viewed(side):
-            viewed[element_of(port)] = viewed.get(element_of(port), "") + side
-    badges: dict[str, str] = {}
+            viewed[ElementId.of_port(port)] = viewed.get(ElementId.of_port(port), "") + side
+    badges: dict[ElementId, str] = {}
     for number, port in session.viewers.items():
-        badges[element_of(port)] = f"{badges.get(element_of(port), '')} {number}".strip()
-    lit: dict[str, frozenset[tuple[bool, str]]] | None = None
+        badges[ElementId.of_port(port)] = f"{badges.get(ElementId.of_port(port), '')} {number}".strip()
+    lit: dict[ElementId, frozenset[tuple[bool, str]]] | None = None
     if isinstance(gesture, LinkGesture):
         lit = {}
         for port in gesture.targets:
-            lit[element_of(port)] = lit.get(element_of(port), frozenset()) | {(not gesture.output, port.socket)}
-        lit[element_of(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
+            lit[ElementId.of_port(port)] = lit.get(ElementId.of_port(port), frozenset()) | {
+                (not gesture.output, port.socket)
+            }
+        lit[ElementId.of_port(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
     costs, total = _find_costs(context) if context.preview.timed else ({}, 0.0)
     prefix = "".join(f"{id}/" for id in session.place)
     return LookFacts(
@@ -122,17 +124,17 @@ def gather_look_facts(context: CanvasContext, ink: CanvasColors, gesture: Gestur
     )
 
 
-def _find_costs(context: CanvasContext) -> tuple[dict[str, tuple[float, int]], float]:
+def _find_costs(context: CanvasContext) -> tuple[dict[ElementId, tuple[float, int]], float]:
     """Seconds and bytes of every element here, groups with all that is in them, and the seconds of everything."""
     timings = context.preview.timings
     prefix = "".join(f"{id}/" for id in context.session.place)
-    costs_by_key: dict[str, dict[frozenset[str], tuple[float, int]]] = {}
+    costs_by_key: dict[ElementId, dict[frozenset[str], tuple[float, int]]] = {}
     everything: dict[frozenset[str], float] = {}
     for path, timing in timings.items():
         passes = frozenset({path, *timing.shared})
         everything[passes] = timing.seconds
         if path.startswith(prefix):
-            key = path.removeprefix(prefix).partition("/")[0]
+            key = ElementId(path.removeprefix(prefix).partition("/")[0])
             costs_by_key.setdefault(key, {})[passes] = timing.seconds, timing.bytes
     costs = {
         key: (sum(seconds for seconds, _ in parts.values()), sum(size for _, size in parts.values()))

@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
+from ...authoring.edits.element_id import ElementId
 from ...graph import Group, Port
 from ..shared.action import Action
 from ..toolkit.buttons import entry
@@ -63,10 +64,11 @@ class CanvasMenus:
                 self.context.canvas.searching = True
             record(self.context, "menu search")
             imgui.separator()
-        if hit.key.startswith(("frames.", "comments.")):
-            if imgui.menu_item("Rename ..." if hit.key.startswith("frames") else "Edit text ...", "", False)[0]:
+        kind = hit.key.kind
+        if hit.key.is_note:
+            if imgui.menu_item("Rename ..." if kind == "frame" else "Edit text ...", "", False)[0]:
                 self.context.canvas.renaming = hit.key
-            if hit.key.startswith("frames."):
+            if kind == "frame":
                 _draw_colors(self.context, hit.key)
         for action in self.context.actions.in_menu(_find_menu(hit)):
             if action.id != "node.add":
@@ -110,17 +112,16 @@ def _find_menu(hit: Hit) -> str:
         return hit.part
     if hit.part == "empty":
         return "canvas"
-    return hit.key.partition(".")[0][:-1] if hit.key.startswith(("frames.", "comments.", "dots.")) else "node"
+    return hit.key.kind if hit.key.is_decor else "node"
 
 
-def _draw_colors(context: CanvasContext, key: str) -> None:
+def _draw_colors(context: CanvasContext, frame: ElementId) -> None:
     """Colors for a frame: those of headers, so that frames and nodes look alike."""
-    id = key.removeprefix("frames.")
     for index, color in enumerate(dict.fromkeys(context.palette.categories.values())):
         if index % 7:
             imgui.same_line()
         if imgui.color_button(f"##frame color {index}", (*color, 1.0), int(imgui.ColorEditFlags_.no_tooltip)):
-            context.log.attempt(lambda color=color: context.session.apply(EditFrame(id, color=color)))
+            context.log.attempt(lambda color=color: context.session.apply(EditFrame(frame, color=color)))
     imgui.separator()
 
 

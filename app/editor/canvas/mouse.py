@@ -21,6 +21,8 @@ from ...authoring.commands import (
     ResizeFrame,
     SpliceChain,
 )
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
+from ...authoring.edits.selection import SelectMode
 from ...graph import Group, Port
 from .frame import CanvasFrame, apply_wheel, pan_at_border
 from .geometry import Point, contains
@@ -63,8 +65,8 @@ class PanelRequests:
 
     menu: Hit | None = None
     search: tuple[Port, bool] | None = None
-    rename: str = ""
-    toggle: str = ""
+    rename: ElementId = NO_ELEMENT
+    toggle: ElementId = NO_ELEMENT
 
 
 @dataclass
@@ -145,7 +147,7 @@ class CanvasMouse:
                 self.gesture = ResizeGesture(hit.key, hit.name, frame.pointer, rect, rect)
             case "title" | "body":
                 if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
-                    context.log.attempt(lambda: session.view_node(hit.key))
+                    context.log.attempt(lambda: session.view_element(hit.key))
                 elif io.key_ctrl or io.key_shift:
                     self._select(context, hit.key, "toggle")
                 else:
@@ -175,15 +177,15 @@ class CanvasMouse:
         if hit.part == "link" and hit.port:
             target = hit.port
             context.log.attempt(lambda: session.apply(AddDot(target, frame.pointer)))
-        elif hit.key.startswith(("frames.", "comments.")):
+        elif hit.key.is_note:
             self.requests.rename = hit.key
-        elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
+        elif hit.part in ("title", "body") and hit.key.kind != "dot":
             item = session.graph.nodes.get(hit.key)
             if session.code(hit.key) is not None:
                 context.code_files.show()
                 return
             context.log.attempt(
-                lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_node(hit.key)
+                lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_element(hit.key)
             )
         elif hit.part == "empty":
             context.canvas.searching = True
@@ -194,8 +196,8 @@ class CanvasMouse:
             self._select(context, hit.key, "replace")
         self.requests.menu = hit
 
-    def _select(self, context: CanvasContext, key: str, mode: str) -> None:
-        context.log.attempt(lambda: context.session.select((key,), mode))  # pyright: ignore[reportArgumentType]
+    def _select(self, context: CanvasContext, key: ElementId, mode: SelectMode) -> None:
+        context.log.attempt(lambda: context.session.select((key,), mode))
 
     # --- going on ----------------------------------------------------------------------------------------------------
 
@@ -242,9 +244,7 @@ class CanvasMouse:
             if not frame.is_far(move.start):
                 return move
             members = [
-                session.frame_members(key.removeprefix("frames."), frame.scene.sizes)
-                for key in session.selection
-                if key.startswith("frames.")
+                session.frame_members(key, frame.scene.sizes) for key in session.selection if key.kind == "frame"
             ]
             move = replace(move, keys=add_members(session.selection, frame.scene, members))
             if extract and any(wire.crosses_border(move.keys) for wire in frame.scene.wires):
@@ -281,10 +281,10 @@ class CanvasMouse:
             wire = frame.scene.by_target.get(hit.port) if hit.part == "link" and hit.port else None
             keys = {wire.stops[0], wire.stops[-1]} if wire else ()
             if keys or band.mode == "replace":
-                context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+                context.log.attempt(lambda: context.session.select(keys, band.mode))
             return
         keys = find_touched(frame.scene, make_band_rect(band, frame.pointer))
-        context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+        context.log.attempt(lambda: context.session.select(keys, band.mode))
 
     def _finish_link(self, frame: CanvasFrame, link: LinkGesture) -> None:
         context, session = frame.context, frame.context.session
@@ -346,13 +346,13 @@ class CanvasMouse:
 
 def _resize(context: CanvasContext, resize: ResizeGesture) -> None:
     left, top, right, bottom = resize.rect
-    section, _, id = resize.key.partition(".")
+    note = resize.key
     if resize.rect == resize.before:
         return
-    if section == "frames":
-        context.log.attempt(lambda: context.session.apply(ResizeFrame(id, left, top, right - left, bottom - top)))
+    if note.kind == "frame":
+        context.log.attempt(lambda: context.session.apply(ResizeFrame(note, left, top, right - left, bottom - top)))
     else:
-        context.log.attempt(lambda: context.session.apply(ResizeComment(id, left, top, right - left)))
+        context.log.attempt(lambda: context.session.apply(ResizeComment(note, left, top, right - left)))
 
 
 def _finish_cut(frame: CanvasFrame, gesture: CutGesture) -> None:
@@ -362,7 +362,7 @@ def _finish_cut(frame: CanvasFrame, gesture: CutGesture) -> None:
         return
 
     def add_dots() -> None:
-        graph, keys = add_crossing_dots(session.graph, crossings)
-        session.apply(ReplaceGraph("Add dots", graph, keys))
+        graph, dots = add_crossing_dots(session.graph, crossings)
+        session.apply(ReplaceGraph("Add dots", graph, dots))
 
     context.log.attempt(add_dots if gesture.dots else lambda: session.apply(CutLinks(tuple(crossings))))

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...authoring.commands import EditComment, EditFrame, RenameEnd, RenameNode
-from ...authoring.edits.elements import end_port, entry
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
+from ...authoring.edits.elements import entry
 from .brush import TEXT, DrawContext
 from .geometry import Rect
 from .scene import CanvasScene
@@ -22,22 +23,22 @@ class NameField:
     """The text field on an element, and which element that is."""
 
     context: CanvasContext
-    key: str = ""
+    key: ElementId = NO_ELEMENT
     rect: Rect | None = None
     """Where the field is, on the screen."""
     _text: str = ""
     _starting: bool = False
 
-    def begin(self, key: str) -> None:
+    def begin(self, key: ElementId) -> None:
         """Open a field on an element."""
         facts = entry(self.context.session.graph, key)
-        if key.startswith("frames."):
-            self._text = str(facts.get("title", ""))
-        elif key.startswith("comments."):
-            self._text = str(facts.get("text", ""))
-        else:
-            end = end_port(key)
-            self._text = end.socket if end else key
+        match key.kind:
+            case "frame":
+                self._text = str(facts.get("title", ""))
+            case "comment":
+                self._text = str(facts.get("text", ""))
+            case _:
+                self._text = key.name
         self.key, self._starting = key, True
 
     def draw(self, brush: DrawContext, scene: CanvasScene) -> None:
@@ -47,7 +48,7 @@ class NameField:
             return
         box = scene.boxes.get(self.key)
         if box is None:
-            self.key = ""
+            self.key = NO_ELEMENT
             return
         s, is_multiline = brush.to.scale, box.sort == "comment"
         low, _ = brush.project_corners(box.rect)
@@ -72,18 +73,18 @@ class NameField:
             self._starting = not active
         elif imgui.is_item_deactivated() or not active:
             escaped = imgui.is_key_pressed(imgui.Key.escape)
-            key, self.key = self.key, ""
+            key, self.key = self.key, NO_ELEMENT
             if not escaped:
                 self.context.log.attempt(lambda: _set_name(self.context, key, self._text))
 
 
-def _set_name(context: CanvasContext, key: str, text: str) -> None:
-    session, id = context.session, key.partition(".")[2]
-    if key.startswith("frames."):
-        session.apply(EditFrame(id, title=text.strip()))
-    elif key.startswith("comments."):
-        session.apply(EditComment(id, text.rstrip()))
-    elif end_port(key):
-        session.apply(RenameEnd(key, text.strip()))
-    else:
-        session.apply(RenameNode(key, text.strip()))
+def _set_name(context: CanvasContext, element: ElementId, text: str) -> None:
+    match element.kind:
+        case "frame":
+            context.session.apply(EditFrame(element, title=text.strip()))
+        case "comment":
+            context.session.apply(EditComment(element, text.rstrip()))
+        case "input" | "output":
+            context.session.apply(RenameEnd(element, text.strip()))
+        case _:
+            context.session.apply(RenameNode(element, text.strip()))

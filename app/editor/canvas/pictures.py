@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.elements import Sizes
 from .layout import HEADER, PAD, PICTURE
 
@@ -22,17 +23,17 @@ class ThumbnailSlots:
 
     _inputs: tuple[object, ...] = ()
     _paths: frozenset[str] = frozenset()
-    _keys: frozenset[str] = frozenset()
+    _keys: frozenset[ElementId] = frozenset()
 
-    def list_keys(self, context: CanvasContext) -> frozenset[str]:
-        """The keys of these elements in the open group; the same object while nothing changes."""
+    def list_elements(self, context: CanvasContext) -> frozenset[ElementId]:
+        """These elements in the open group; the same object while nothing changes."""
         enabled, paths = context.store.current.thumbnails, context.preview.thumbnails
         place = context.session.place
         if self._inputs != (enabled, place) or self._paths is not paths:
             self._inputs, self._paths = (enabled, place), paths
             prefix = "".join(f"{id}/" for id in place)
             inside = (path.removeprefix(prefix) for path in paths if path.startswith(prefix))
-            self._keys = frozenset(key for key in inside if "/" not in key) if enabled else frozenset()
+            self._keys = frozenset(ElementId(key) for key in inside if "/" not in key) if enabled else frozenset()
         return self._keys
 
 
@@ -41,7 +42,7 @@ def reserve_pictures(context: CanvasContext) -> Sizes:
     sizes = context.canvas.sizes or {}
     if not context.store.current.thumbnails:
         return sizes
-    keys, nodes = ThumbnailSlots().list_keys(context), context.session.graph.nodes
+    keys, nodes = ThumbnailSlots().list_elements(context), context.session.graph.nodes
     return {
         key: (width, height + PICTURE + PAD / 2)
         if key in nodes and key not in keys and height > HEADER

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Literal
 
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...graph import Port
 from .geometry import Curve, Point, Rect, contains, make_curve
 from .layout import HEADER, ROW, NodeLayout, Pin
@@ -25,7 +26,7 @@ Part = Literal["pin", "field", "more", "title", "body", "edge", "link", "empty"]
 class ElementBox:
     """An element: its rectangle, and the layout within for nodes and ends. Dots are boxes around their center."""
 
-    key: str
+    key: ElementId
     sort: Sort
     x: float
     y: float
@@ -40,9 +41,7 @@ class ElementBox:
 
     def make_port(self, pin: Pin, output: bool) -> Port:
         """The port that a pin stands for."""
-        if self.sort == "end":
-            return Port("inputs" if output else "outputs", pin.name)
-        return Port(self.key, pin.name)
+        return self.key.port or Port(self.key, pin.name)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +49,7 @@ class Hit:
     """What is under a point. `name` is the row of a field, or the edges (of `lrtb`) of a frame or comment."""
 
     part: Part = "empty"
-    key: str = ""
+    key: ElementId = NO_ELEMENT
     port: Port | None = None
     output: bool = False
     name: str = ""
@@ -63,7 +62,7 @@ EMPTY = Hit()
 class CanvasScene:
     """Elements in the order in which they are drawn, and links."""
 
-    boxes: dict[str, ElementBox]
+    boxes: dict[ElementId, ElementBox]
     links: LinkIndex = field(default_factory=LinkIndex)
 
     @property
@@ -77,11 +76,11 @@ class CanvasScene:
         return self.links.by_target
 
     @property
-    def sizes(self) -> dict[str, tuple[float, float]]:
+    def sizes(self) -> dict[ElementId, tuple[float, float]]:
         """Width and height of every element."""
         return {key: (box.w, box.h) for key, box in self.boxes.items()}
 
-    def move(self, keys: Collection[str], dx: float, dy: float) -> CanvasScene:
+    def move(self, keys: Collection[ElementId], dx: float, dy: float) -> CanvasScene:
         """A scene with some elements moved; links follow."""
         if not keys or not (dx or dy):
             return self
@@ -96,7 +95,7 @@ class CanvasScene:
         )
         return CanvasScene(boxes, LinkIndex(wires))
 
-    def resize(self, key: str, rect: Rect) -> CanvasScene:
+    def resize(self, key: ElementId, rect: Rect) -> CanvasScene:
         """A scene with one element resized."""
         left, top, right, bottom = rect
         box = replace(self.boxes[key], x=left, y=top, w=right - left, h=bottom - top)
@@ -109,12 +108,12 @@ class CanvasScene:
             return Hit("link", port=wire.target)
         return node_hit or self._find_frame_hit(x, y, reach) or EMPTY
 
-    def find_node(self, x: float, y: float) -> str:
-        """The node or end under a point, "" if none."""
+    def find_node(self, x: float, y: float) -> ElementId:
+        """The node, input or output under a point; empty if there is none."""
         for key, box in reversed(self.boxes.items()):
             if box.sort in ("node", "end") and contains(box.rect, x, y):
                 return key
-        return ""
+        return NO_ELEMENT
 
     def list_pins(self, output: bool) -> Iterator[tuple[Port, ElementBox, Pin]]:
         """Every pin of one side."""
@@ -158,7 +157,9 @@ def find_pin(box: ElementBox, socket: str, output: bool) -> Point:
     return (box.x + pin.x, box.y + pin.y) if pin else (box.x + (box.w if output else 0.0), box.y + HEADER / 2)
 
 
-def route_link(boxes: Mapping[str, ElementBox], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
+def route_link(
+    boxes: Mapping[ElementId, ElementBox], source: Port, target: Port, stops: tuple[ElementId, ...]
+) -> Iterator[Curve]:
     """The curves of a link that joins elements."""
     places = [
         find_pin(boxes[stops[0]], source.socket, output=True),

@@ -10,7 +10,8 @@ from typing import Any
 
 from halation.nodes import Node
 
-from ...authoring.edits.elements import element_of, entries, entry
+from ...authoring.edits.element_id import ElementId
+from ...authoring.edits.elements import entry, list_decor
 from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
 from .geometry import Point
@@ -21,7 +22,7 @@ from .scene import DOT, CanvasScene, ElementBox, route_link
 _LETTER = 6.6, 17.0
 """The width of a letter and the height of a line in comments."""
 
-SceneOptions = tuple[Collection[str], str, frozenset[str]]
+SceneOptions = tuple[Collection[ElementId], str, frozenset[str]]
 """Display options: elements with a thumbnail, the element that is expanded for now, all expanded elements."""
 
 FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
@@ -38,14 +39,14 @@ class SceneBuilder:
     _links: object = None
     _linked_sockets: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
-    _last: tuple[Graph, SceneOptions, dict[str, ElementBox], LinkIndex] | None = None
+    _last: tuple[Graph, SceneOptions, dict[ElementId, ElementBox], LinkIndex] | None = None
 
     def build(
         self,
         graph: Graph,
-        position: Callable[[str], Point],
-        top: Collection[str],
-        pictures: Collection[str] = frozenset(),
+        position: Callable[[ElementId], Point],
+        top: Collection[ElementId],
+        pictures: Collection[ElementId] = frozenset(),
         open: str = "",
     ) -> CanvasScene:
         """The scene of a graph.
@@ -60,7 +61,7 @@ class SceneBuilder:
             boxes = {key: box for key, box in boxes.items() if key not in raised} | {key: boxes[key] for key in raised}
         return CanvasScene(boxes, net)
 
-    def _update(self, graph: Graph, options: SceneOptions) -> tuple[dict[str, ElementBox], LinkIndex] | None:
+    def _update(self, graph: Graph, options: SceneOptions) -> tuple[dict[ElementId, ElementBox], LinkIndex] | None:
         """The last boxes and links, with new boxes of changed nodes; None where more differs than values."""
         if self._last is None or self._last[1] != options:
             return None
@@ -68,10 +69,10 @@ class SceneBuilder:
         parts = ("ui", "links", "inputs", "outputs", "muted")
         if any(getattr(graph, part) is not getattr(last, part) for part in parts) or [*graph.nodes] != [*last.nodes]:
             return None
-        fresh: dict[str, ElementBox] = {}
+        fresh: dict[ElementId, ElementBox] = {}
         for id, item in graph.nodes.items():
             if item is not last.nodes[id]:
-                box = boxes[id]
+                box = boxes[node := ElementId(id)]
                 layout = self._find_layout(
                     graph, id, item, box.layout is not None and box.layout.collapsed, pictures, open
                 )
@@ -79,48 +80,45 @@ class SceneBuilder:
                     return None
                 if _find_interface(graph, Port(id, "")) != _find_interface(last, Port(id, "")):
                     return None
-                fresh[id] = replace(box, h=layout.height, layout=layout)
+                fresh[node] = replace(box, h=layout.height, layout=layout)
         return ({**boxes, **fresh} if fresh else boxes), net
 
     def _rebuild(
-        self, graph: Graph, position: Callable[[str], Point], pictures: Collection[str], open: str
-    ) -> tuple[dict[str, ElementBox], LinkIndex]:
+        self, graph: Graph, position: Callable[[ElementId], Point], pictures: Collection[ElementId], open: str
+    ) -> tuple[dict[ElementId, ElementBox], LinkIndex]:
         if graph.links is not self._links:
             self._links, self._linked_sockets = graph.links, _find_linked_sockets(graph)
             self._faults = {ends: fault for ends, fault in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
             self._layouts = {id: layout for id, layout in self._layouts.items() if id in graph.nodes}
         boxes = {box.key: box for box in self._make_frames(graph, position)}
-        for id in entries(graph, "comments"):
-            box = _make_sized_box(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
-            text = str(entry(graph, box.key).get("text", ""))
-            boxes[box.key] = replace(box, h=measure_comment(text, box.w))
+        for comment, facts in list_decor(graph, "comment").items():
+            box = _make_sized_box(graph, comment, "comment", COMMENT_SIZE, position)
+            boxes[comment] = replace(box, h=measure_comment(str(facts.get("text", "")), box.w))
         for key, layout in self._make_ends(graph, pictures):
             boxes[key] = ElementBox(key, "end", *position(key), layout.width, layout.height, layout)
-        collapsed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
-        for id, item in graph.nodes.items():
-            layout = self._find_layout(graph, id, item, id in collapsed, pictures, open)
-            boxes[id] = ElementBox(id, "node", *position(id), layout.width, layout.height, layout)
-        for id in entries(graph, "dots"):
-            x, y = position(f"dots.{id}")
-            boxes[f"dots.{id}"] = ElementBox(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
+        for node, item in zip(map(ElementId, graph.nodes), graph.nodes.values(), strict=True):
+            is_collapsed = entry(graph, node).get("collapsed") is True
+            layout = self._find_layout(graph, node, item, is_collapsed, pictures, open)
+            boxes[node] = ElementBox(node, "node", *position(node), layout.width, layout.height, layout)
+        for dot in list_decor(graph, "dot"):
+            x, y = position(dot)
+            boxes[dot] = ElementBox(dot, "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
         return boxes, LinkIndex(tuple(self._make_wires(graph, boxes)))
 
-    def _make_frames(self, graph: Graph, position: Callable[[str], Point]) -> list[ElementBox]:
-        frames = [
-            _make_sized_box(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")
-        ]
+    def _make_frames(self, graph: Graph, position: Callable[[ElementId], Point]) -> list[ElementBox]:
+        frames = [_make_sized_box(graph, id, "frame", FRAME_SIZE, position) for id in list_decor(graph, "frame")]
         return sorted(frames, key=lambda box: (-box.w * box.h, box.key))
 
-    def _make_ends(self, graph: Graph, pictures: Collection[str]):
+    def _make_ends(self, graph: Graph, pictures: Collection[ElementId]):
         for name, end in graph.inputs.items():
-            key = f"{INPUTS}.{name}"
+            key = ElementId.of("input", name)
             yield key, _make_end(key, end.socket(name), key in pictures, end.doc)
         for name, end in graph.outputs.items():
-            key = f"{OUTPUTS}.{name}"
+            key = ElementId.of("output", name)
             yield key, _make_end(key, end.socket(name), False, "")
 
     def _find_layout(
-        self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: Collection[str], open: str
+        self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: Collection[ElementId], open: str
     ) -> NodeLayout:
         ins, outs = self._linked_sockets
         facts = NodeFacts(
@@ -137,13 +135,13 @@ class SceneBuilder:
         self._layouts[id] = item, facts, layout
         return layout
 
-    def _make_wires(self, graph: Graph, boxes: dict[str, ElementBox]):
+    def _make_wires(self, graph: Graph, boxes: dict[ElementId, ElementBox]):
         dots_by_target = routes(graph)
         for target, source in graph.links.items():
-            start, end = element_of(source), element_of(target)
+            start, end = ElementId.of_port(source), ElementId.of_port(target)
             if start not in boxes or end not in boxes:
                 continue
-            dots = (f"dots.{dot}" for dot in dots_by_target.get(str(target), ()))
+            dots = (ElementId.of("dot", dot) for dot in dots_by_target.get(str(target), ()))
             stops = (start, *(dot for dot in dots if dot in boxes), end)
             layout = boxes[start].layout
             pin = layout.outs.get(source.socket) if layout else None
@@ -195,7 +193,9 @@ def _find_linked_sockets(graph: Graph) -> tuple[dict[str, set[str]], dict[str, s
     return ins, outs
 
 
-def _make_sized_box(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> ElementBox:
+def _make_sized_box(
+    graph: Graph, key: ElementId, sort: Any, size: Point, position: Callable[[ElementId], Point]
+) -> ElementBox:
     facts = entry(graph, key)
     w, h = (facts.get(name) for name in ("w", "h"))
     width = float(w) if isinstance(w, int | float) else size[0]
@@ -203,5 +203,5 @@ def _make_sized_box(graph: Graph, key: str, sort: Any, size: Point, position: Ca
 
 
 @lru_cache(maxsize=1024)
-def _make_end(key: str, socket: Any, picture: bool, doc: str) -> NodeLayout:
+def _make_end(key: ElementId, socket: Any, picture: bool, doc: str) -> NodeLayout:
     return make_end_layout(key, socket, picture, doc)

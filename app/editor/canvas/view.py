@@ -6,6 +6,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Literal
 
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
+from ...authoring.edits.elements import Sizes
+
 MIN_ZOOM, MAX_ZOOM = 0.08, 4.0
 
 Tool = Literal["", "cut", "dot"]
@@ -17,12 +20,12 @@ class CanvasView:
 
     center: tuple[float, float] = (0.0, 0.0)
     zoom: float = 1.0
-    pending_fit: Collection[str] | None = ()
+    pending_fit: Collection[ElementId] | None = ()
     """Elements to fit into the view in the next frame: empty means all, None nothing."""
     pointer: tuple[float, float] = (0.0, 0.0)
     """The canvas position under the mouse when it was last over the panel: where new things go."""
-    sizes: dict[str, tuple[float, float]] | None = None
-    """Width and height of elements as drawn last, in canvas units, by element key."""
+    sizes: Sizes | None = None
+    """Width and height of elements as drawn last, in canvas units."""
     hovered: bool = False
     """True while the mouse is over the canvas."""
     searching: bool = False
@@ -31,12 +34,12 @@ class CanvasView:
     """A node to replace: the canvas opens the search for it."""
     tool: Tool = ""
     """What the next drag with the left button does instead of selecting: cut links, or put dots on them."""
-    renaming: str = ""
+    renaming: ElementId = NO_ELEMENT
     """An element to rename: the canvas opens a text field on it."""
 
     refusal: str = ""
     """Why the dragged link does not fit the socket under the pointer."""
 
-    def fit(self, keys: Collection[str] = ()) -> None:
+    def fit(self, elements: Collection[ElementId] = ()) -> None:
         """Fit the view to elements; none means all."""
-        self.pending_fit = keys
+        self.pending_fit = elements

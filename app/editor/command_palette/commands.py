@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...authoring.commands import AddGroupFile, AddNode
+from ...authoring.edits.element_id import ElementId
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
 from ..shared.action import Action
@@ -97,19 +98,19 @@ def _all(context: PaletteContext) -> Iterator[Command]:
         opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
         yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
         yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)
-    for key, item in context.session.graph.nodes.items():
+    for id, item in context.session.graph.nodes.items():
         kind = "Group" if isinstance(item, Group) else "Node"
-        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, context, key), weight=-6.0)
+        yield Command(f"go {id}", f"Go to {id}", kind, partial(_go, context, ElementId(id)), weight=-6.0)
 
 
 def _add(context: PaletteContext, type_id: str) -> None:
-    context.session.select((context.session.apply(AddNode(type_id, context.canvas.pointer)),))
+    context.session.select(ElementId(context.session.apply(AddNode(type_id, context.canvas.pointer))))
 
 
 def _add_preset(context: PaletteContext, path: Path) -> None:
-    context.session.select((context.session.apply(AddGroupFile(path, context.canvas.pointer)),))
+    context.session.select(ElementId(context.session.apply(AddGroupFile(path, context.canvas.pointer))))
 
 
-def _go(context: PaletteContext, key: str) -> None:
-    context.session.select((key,))
-    context.canvas.fit((key,))
+def _go(context: PaletteContext, element: ElementId) -> None:
+    context.session.select(element)
+    context.canvas.fit((element,))

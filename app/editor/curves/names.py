@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import AnimateValue, BakeKeys, ToggleKey
+from ...authoring.edits.element_id import ElementId
 from ...errors import HalationError
 from ...graph import Keys, Port
 from ..theme.style import mix, u32
@@ -221,7 +222,7 @@ def draw_value_menu(context: CurvesContext, port: Port) -> None:
     has_key = session.key_at(port) is not None
     draw_entry(icons.ICON_FA_KEY, "Remove Key" if has_key else "Set Key", lambda: session.apply(ToggleKey(port)), keyed)
     draw_entry(icons.ICON_FA_WAVE_SQUARE, "Bake to Keys", lambda: session.apply(BakeKeys(port)), animation is not None)
-    draw_entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select([port.node]))
+    draw_entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select(ElementId.of_port(port)))
     imgui.separator()
     draw_entry(
         icons.ICON_FA_XMARK,

@@ -10,6 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import RenameEnd, SetInput, SetOutput
+from ...authoring.edits.element_id import ElementId
 from ...color.display import list_views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
@@ -59,9 +60,9 @@ class EndView:
         width = str(end.width) if end.kind is Kind.VECTOR else ""
         word = "Input" if isinstance(end, Input) else "Output"
         heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
-        session, key = rows.context.session, str(port)
-        name_field(rows, self._fields, key, port.socket, lambda new: session.apply(RenameEnd(key, new)))
-        faults(rows, key)
+        session, element = rows.context.session, ElementId.of_port(port)
+        name_field(rows, self._fields, element, port.socket, lambda new: session.apply(RenameEnd(element, new)))
+        faults(rows, element)
         if isinstance(end, Input):
             self._input(rows, port, end)
         else:
@@ -105,7 +106,7 @@ class EndView:
             if index is not None:
                 rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
         rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
-        found = self._default(rows, f"{key} default", end, rows.field())
+        found = self._default(rows, name, end, rows.field())
         if found:
             rows.act(lambda: session.apply(SetInput(name, default=found.value, merge=found.merge)))
         self._text(
@@ -117,9 +118,9 @@ class EndView:
             "What it is for",
         )
 
-    def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
+    def _default(self, rows: Rows, name: str, end: Input, width: float) -> Edit | None:
         """The default, with a button that takes it away; or a button that makes one."""
-        session, name = rows.context.session, key.removeprefix(f"{INPUTS}.").removesuffix(" default")
+        session, key = rows.context.session, f"{Port(INPUTS, name)} default"
         channels = end.socket().channels
         if end.default is None:
             if imgui.button(f"None##{key}", (width, 0.0)):

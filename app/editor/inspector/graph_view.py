@@ -25,6 +25,7 @@ from ...authoring.commands import (
     SetFrameRate,
     SetPreroll,
 )
+from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import value_label
 from ...graph import Port, Unknown, signature
@@ -68,7 +69,7 @@ class GraphView:
         session = rows.context.session
         inside = session.place[-1] if session.place else ""
         heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
-        faults(rows, "")
+        faults(rows, NO_ELEMENT)
         if not inside:
             self._size(rows)
             self._time(rows)
@@ -77,38 +78,38 @@ class GraphView:
         self._ends(rows, "outputs")
         self._controls(rows)
 
-    def frame(self, rows: Rows, id: str) -> None:
+    def frame(self, rows: Rows, frame: ElementId) -> None:
         """A frame: its title and color."""
         session = rows.context.session
-        facts = entry(session.graph, f"frames.{id}")
+        facts = entry(session.graph, frame)
         heading(rows, "Frame", rows.palette.accent)
         draw_text(
             rows,
             self._fields,
-            f"frames.{id} title",
+            f"{frame} title",
             "title",
             str(facts.get("title", "")),
-            lambda title: session.apply(EditFrame(id, title=title)),
+            lambda title: session.apply(EditFrame(frame, title=title)),
         )
         given = facts.get("color")
         shown = tuple(float(part) for part in given) if isinstance(given, tuple) and len(given) == 3 else None
         red, green, blue = shown or rows.palette.raised
-        rows.name(f"frames.{id} color", "color")
+        rows.name(f"{frame} color", "color")
         light = decode(red), decode(green), decode(blue), 1.0
-        edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field(), eyedropper=False)
+        edit = color_field(self._fields, f"{frame} color", light, _COLOR, rows.field(), eyedropper=False)
         if edit and isinstance(edit.value, tuple):
             made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
-            rows.act(lambda: session.apply(EditFrame(id, color=(made[0], made[1], made[2]), merge=edit.merge)))
+            rows.act(lambda: session.apply(EditFrame(frame, color=(made[0], made[1], made[2]), merge=edit.merge)))
 
-    def comment(self, rows: Rows, id: str) -> None:
+    def comment(self, rows: Rows, comment: ElementId) -> None:
         """A comment: its text."""
         session = rows.context.session
         heading(rows, "Comment", rows.palette.accent)
-        text = str(entry(session.graph, f"comments.{id}").get("text", ""))
-        edit = text_field(self._fields, f"comments.{id} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
-        rows.record(f"comments.{id} text")
+        text = str(entry(session.graph, comment).get("text", ""))
+        edit = text_field(self._fields, f"{comment} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
+        rows.record(f"{comment} text")
         if edit:
-            rows.act(lambda: session.apply(EditComment(id, str(edit.value))))
+            rows.act(lambda: session.apply(EditComment(comment, str(edit.value))))
         rows.note("Ctrl+Enter starts a new line.")
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -210,13 +211,13 @@ class GraphView:
             edit = text_field(self._fields, f"{key} row", name, _TEXT, room)
             rows.record(f"{key} row")
             if edit:
-                rows.act(lambda key=key, edit=edit: session.apply(RenameEnd(key, str(edit.value))))
+                rows.act(lambda key=key, edit=edit: session.apply(RenameEnd(ElementId(key), str(edit.value))))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
                 rows.act(lambda name=name: go_to(rows.context, Port(side, name)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
-                rows.act(lambda key=key: session.apply(RemoveEnd(key)))
+                rows.act(lambda key=key: session.apply(RemoveEnd(ElementId(key))))
             if side == "inputs":
                 text, color = _comes_in(rows, name)
                 rows.field_note(text, color)

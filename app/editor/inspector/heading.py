@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.edits.coding import LANGUAGES
+from ...authoring.edits.element_id import ElementId
 from ...graph import Group, Item
 from ..fields.fields import Fields
 from ..fields.text_field import text_field
@@ -69,11 +70,11 @@ def explanation(rows: Rows, doc: str, open: bool) -> bool:
     return open
 
 
-def faults(rows: Rows, key: str) -> None:
+def faults(rows: Rows, element: ElementId) -> None:
     """What is wrong with an element: what the graph says, and what happened while rendering."""
     context = rows.context
-    path = "/".join((*context.session.place, key))
-    known = context.session.problems.get(key, ())
+    path = "/".join((*context.session.place, element))
+    known = context.session.problems.get(element, ())
     for problem in known:
         color = rows.palette.error if problem.severity == "error" else rows.palette.warning
         rows.note(problem.sentence, color, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)

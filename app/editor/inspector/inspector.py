@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ...authoring.edits.elements import end_port
 from ..fields.fields import Fields
 from ..theme.palette import DARK
 from .end_view import EndView
@@ -63,19 +62,17 @@ class Inspector:
             sentence = f"This group comes from {session.borrowed}: make it local to change it here."
             rows.note(sentence, rows.palette.warning)
         nodes = tuple(sorted(session.selection & graph.nodes.keys(), key=lambda id: (id != active, id)))
-        end = end_port(active)
-        section, _, id = active.partition(".")
         if len(nodes) > 1:
             self._node.several(rows, nodes)
         elif active in graph.nodes:
             self._node.draw(rows, active)
-        elif end:
+        elif end := active.port:
             self._end.draw(rows, end)
-        elif section == "frames":
-            self._graph.frame(rows, id)
-        elif section == "comments":
-            self._graph.comment(rows, id)
-        elif section == "dots":
+        elif active.kind == "frame":
+            self._graph.frame(rows, active)
+        elif active.kind == "comment":
+            self._graph.comment(rows, active)
+        elif active.kind == "dot":
             heading(rows, "Dot", rows.palette.dim)
             rows.note("Links pass it on their way; pixels do not notice.")
         else:

@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import MakeGroupLocal, RenameNode, ResetNode, ToggleMute
 from ...authoring.edits import paths
 from ...authoring.edits.coding import LANGUAGES
+from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import Code
 from ...graph import Group, Item, Port, Unknown, signature
 from ..fields.fields import Fields
@@ -46,7 +47,7 @@ class NodeView:
             rows, self._fields, id, id, lambda new: session.apply(RenameNode(id, new)), "What links and files call it"
         )
         self._explained = explanation(rows, doc_of(item), self._explained)
-        faults(rows, id)
+        faults(rows, ElementId(id))
         if isinstance(item, Group):
             self._group(rows, id, item)
         if code := session.code(id):
@@ -91,7 +92,7 @@ class NodeView:
         context = rows.context
         session = context.session
         if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
-            rows.act(lambda: session.view_node(id))
+            rows.act(lambda: session.view_element(ElementId(id)))
         imgui.same_line()
         self._mute(rows, (id,))
         imgui.same_line()

@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import Disconnect, ExposeValue, HideControl, RenameControl
+from ...authoring.edits.element_id import ElementId
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
@@ -255,9 +256,9 @@ def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
 
 def go_to(context: InspectorContext, port: Port) -> None:
     """Select the element of a port and bring it into view."""
-    key = str(port) if port.node in ("inputs", "outputs") else port.node
-    context.session.select(key)
-    context.canvas.fit((key,))
+    element = ElementId.of_port(port)
+    context.session.select(element)
+    context.canvas.fit((element,))
 
 
 def _file_of(graph: Graph, port: Port) -> str | None:

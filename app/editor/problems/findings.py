@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ...authoring.edits.element_id import ElementId
 from ...authoring.log import Level
 
 if TYPE_CHECKING:
@@ -51,8 +52,9 @@ def service_faults(context: ProblemsContext) -> Iterable[str]:
 
 def show_element(context: ProblemsContext, where: str) -> None:
     """Go to a node by its path, select it and bring it into view."""
-    *place, key = where.split("/")
+    *place, name = where.split("/")
+    element = ElementId(name)
     if tuple(place) != context.session.place:
         context.session.go(tuple(place))
-    context.session.select((key,))
-    context.canvas.fit((key,))
+    context.session.select(element)
+    context.canvas.fit((element,))

@@ -6,6 +6,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
+    from ...authoring.edits.element_id import ElementId
     from ...authoring.session import Session
 
 
@@ -29,7 +30,7 @@ class ElementView(Protocol):
         """The canvas position where new elements go."""
         ...
 
-    def fit(self, keys: Collection[str] = ()) -> None:
+    def fit(self, elements: Collection[ElementId] = ()) -> None:
         """Bring elements into view; none means all."""
         ...
 

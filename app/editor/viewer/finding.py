@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from ...authoring.edits.element_id import ElementId
 from ...graph import Port
 from ...renderer import NonfinitePixel, RenderRequest, find_first_nonfinite
 
@@ -79,6 +80,7 @@ def _show(context: ViewerContext, found: NonfinitePixel) -> None:
     )
     *place, name = found.path.split("/")
     context.log.attempt(lambda: context.session.go(tuple(place)))
-    key = name if name in context.session.graph.nodes else f"{found.port.node.split('/')[-1]}.{found.port.socket}"
-    context.log.attempt(lambda: context.session.select({key}))
-    context.canvas.fit({key})
+    port = Port(found.port.node.rpartition("/")[2], found.port.socket)
+    element = ElementId(name) if name in context.session.graph.nodes else ElementId.of_port(port)
+    context.log.attempt(lambda: context.session.select(element))
+    context.canvas.fit({element})

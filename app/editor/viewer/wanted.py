@@ -18,7 +18,7 @@ A, B = "A", "B"
 
 def layer(name: str) -> str:
     """Under which name the values of a graph input are wanted."""
-    return f"{INPUTS}.{name}"
+    return str(Port(INPUTS, name))
 
 
 def effective_scale(context: ViewerContext) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from halation.authoring.edits.clipboard import copy_elements, cut_part, paste_part, read_part
 from halation.authoring.edits.decor import add_comment, add_frame
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.layout import pin_places, positions
 from halation.authoring.edits.naming import name_copy
 from halation.authoring.edits.routes import add_dot, routes
@@ -51,7 +52,7 @@ def test_a_duplicate_is_fed_by_the_same():
     graph = pin_places(chain(3))
     after, _ = moved(graph, "n1", "n2", keep_links=True)
     assert links(after) == {**links(graph), "n3.image": "n0.out", "n4.image": "n3.out"}
-    elsewhere, _ = paste_part(Graph(), cut_part(graph, {"n1"}), {}, keep_links=True)
+    elsewhere, _ = paste_part(Graph(), cut_part(graph, {ElementId("n1")}), {}, keep_links=True)
     assert links(elsewhere) == {}, "what fed it is not there"
 
 
@@ -62,18 +63,18 @@ def test_nothing_is_exactly_covered():
     assert positions(after)[put[0]] == (before["n0"][0] + 24, before["n0"][1] + 24)
     again, more = moved(after, "n0")
     assert positions(again)[more[0]] == (before["n0"][0] + 48, before["n0"][1] + 48)
-    placed, put = paste_part(graph, cut_part(graph, {"n0", "n1"}), before, at=(-500.0, 70.0))
+    placed, put = paste_part(graph, cut_part(graph, {ElementId("n0"), ElementId("n1")}), before, at=(-500.0, 70.0))
     assert [positions(placed)[key] for key in put] == [(-500, 70), (-240, 70)]
 
 
 def test_frames_comments_and_dots_come_along():
     graph = pin_places(chain(2))
     graph, dot = add_dot(graph, port("n1.image"), (1.0, 2.0))
-    graph, frame = add_frame(graph, ["n0"], positions(graph), "Title")
+    graph, frame = add_frame(graph, [ElementId("n0")], positions(graph), "Title")
     graph, note = add_comment(graph, (5.0, 5.0), "Note")
-    after, put = moved(graph, "n0", "n1", f"frames.{frame}", f"comments.{note}")
+    after, put = moved(graph, "n0", "n1", frame, note)
     assert set(put) == {"n2", "n3", "frames.f2", "comments.c2", "dots.d2"}
-    assert routes(after) == {"n1.image": (dot,), "n3.image": ("d2",)}
+    assert routes(after) == {"n1.image": (dot.name,), "n3.image": ("d2",)}
     assert after.ui["frames"]["f2"]["title"] == "Title"
     assert after.ui["comments"]["c2"]["text"] == "Note"
 
@@ -100,14 +101,14 @@ def test_a_whole_graph_file_can_be_pasted():
 def test_relative_paths_lead_to_the_same_files(tmp_path):
     (tmp_path / "one").mkdir()
     graph = Graph(nodes={"p": Photo(path="a.exr")}, folder=str(tmp_path / "one"))
-    found = read_part(copy_elements(graph, ["p"]), str(tmp_path / "two"), TOYS, sandbox=UNRESTRICTED)
+    found = read_part(copy_elements(graph, [ElementId("p")]), str(tmp_path / "two"), TOYS, sandbox=UNRESTRICTED)
     assert found.nodes["p"] == Photo(path="../one/a.exr")
     assert not found.extra
 
 
 def test_unknown_keys_of_nodes_come_along():
     graph = replace(chain(1), extra={"nodes.n0": {"later": 1}, "": {"other": 2}})
-    after, _ = paste_part(graph, cut_part(graph, {"n0"}), {})
+    after, _ = paste_part(graph, cut_part(graph, {ElementId("n0")}), {})
     assert after.extra == {"nodes.n0": {"later": 1}, "nodes.n1": {"later": 1}, "": {"other": 2}}
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import entry
 from halation.authoring.edits.folding import body_at, check_depth, find_borrowed_group, put_body, reread_groups
 from halation.authoring.edits.grouping import make_group
@@ -46,7 +47,7 @@ def test_ends_are_named_and_typed_by_what_crosses_the_border():
         ("split.rest", "outputs.second"),
     ):
         graph = graph.connect(port(start), port(end))
-    after, id = make_group(graph, {"blend", "soften", "inputs.a"}, "look")
+    after, id = make_group(graph, {ElementId("blend"), ElementId("soften"), ElementId("inputs.a")}, "look")
     assert id == "look"
     made = body(after, "look")
     assert {name: (end.kind, end.width) for name, end in made.inputs.items()} == {
@@ -77,11 +78,11 @@ def test_ends_are_named_and_typed_by_what_crosses_the_border():
 
 def test_a_group_that_would_feed_itself_is_refused():
     with pytest.raises(GraphError, match=r"would feed itself: 'n1' lies between them"):
-        make_group(chain(3), {"n0", "n2"})
+        make_group(chain(3), {ElementId("n0"), ElementId("n2")})
     with pytest.raises(GraphError, match="no node is selected"):
-        make_group(chain(3), {"inputs.beauty"})
+        make_group(chain(3), {ElementId("inputs.beauty")})
     with pytest.raises(GraphError, match="cannot be called"):
-        make_group(chain(3), {"n0"}, "a.b")
+        make_group(chain(3), {ElementId("n0")}, "a.b")
 
 
 def test_controls_mutes_keys_and_viewers_go_along():
@@ -90,7 +91,7 @@ def test_controls_mutes_keys_and_viewers_go_along():
         extra={"nodes.n1": {"later": 1}, "nodes.n1.values": {"x": 2}, "nodes.n0": {"y": 3}},
     )
     graph = replace(graph, ui={**graph.ui, "viewers": {"1": "n2.out", "2": "n1.out", "3": "n0.out"}})
-    after, id = make_group(graph, {"n1", "n2"})
+    after, id = make_group(graph, {ElementId("n1"), ElementId("n2")})
     made = body(after, id)
     assert made.controls["glow"] == Control(port("n1.gain"), "Glow", "How much.")
     assert after.controls["glow"] == Control(Port(id, "glow"), "Glow", "How much.")
@@ -109,9 +110,9 @@ def test_dots_inside_go_along_and_those_on_the_border_stay():
     graph, outer = add_dot(graph, port("n1.image"), (1.0, 1.0))
     graph, inner = add_dot(graph, port("n2.image"), (2.0, 2.0))
     graph, leaving = add_dot(graph, port("outputs.image"), (3.0, 3.0))
-    after, id = make_group(graph, {"n1", "n2"})
-    assert routes(after) == {f"{id}.image": (outer,), "outputs.image": (leaving,)}
-    assert routes(body(after, id)) == {"n2.image": (inner,)}
+    after, id = make_group(graph, {ElementId("n1"), ElementId("n2")})
+    assert routes(after) == {f"{id}.image": (outer.name,), "outputs.image": (leaving.name,)}
+    assert routes(body(after, id)) == {"n2.image": (inner.name,)}
     again, _ = ungroup(after, id)
     assert routes(again).keys() == routes(graph).keys()
 
@@ -120,17 +121,17 @@ def test_frames_that_are_selected_go_along():
     graph = replace(
         pin_places(chain(2)), ui={**pin_places(chain(2)).ui, "frames": {"f1": {"x": 0, "y": 0, "title": "t"}}}
     )
-    after, id = make_group(graph, {"n0", "frames.f1"})
+    after, id = make_group(graph, {ElementId("n0"), ElementId("frames.f1")})
     assert "frames" not in after.ui
-    assert entry(body(after, id), "frames.f1")["title"] == "t"
-    assert entry(ungroup(after, id)[0], "frames.f1")["title"] == "t"
+    assert entry(body(after, id), ElementId("frames.f1"))["title"] == "t"
+    assert entry(ungroup(after, id)[0], ElementId("frames.f1"))["title"] == "t"
 
 
 def test_nodes_of_unknown_type_can_be_grouped():
     graph = Graph(inputs={"a": Input()}, outputs={"image": Output()}).add("lens", Unknown("lens")).add("n", Slope())
     graph = graph.connect(port("inputs.a"), port("lens.in")).connect(port("lens.depth"), port("n.depth"))
     graph = graph.connect(port("lens.out"), port("outputs.image"))
-    after, id = make_group(graph, {"lens"})
+    after, id = make_group(graph, {ElementId("lens")})
     made = body(after, id)
     assert {name: end.kind for name, end in made.outputs.items()} == {"depth": Kind.FIELD, "out": Kind.IMAGE}
     assert links(ungroup(after, id)[0]) == links(graph)
@@ -166,7 +167,7 @@ def test_values_links_to_controls_and_paths_are_kept_when_a_group_opens():
 
 
 def test_a_muted_group_is_not_opened():
-    graph, id = make_group(chain(2), {"n0"})
+    graph, id = make_group(chain(2), {ElementId("n0")})
     with pytest.raises(GraphError, match="unmute it first"):
         ungroup(graph.mute(id), id)
 
@@ -182,7 +183,7 @@ class TestFolding:
         assert after.nodes["g"] == Group(made.set(port("n.gain"), 3.0))
 
     def test_links_and_controls_outside_follow_renamed_ends_and_lose_those_that_are_gone(self):
-        graph, id = make_group(chain(3).add_control("glow", Control(port("n1.gain"))), {"n1"})
+        graph, id = make_group(chain(3).add_control("glow", Control(port("n1.gain"))), {ElementId("n1")})
         path = (id,)
         within = body_at(graph, path).rename_input("image", "plate").rename_control("glow", "shine")
         moves = {port("inputs.image"): port("inputs.plate"), port("controls.glow"): port("controls.shine")}
@@ -195,8 +196,8 @@ class TestFolding:
         assert not gone.controls
 
     def test_two_levels(self):
-        graph, outer = make_group(chain(4), {"n1", "n2"}, "outer")
-        made, _ = make_group(body(graph, outer), {"n1"}, "inner")
+        graph, outer = make_group(chain(4), {ElementId("n1"), ElementId("n2")}, "outer")
+        made, _ = make_group(body(graph, outer), {ElementId("n1")}, "inner")
         graph = put_body(graph, (outer,), made)
         path = ("outer", "inner")
         after = put_body(graph, path, body_at(graph, path).remove_output("out"))

@@ -8,6 +8,7 @@ import pytest
 from halation.authoring.edits.align import align_elements
 from halation.authoring.edits.arranging import arrange
 from halation.authoring.edits.decor import add_frame, find_frame_members
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import list_elements, with_places
 from halation.authoring.edits.layers import layer_numbers, place_boxes
 from halation.authoring.edits.layout import element_links, pin_places, positions, shift_off
@@ -79,8 +80,8 @@ def test_sizes_that_the_caller_measured_count():
 
 
 def test_arranging_a_part_leaves_the_rest():
-    graph = with_places(pin_places(chain(4)), {"n1": (900.0, 900.0), "n2": (700.0, 950.0)})
-    after = arrange(graph, {"n1", "n2"}, positions(graph))
+    graph = with_places(pin_places(chain(4)), {ElementId("n1"): (900.0, 900.0), ElementId("n2"): (700.0, 950.0)})
+    after = arrange(graph, {ElementId("n1"), ElementId("n2")}, positions(graph))
     spots = positions(after)
     assert spots["n1"] == (700.0, 900.0)
     assert spots["n2"] == (960.0, 900.0)
@@ -88,14 +89,14 @@ def test_arranging_a_part_leaves_the_rest():
 
 
 def test_arranging_takes_frames_and_dots_along():
-    graph = with_places(pin_places(chain(2)), {"n0": (0.0, 300.0), "n1": (40.0, 800.0)})
-    graph, frame = add_frame(graph, ["n0", "n1"], positions(graph))
+    graph = with_places(pin_places(chain(2)), {ElementId("n0"): (0.0, 300.0), ElementId("n1"): (40.0, 800.0)})
+    graph, frame = add_frame(graph, [ElementId("n0"), ElementId("n1")], positions(graph))
     graph, dot = add_dot(graph, Port("n1", "image"), (5.0, 5.0))
     members = find_frame_members(graph, frame, positions(graph))
     after = arrange(graph, None, positions(graph))
     spots = positions(after)
     assert find_frame_members(after, frame, spots) >= {"n0", "n1"} <= members
-    assert spots["n0"][0] < spots[f"dots.{dot}"][0] < spots["n1"][0]
+    assert spots["n0"][0] < spots[dot][0] < spots["n1"][0]
 
 
 def test_alignment():

@@ -6,6 +6,7 @@ from random import Random
 
 import pytest
 from halation.authoring.edits import clipboard, paths, wiring
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.grouping import make_group
 from halation.authoring.edits.layout import pin_places, positions
 from halation.authoring.edits.room import make_space
@@ -44,8 +45,8 @@ def made(seed: int) -> tuple[Graph, Random]:
     return graph, rng
 
 
-def some_nodes(graph: Graph, rng: Random) -> list[str]:
-    return rng.sample(sorted(graph.nodes), rng.randint(1, len(graph.nodes)))
+def some_nodes(graph: Graph, rng: Random) -> list[ElementId]:
+    return rng.sample(sorted(map(ElementId, graph.nodes)), rng.randint(1, len(graph.nodes)))
 
 
 def flat(graph: Graph) -> dict[str, float]:
@@ -151,7 +152,7 @@ def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
         by_hand = by_hand.connect(graph.links[target], wiring.first_target(by_hand, graph.links[target], ids[0], False))
         by_hand = by_hand.connect(wiring.first_source(by_hand, ids[-1], target), target)
         assert by_hand.links == after.links
-        assert keys(make_space(pin_places(after), ids, target)) == keys(by_hand)
+        assert keys(make_space(pin_places(after), [*map(ElementId, ids)], target)) == keys(by_hand)
         break
 
 
@@ -159,7 +160,7 @@ def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
 def test_saving_in_another_folder_and_back(seed):
     graph, _ = made(seed)
     graph = graph.add("photo", catalogue()["read_image"](path="plates/a.exr"))
-    graph, _ = make_group(graph, ["photo"])
+    graph, _ = make_group(graph, [ElementId("photo")])
     there = paths.rebase_paths(graph, "deep/er")
     photo = there.nodes["group"].graph
     assert photo.folder == "deep/er"

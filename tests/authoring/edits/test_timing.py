@@ -15,6 +15,7 @@ from halation.authoring.commands import (
 )
 from halation.authoring.edits import timing
 from halation.authoring.edits.clipboard import copy_elements
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.document import dumps, loads
 from halation.errors import GraphError
@@ -60,11 +61,11 @@ FRAMES = (1, 4, 9)
 
 def test_a_group_and_its_end(session):
     before = [gains(session.root, frame) for frame in FRAMES]
-    session.select(["a", "b"])
+    session.select([ElementId("a"), ElementId("b")])
     with pytest.raises(GraphError, match="other side of the group's border"):
         session.apply(MakeGroup())  # b.gain is outside now, as a control, and reads a.gain, which has none
     session.apply(ExposeValue(port("a.gain")))
-    session.select(["a", "b"])
+    session.select([ElementId("a"), ElementId("b")])
     id = session.apply(MakeGroup())
     graph = session.root
     assert graph.animation[Port(id, "gain")] == KEYS
@@ -81,13 +82,13 @@ def test_what_a_group_holds_is_animated_inside(session):
     session.apply(ResetValue(port("b.gain")))
     session.apply(ResetValue(port("c.gain")))
     session.apply(HideControl("strength"))
-    session.select(["a"])
+    session.select([ElementId("a")])
     id = session.apply(MakeGroup())
     assert session.root.nodes[id].graph.animation == {port("a.gain"): KEYS} and not session.root.animation
 
 
 def test_copies_have_keys_and_read_each_other(session):
-    session.select(["a", "b"])
+    session.select([ElementId("a"), ElementId("b")])
     text = copy_elements(session.graph, session.selection)
     keys = session.apply(PasteText(text))
     first, second = (key for key in keys if key in session.graph.nodes)
@@ -97,7 +98,7 @@ def test_copies_have_keys_and_read_each_other(session):
 
 def test_a_control_of_a_group_that_is_renamed_or_hidden(session):
     session.apply(ExposeValue(port("a.gain"), "power"))
-    session.select(["a", "b"])
+    session.select([ElementId("a"), ElementId("b")])
     id = session.apply(MakeGroup())
     session.enter(id)
     session.apply(RenameControl("power", "force"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from halation.authoring.edits import routes, wiring
 from halation.authoring.edits.decor import add_frame
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.elements import list_elements, with_places
 from halation.authoring.edits.layout import pin_places, positions
 from halation.authoring.edits.room import MARGIN, make_space
@@ -73,17 +74,17 @@ def test_a_refusal_names_types_and_loops():
 
 
 def test_dots_stay_on_their_side_of_a_node_that_is_put_in_and_come_together_again():
-    graph = with_places(pin_places(chain(2)), {"n0": (0.0, 0.0), "n1": (900.0, 0.0)})
+    graph = with_places(pin_places(chain(2)), {ElementId("n0"): (0.0, 0.0), ElementId("n1"): (900.0, 0.0)})
     graph, right = routes.add_dot(graph, port("n1.image"), (700.0, 0.0))
     graph, left = routes.add_dot(graph, port("n1.image"), (300.0, 0.0))
-    assert routes.dots_on_link(graph, port("n1.image")) == (left, right)
-    fresh = with_places(graph.add("soften", Soften()), {"soften": (500.0, 0.0)})
+    assert routes.dots_on_link(graph, port("n1.image")) == (left.name, right.name)
+    fresh = with_places(graph.add("soften", Soften()), {ElementId("soften"): (500.0, 0.0)})
     graph_in = wiring.insert_node(fresh, "soften", port("n1.image"))
     assert links(graph_in)["n1.image"] == "soften.out"
     assert links(graph_in)["soften.image"] == "n0.out"
-    assert routes.routes(graph_in) == {"soften.image": (left,), "n1.image": (right,)}
+    assert routes.routes(graph_in) == {"soften.image": (left.name,), "n1.image": (right.name,)}
     assert wiring.remove_node(graph_in, "soften") == graph
-    assert routes.routes(wiring.extract_nodes(graph_in, ["soften"])) == {"n1.image": (left, right)}
+    assert routes.routes(wiring.extract_nodes(graph_in, ["soften"])) == {"n1.image": (left.name, right.name)}
 
 
 def test_a_node_is_not_put_into_its_own_link_or_into_none():
@@ -110,21 +111,23 @@ def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
     graph = with_places(
         pin_places(chain(3)),
         {
-            "inputs.beauty": (0.0, 0.0),
-            "n0": (200.0, 0.0),
-            "n1": (450.0, 0.0),
-            "n2": (700.0, 0.0),
-            "outputs.image": (950.0, 0.0),
+            ElementId("inputs.beauty"): (0.0, 0.0),
+            ElementId("n0"): (200.0, 0.0),
+            ElementId("n1"): (450.0, 0.0),
+            ElementId("n2"): (700.0, 0.0),
+            ElementId("outputs.image"): (950.0, 0.0),
         },
     )
     graph, dot = routes.add_dot(graph, port("n2.image"), (660.0, 0.0))
-    graph, frame = add_frame(graph, ["n2", "outputs.image"], positions(graph))
+    graph, frame = add_frame(graph, [ElementId("n2"), ElementId("outputs.image")], positions(graph))
     sizes = {
         key: (180.0, 100.0) for key in list_elements(graph) if "." not in key or key.startswith(("inputs", "outputs"))
     }
-    fresh = with_places(graph.add("soften", Soften()), {"soften": (400.0, 20.0)})
+    fresh = with_places(graph.add("soften", Soften()), {ElementId("soften"): (400.0, 20.0)})
     sizes["soften"] = (180.0, 100.0)
-    after = make_space(wiring.insert_node(fresh, "soften", port("n1.image")), ["soften"], port("n1.image"), sizes)
+    after = make_space(
+        wiring.insert_node(fresh, "soften", port("n1.image")), [ElementId("soften")], port("n1.image"), sizes
+    )
     by = 400.0 + 180.0 + MARGIN - 450.0
     moved = {
         key: spot[0] - positions(graph)[key][0] for key, spot in positions(after).items() if key in list_elements(graph)
@@ -135,15 +138,15 @@ def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
         "n1": by,
         "n2": by,
         "outputs.image": by,
-        f"dots.{dot}": by,
-        f"frames.{frame}": by,
+        dot: by,
+        frame: by,
     }
     assert positions(after)["soften"] == (400.0, 20.0)
-    below = with_places(fresh, {"soften": (400.0, 300.0)})
+    below = with_places(fresh, {ElementId("soften"): (400.0, 300.0)})
     left = wiring.insert_node(below, "soften", port("n1.image"))
-    assert make_space(left, ["soften"], port("n1.image"), sizes) is left, "nothing is in the way"
-    early = wiring.insert_node(with_places(fresh, {"soften": (210.0, 20.0)}), "soften", port("n1.image"))
-    after = make_space(early, ["soften"], port("n1.image"), sizes)
+    assert make_space(left, [ElementId("soften")], port("n1.image"), sizes) is left, "nothing is in the way"
+    early = wiring.insert_node(with_places(fresh, {ElementId("soften"): (210.0, 20.0)}), "soften", port("n1.image"))
+    after = make_space(early, [ElementId("soften")], port("n1.image"), sizes)
     assert positions(after)["soften"] == (200.0 + 180.0 + MARGIN, 20.0)
 
 
@@ -185,14 +188,14 @@ def test_a_moved_link_takes_its_dots_along():
     graph, dot = routes.add_dot(graph, port("n1.image"), (1.0, 2.0))
     after = wiring.move_link(graph, port("n1.image"), port("blend.first"))
     assert "n1.image" not in links(after)
-    assert routes.routes(after) == {"blend.first": (dot,)}
+    assert routes.routes(after) == {"blend.first": (dot.name,)}
 
 
 def test_links_from_one_source_share_a_dot():
     graph = pin_places(chain(2).add("blend", Blend()).connect(port("n0.out"), port("blend.first")))
     graph, dot = routes.add_dot(graph, port("n1.image"), (1.0, 2.0))
     graph = routes.join_dot(graph, dot, port("blend.first"))
-    assert routes.routes(graph) == {"n1.image": (dot,), "blend.first": (dot,)}
+    assert routes.routes(graph) == {"n1.image": (dot.name,), "blend.first": (dot.name,)}
     assert routes.routes(routes.remove_dots(graph, [dot])) == {}
     assert "dots" in routes.tidy_routes(graph.disconnect(port("n1.image"))).ui, "the other link still passes it"
     gone = routes.tidy_routes(graph.disconnect(port("n1.image")).disconnect(port("blend.first")))

@@ -20,6 +20,7 @@ from halation.authoring.commands import (
     SetValue,
     ToggleKey,
 )
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.errors import GraphError
 from halation.graph import Expression, Keys, Port
@@ -68,7 +69,7 @@ def test_a_range_that_cannot_be_measured_is_that_of_the_keys(session):
 def test_settings_stay_beside_each_other_and_are_the_documents_in_groups(session):
     session.apply(SetFrameRate(25))
     session.apply(SetCanvasSize((8, 4)))
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     group = session.apply(MakeGroup())
     session.enter(group)
     session.apply(SetPreroll(6))
@@ -143,7 +144,7 @@ def test_jumping_goes_by_the_selected_nodes_else_by_all(session):
     assert (session.next_key(), session.previous_key()) == (3, None)
     session.seek(10)
     assert (session.next_key(), session.previous_key(), session.previous_key(GAIN)) == (None, 5, 3)
-    session.select(["n0"])
+    session.select([ElementId("n0")])
     assert session.key_frames() == (3, 5, 10), "a node without keys: all of them"
 
 
@@ -160,7 +161,7 @@ def test_resetting_removes_keys(session):
 
 
 def test_inside_a_group_an_animated_control_is_what_it_is_outside(session):
-    session.select(["gain"])
+    session.select([ElementId("gain")])
     group = session.apply(MakeGroup())
     session.enter(group)
     name = session.apply(ExposeValue(GAIN))

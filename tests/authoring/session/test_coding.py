@@ -26,6 +26,7 @@ from halation.authoring.commands import (
 )
 from halation.authoring.edits import coding
 from halation.authoring.edits.coding import BrokenCodeNode
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.custom_nodes import CustomNode
 from halation.document import dumps, loads
@@ -196,7 +197,7 @@ def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: P
     again = Session(sandbox=UNRESTRICTED)
     again.open(tmp_path / "elsewhere/copy.json")
     assert again.root == filed.root
-    filed.select("gain")
+    filed.select(ElementId("gain"))
     other = Session(sandbox=UNRESTRICTED)
     other.save_as(tmp_path / "third.json")
     other.apply(PasteText(filed.copy()))
@@ -216,10 +217,10 @@ def test_shaders_of_another_format_are_dropped_too(tmp_path: Path) -> None:
 
 def acts(session: Session) -> None:
     """What editors do with nodes."""
-    session.select("code")
+    session.select(ElementId("code"))
     session.apply(DuplicateSelection())
     session.apply(PasteText(session.copy()))
-    session.select("code")
+    session.select(ElementId("code"))
     session.apply(ToggleMute())
     session.apply(ToggleMute())
     session.apply(MakeGroup())

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from halation import presets
 from halation.authoring.commands import AddGroupFile, AddMatte, AddNode, DropFiles, MakeGroup, ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.document import dumps, load
 from halation.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
@@ -69,7 +70,7 @@ def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
     graph = graph.add("g", Group(load(tmp_path / "one/lib/inner.json", TOYS, sandbox=UNRESTRICTED), "lib/inner.json"))
     graph = graph.add("p", Photo(path="plates/c.exr")).add("q", Photo(path="/far/d.exr")).add("r", Photo())
     session.open(written(tmp_path / "one/doc.json", graph))
-    session.select("p")
+    session.select(ElementId("p"))
     session.apply(MakeGroup("local"))
     (tmp_path / "two").mkdir()
     session.save_as(tmp_path / "two/doc.json")
@@ -94,7 +95,7 @@ def test_a_document_is_not_saved_into_itself(session, tmp_path):
     with pytest.raises(GraphError, match="cannot hold itself"):
         session.apply(AddGroupFile(tmp_path / "doc.json"))
     with pytest.raises(UsageError, match="of the document itself"):
-        session.select(session.apply(AddNode("gain")))
+        session.select(ElementId(session.apply(AddNode("gain"))))
         session.save_group(session.apply(MakeGroup()), tmp_path / "doc.json")
     outer = Session(TOYS, sandbox=UNRESTRICTED)
     outer.open(path)
@@ -131,8 +132,8 @@ def test_pasted_text_is_an_unsaved_document(session):
 def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
     path = written(tmp_path / "a.json", chain(3))
     session.open(path)
-    session.select(["n1", "n2"])
-    session.view_node("n1")
+    session.select([ElementId("n1"), ElementId("n2")])
+    session.view_element(ElementId("n1"))
     session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.revert()
     assert session.value(Port("n0", "gain")) == 1.5 and not session.dirty
@@ -149,7 +150,7 @@ def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
 
 def test_reloading_leaves_a_group_that_is_gone(session, tmp_path):
     session.apply(ReplaceGraph("Start", chain(2)))
-    session.select("n0")
+    session.select(ElementId("n0"))
     session.enter(session.apply(MakeGroup()))
     session.save_as(tmp_path / "a.json")
     written(tmp_path / "a.json", chain(1))
@@ -189,7 +190,7 @@ def test_dropped_files(tmp_path):
     ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0)))
     assert ids == ("shot_1", "b", "my_look")
     assert [session.graph.nodes[id].path for id in ids] == ["plates/shot 1.exr", "/far/b.png", "my look.json"]
-    assert session.selection == set(ids) and session.position("shot_1") == (10.0, 20.0)
+    assert session.selection == set(ids) and session.position(ElementId("shot_1")) == (10.0, 20.0)
     assert session.history.steps == ("Drop 3 files",)
     with pytest.raises(HalationError):
         session.apply(DropFiles([tmp_path / "none.json"]))

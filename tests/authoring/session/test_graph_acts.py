@@ -42,6 +42,7 @@ from halation.authoring.commands import (
     ToggleCollapse,
     ToggleMute,
 )
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from halation.authoring.session import Session
 from halation.document import load
@@ -68,22 +69,22 @@ def links(session: Session) -> dict[str, str]:
 
 
 def test_selecting(session):
-    session.select("n0")
-    session.select(["n1", "nobody"], "add")
+    session.select(ElementId("n0"))
+    session.select([ElementId("n1"), ElementId("nobody")], "add")
     assert (session.selection, session.active) == ({"n0", "n1"}, "n1")
-    session.select(["n0", "n2"], "toggle")
+    session.select([ElementId("n0"), ElementId("n2")], "toggle")
     assert (session.selection, session.active) == ({"n1", "n2"}, "n2")
-    session.select("n2", "remove")
+    session.select(ElementId("n2"), "remove")
     assert (session.selection, session.active) == ({"n1"}, "n1")
     session.select(find_upstream(session.graph, session.selection), "extend")
     assert (session.selection, session.active) == ({"inputs.beauty", "n0", "n1"}, "n1")
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.select(find_downstream(session.graph, session.selection), "extend")
     assert session.selection == {"n1", "n2", "outputs.image"}
     session.select(invert_selection(session.elements, session.selection))
     assert session.selection == {"inputs.beauty", "n0"}
     session.apply(AddNode("photo"))
-    session.select("n2")
+    session.select(ElementId("n2"))
     session.select(find_linked(session.graph, session.selection), "extend")
     assert session.selection == {"inputs.beauty", "n0", "n1", "n2", "outputs.image"}
     session.select(())
@@ -94,7 +95,7 @@ def test_adding_with_a_link(session):
     assert session.apply(AddNode("blend", (5.0, 6.0), port("n0.out"))) == "blend"
     assert session.apply(AddNode("photo", (0.0, 0.0), port("blend.second"), output=False)) == "photo"
     assert {"blend.first": "n0.out", "blend.second": "photo.out"}.items() <= links(session).items()
-    assert session.position("blend") == (5.0, 6.0) and session.active == "photo"
+    assert session.position(ElementId("blend")) == (5.0, 6.0) and session.active == "photo"
     before = session.root
     with pytest.raises(GraphError, match="fits no input"):
         session.apply(AddNode("photo", link=port("n0.out")))
@@ -103,7 +104,7 @@ def test_adding_with_a_link(session):
 
 def test_inserting_new_and_existing_nodes(session):
     assert session.apply(InsertNode("soften", port("n1.image"), (7.0, 8.0))) == "soften"
-    assert links(session)["n1.image"] == "soften.out" and session.position("soften") == (7.0, 8.0)
+    assert links(session)["n1.image"] == "soften.out" and session.position(ElementId("soften")) == (7.0, 8.0)
     session.apply(ExtractSelection())
     assert links(session)["n1.image"] == "n0.out"
     session.apply(InsertNode("soften", port("outputs.image")))
@@ -113,7 +114,15 @@ def test_inserting_new_and_existing_nodes(session):
 def test_deleting_all_kinds_of_things(session):
     frame, note = session.apply(AddFrame("f", (0.0, 0.0))), session.apply(AddComment((0.0, 0.0), "c"))
     dot = session.apply(AddDot(port("n1.image"), (1.0, 1.0)))
-    session.select(["n0", "inputs.beauty", f"frames.{frame}", f"comments.{note}", f"dots.{dot}"])
+    session.select(
+        [
+            ElementId("n0"),
+            ElementId("inputs.beauty"),
+            frame,
+            note,
+            dot,
+        ]
+    )
     session.apply(DeleteSelection())
     assert set(session.elements) == {"n1", "n2", "outputs.image"}
     assert session.selection == frozenset()
@@ -123,7 +132,7 @@ def test_deleting_all_kinds_of_things(session):
 
 
 def test_delete_heals_unless_told_otherwise(session):
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.apply(DeleteSelection())
     assert links(session)["n2.image"] == "n0.out"
     session.undo()
@@ -132,9 +141,9 @@ def test_delete_heals_unless_told_otherwise(session):
 
 
 def test_mute_and_collapse_toggle_all_of_the_selection(session):
-    session.select("n0")
+    session.select(ElementId("n0"))
     session.apply(ToggleMute())
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     session.apply(ToggleMute())
     assert session.graph.muted == {"n0", "n1"}
     session.apply(ToggleMute())
@@ -178,7 +187,7 @@ def test_controls(session):
 
 def test_values_of_a_group_and_of_what_is_inside(session):
     session.apply(ExposeValue(port("n1.gain"), "glow"))
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     id = session.apply(MakeGroup("look"))
     glow = Port(id, "glow")
     session.apply(SetValue(glow, 4.0))
@@ -187,13 +196,13 @@ def test_values_of_a_group_and_of_what_is_inside(session):
     assert session.value(port("n1.gain")) == 4.0, "the value that the group sets"
     session.apply(SetValue(port("n0.gain"), 0.5))
     session.apply(RenameControl("glow", "shine"))
-    session.apply(RenameEnd("inputs.image", "plate"))
+    session.apply(RenameEnd(ElementId("inputs.image"), "plate"))
     session.leave()
     assert session.value(Port(id, "shine")) == 4.0
     assert session.graph.controls["glow"].target == Port(id, "shine")
     assert links(session)["look.plate"] == "inputs.beauty"
     session.enter(id)
-    session.apply(RemoveEnd("inputs.plate"))
+    session.apply(RemoveEnd(ElementId("inputs.plate")))
     session.leave()
     assert "look.plate" not in links(session)
     session.undo()
@@ -203,7 +212,7 @@ def test_values_of_a_group_and_of_what_is_inside(session):
 
 
 def test_groups_from_files(session, tmp_path):
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     id = session.apply(MakeGroup("look"))
     session.save_as(tmp_path / "doc.json")
     session.save_group(id, tmp_path / "look.json")
@@ -227,9 +236,9 @@ def test_groups_from_files(session, tmp_path):
 
 
 def test_entering_and_leaving(session):
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup("a")))
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup("b")))
     assert session.place == ("a", "b") and session.crumbs == (("untitled", ()), ("a", ("a",)), ("b", ("a", "b")))
     session.leave(2)
@@ -245,7 +254,10 @@ def test_entering_and_leaving(session):
 
 def test_ends(session):
     assert session.apply(AddInput("depth", "Field", at=(1.0, 2.0))) == "inputs.depth"
-    assert session.graph.inputs["depth"] == Input(Kind.FIELD) and session.position("inputs.depth") == (1.0, 2.0)
+    assert session.graph.inputs["depth"] == Input(Kind.FIELD) and session.position(ElementId("inputs.depth")) == (
+        1.0,
+        2.0,
+    )
     assert session.apply(AddOutput("flow", Kind.VECTOR, 2)) == "outputs.flow"
     session.apply(SetInput("depth", file="a.exr", layer="Z", doc="Far."))
     session.apply(SetInput("depth", default=1.0))
@@ -259,15 +271,15 @@ def test_ends(session):
     assert (session.graph.outputs["image"].layer, session.graph.outputs["image"].view) == ("rgba", "none")
     session.apply(SetCanvasSize((64, 48)))
     assert session.root.settings.size == (64, 48)
-    session.apply(RemoveEnd("inputs.beauty"))
+    session.apply(RemoveEnd(ElementId("inputs.beauty")))
     assert "n0.image" not in links(session)
     with pytest.raises(GraphError, match=r"no 'inputs\.beauty'"):
-        session.apply(RenameEnd("inputs.beauty", "x"))
+        session.apply(RenameEnd(ElementId("inputs.beauty"), "x"))
 
 
 def test_bound_files_follow_their_input(session):
     session.bind("beauty", "shot.exr")
-    session.apply(RenameEnd("inputs.beauty", "plate"))
+    session.apply(RenameEnd(ElementId("inputs.beauty"), "plate"))
     assert session.bindings == {"plate": "shot.exr"}
     session.undo()
     assert session.bindings == {"beauty": "shot.exr"}
@@ -278,45 +290,45 @@ def test_bound_files_follow_their_input(session):
 
 
 def test_frames_hold_what_lies_inside(session):
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     frame = session.apply(AddFrame("Grade"))
-    assert session.frame_members(frame) == {"n0", "n1"} and session.active == f"frames.{frame}"
-    session.select(f"frames.{frame}")
+    assert session.frame_members(frame) == {"n0", "n1"} and session.active == frame
+    session.select(frame)
     outer = session.apply(AddFrame())
-    assert session.frame_members(outer) == {"n0", "n1", f"frames.{frame}"}
-    session.apply(MoveElements([*session.frame_members(outer), f"frames.{outer}"], 1000.0, 0.0))
+    assert session.frame_members(outer) == {"n0", "n1", frame}
+    session.apply(MoveElements([*session.frame_members(outer), outer], 1000.0, 0.0))
     assert session.frame_members(frame) == {"n0", "n1"}
     session.apply(ResizeFrame(frame, 0.0, 0.0, 1.0, 1.0))
-    assert session.graph.ui["frames"][frame]["w"] == 40.0, "never too small to be grabbed"
+    assert session.graph.ui["frames"][frame.name]["w"] == 40.0, "never too small to be grabbed"
     session.apply(EditFrame(frame, color=(0.5, 0.25, 0.125)))
-    assert session.graph.ui["frames"][frame]["title"] == "Grade"
-    assert session.graph.ui["frames"][frame]["color"] == (0.5, 0.25, 0.125)
+    assert session.graph.ui["frames"][frame.name]["title"] == "Grade"
+    assert session.graph.ui["frames"][frame.name]["color"] == (0.5, 0.25, 0.125)
     with pytest.raises(GraphError, match="there is no frame 'x'"):
-        session.apply(EditFrame("x"))
+        session.apply(EditFrame(ElementId("frames.x")))
     with pytest.raises(GraphError, match="there is no comment 'x'"):
-        session.apply(ResizeComment("x", 0.0, 0.0, 9.0))
+        session.apply(ResizeComment(ElementId("comments.x"), 0.0, 0.0, 9.0))
     with pytest.raises(GraphError, match="there is no dot 'x'"):
-        session.apply(RemoveDot("x"))
+        session.apply(RemoveDot(ElementId("dots.x")))
 
 
 def test_cut_copy_and_paste(session):
-    session.select(["n1"])
+    session.select([ElementId("n1")])
     text = session.apply(CutSelection())
     assert links(session) == {"n0.image": "inputs.beauty", "n2.image": "n0.out", "outputs.image": "n2.out"}
     assert session.apply(PasteText(text)) == ("n1",)
     assert session.selection == {"n1"} and "n1.image" not in links(session)
     assert session.apply(DuplicateSelection()) == ("n3",)
     other = Session(TOYS, sandbox=UNRESTRICTED)
-    assert other.apply(PasteText(text, (50.0, 60.0))) == ("n1",) and other.position("n1") == (50.0, 60.0)
+    assert other.apply(PasteText(text, (50.0, 60.0))) == ("n1",) and other.position(ElementId("n1")) == (50.0, 60.0)
     assert isinstance(other.root, Graph)
 
 
 def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(session):
     before, steps = session.root, session.history.position
-    session.select(["n1"])
+    session.select([ElementId("n1")])
     session.apply(ExtractSelection("drag"))
     assert links(session)["n2.image"] == "n0.out"
-    session.apply(MoveElements(["n1"], 0.0, 300.0, "drag"))
+    session.apply(MoveElements([ElementId("n1")], 0.0, 300.0, "drag"))
     session.abandon("drag")
     assert session.root == before and session.history.steps == session.history.steps[:steps]
     assert not session.history.can_redo

@@ -16,6 +16,7 @@ from halation.authoring.commands import (
     SetValue,
     ToggleMute,
 )
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.authoring.state import history
 from halation.errors import GraphError
@@ -41,10 +42,10 @@ def test_a_new_document_has_one_output_and_no_past():
 
 
 def test_undo_and_redo_bring_selection_and_place_back(session):
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     group = session.apply(MakeGroup("look"))
     session.enter(group)
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.apply(ToggleMute())
     session.leave()
     assert session.active == group
@@ -59,27 +60,27 @@ def test_undo_and_redo_bring_selection_and_place_back(session):
 
 def test_a_drag_is_one_step(session):
     for _ in range(5):
-        session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
+        session.apply(MoveElements([ElementId("n0")], 3.0, 1.0, merge="drag"))
     assert session.history.steps == ("Start", "Move n0")
-    assert session.position("n0") == (275.0, 5.0)
+    assert session.position(ElementId("n0")) == (275.0, 5.0)
     session.seal()
-    session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
+    session.apply(MoveElements([ElementId("n0")], 3.0, 1.0, merge="drag"))
     assert len(session.history.steps) == 3
     session.undo()
     session.undo()
-    assert session.position("n0") == (260.0, 0.0)
+    assert session.position(ElementId("n0")) == (260.0, 0.0)
 
 
 def test_a_drag_that_comes_back_is_no_step(session):
-    session.apply(MoveElements(["n0"], 3.0, 1.0, merge="drag"))
-    session.apply(MoveElements(["n0"], -3.0, -1.0, merge="drag"))
+    session.apply(MoveElements([ElementId("n0")], 3.0, 1.0, merge="drag"))
+    session.apply(MoveElements([ElementId("n0")], -3.0, -1.0, merge="drag"))
     session.seal()
     assert session.history.steps == ("Start",)
 
 
 def test_what_changes_nothing_is_no_step(session):
     session.apply(SetValue(Port("n0", "gain"), 1.5))
-    session.apply(PlaceElement("n0", *session.position("n0")))
+    session.apply(PlaceElement(ElementId("n0"), *session.position(ElementId("n0"))))
     assert session.history.steps == ("Start",)
 
 
@@ -123,17 +124,17 @@ def test_dirty_is_about_the_document_not_about_steps(session, tmp_path):
 def test_the_revision_grows_with_every_change(session):
     seen = [session.revision]
     acts = (
-        lambda: session.select("n0"),
+        lambda: session.select(ElementId("n0")),
         lambda: session.apply(ToggleMute()),
         session.undo,
         session.redo,
-        lambda: session.view_node("n1"),
+        lambda: session.view_element(ElementId("n1")),
     )
     for act in acts:
         act()
         seen.append(session.revision)
     assert seen == sorted(set(seen))
-    session.select("n0")
+    session.select(ElementId("n0"))
     assert session.revision == seen[-1], "nothing changed"
 
 
@@ -144,9 +145,9 @@ def test_problems_by_element(session):
     session.apply(Disconnect(Port("outputs", "image")))
     assert set(session.problems) == {"n1", "outputs.image"}
     known = session.problems
-    session.apply(MoveElements(["n0"], 5.0, 5.0))
+    session.apply(MoveElements([ElementId("n0")], 5.0, 5.0))
     assert session.problems is known, "the layout changes no problem"
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup()))
     assert set(session.problems) == {"n1"}, "the output of the group is linked inside"
     assert {problem.node for problem in session.all_problems} == {"group/n1", "outputs"}

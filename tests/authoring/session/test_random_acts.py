@@ -74,7 +74,8 @@ from halation.authoring.commands import (
     Ungroup,
 )
 from halation.authoring.edits.align import Side
-from halation.authoring.edits.elements import list_elements, place
+from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.elements import list_decor, list_elements, place
 from halation.authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from halation.authoring.session import Session
 from halation.document import dumps, loads
@@ -96,11 +97,11 @@ def any_group(session: Session, rng: Random) -> str:
     return rng.choice([*groups, any_node(session, rng)])
 
 
-def any_key(session: Session, rng: Random) -> str:
-    return rng.choice([*session.elements, "nobody"])
+def any_key(session: Session, rng: Random) -> ElementId:
+    return rng.choice([*session.elements, ElementId("nobody")])
 
 
-def some_keys(session: Session, rng: Random) -> list[str]:
+def some_keys(session: Session, rng: Random) -> list[ElementId]:
     known = [*session.elements]
     return rng.sample(known, min(len(known), rng.choice([0, 1, 2, 3, 9])))
 
@@ -144,17 +145,16 @@ def some_animated(session: Session, rng: Random) -> Port:
     return rng.choice([*session.graph.animation, *session.graph.animation, any_value(session, rng)])
 
 
-def any_frame(session: Session, rng: Random) -> str:
-    return rng.choice([key.removeprefix("frames.") for key in session.elements if key.startswith("frames.")] or ["f1"])
+def any_frame(session: Session, rng: Random) -> ElementId:
+    return rng.choice([*list_decor(session.graph, "frame")] or [ElementId("frames.f1")])
 
 
-def any_comment(session: Session, rng: Random) -> str:
-    found = [key.removeprefix("comments.") for key in session.elements if key.startswith("comments.")]
-    return rng.choice(found or ["c1"])
+def any_comment(session: Session, rng: Random) -> ElementId:
+    return rng.choice([*list_decor(session.graph, "comment")] or [ElementId("comments.c1")])
 
 
-def any_dot(session: Session, rng: Random) -> str:
-    return rng.choice([key.removeprefix("dots.") for key in session.elements if key.startswith("dots.")] or ["d1"])
+def any_dot(session: Session, rng: Random) -> ElementId:
+    return rng.choice([*list_decor(session.graph, "dot")] or [ElementId("dots.d1")])
 
 
 ACTS: dict[str, Act] = {
@@ -232,7 +232,7 @@ ACTS: dict[str, Act] = {
     "set_size": lambda s, r: s.apply(SetCanvasSize(r.choice([None, (64, 48), (0, 3)]))),
     "view": lambda s, r: s.view(any_source(s, r), r.choice(["A", "B"])),
     "view_nothing": lambda s, r: s.view_nothing(),
-    "view_node": lambda s, r: s.view_node(any_key(s, r)),
+    "view_element": lambda s, r: s.view_element(any_key(s, r)),
     "assign_viewer": lambda s, r: s.apply(AssignViewer(r.randint(0, 9), r.choice([None, any_source(s, r)]))),
     "recall_viewer": lambda s, r: s.recall_viewer(r.randint(1, 9)),
     "seek": lambda s, r: s.seek(r.randint(-3, 40)),
@@ -315,10 +315,10 @@ def check(session: Session) -> None:
     assert sorted(map(str, found)) == sorted(map(str, problems(session.graph, session.types)))
     assert session.problems.keys() <= known | {""}
     assert set(session.all_problems) == set(problems(session.root, session.types))
-    dots = {key for key in known if key.startswith("dots.")}
+    dots = {key.name for key in known if key.kind == "dot"}
     passed = session.graph.ui.get("routes", {})
     assert {str(end) for end in session.graph.links} >= passed.keys()
-    assert dots == {f"dots.{dot}" for route in passed.values() for dot in route}
+    assert dots == {dot for route in passed.values() for dot in route}
     viewed = session.viewed()
     assert viewed is None or viewed.node in {*session.graph.nodes, "inputs", "outputs"}
     for port in (*session.graph.links, *session.graph.links.values()):

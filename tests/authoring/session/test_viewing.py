@@ -13,6 +13,7 @@ from halation.authoring.commands import (
     RenameNode,
     ReplaceGraph,
 )
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.compiler import Request, compile_graph
 from halation.errors import GraphError
@@ -47,7 +48,7 @@ def test_without_a_choice_a_shows_the_output_and_b_nothing(session):
 def test_a_port_that_vanishes_comes_back(session):
     session.view(port("n1.out"))
     session.view(port("n0.out"), "B")
-    session.select(["n0", "n1"])
+    session.select([ElementId("n0"), ElementId("n1")])
     session.apply(DeleteSelection())
     assert (session.viewed(), session.viewed("B")) == (port("outputs.image"), None)
     session.undo()
@@ -60,7 +61,7 @@ def test_the_view_follows_a_new_name_and_back(session):
     session.view(port("n1.out"))
     session.view(port("inputs.beauty"), "B")
     session.apply(RenameNode("n1", "middle"))
-    session.apply(RenameEnd("inputs.beauty", "plate"))
+    session.apply(RenameEnd(ElementId("inputs.beauty"), "plate"))
     assert (session.viewed(), session.viewed("B")) == (port("middle.out"), port("inputs.plate"))
     session.undo()
     session.undo()
@@ -71,10 +72,10 @@ def test_viewing_a_node_again_shows_its_next_output(session):
     id = session.apply(AddNode("split", link=port("n2.out")))
     seen = []
     for _ in range(3):
-        session.view_node(id)
+        session.view_element(ElementId(id))
         seen.append(str(session.viewed()))
     assert seen == ["split.grey", "split.rest", "split.grey"]
-    session.view_node("outputs.image")
+    session.view_element(ElementId("outputs.image"))
     assert session.viewed() == port("outputs.image")
     with pytest.raises(GraphError, match=r"no 'n9\.out' to show"):
         session.view(port("n9.out"))
@@ -82,10 +83,10 @@ def test_viewing_a_node_again_shows_its_next_output(session):
 
 def test_every_group_has_a_view_of_its_own(session):
     session.view(port("n0.out"))
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup("look")))
     assert session.viewed() == port("outputs.out")
-    session.view_node("n1")
+    session.view_element(ElementId("n1"))
     session.leave()
     assert session.viewed() == port("n0.out")
     session.enter("look")
@@ -109,9 +110,9 @@ def test_what_the_compiler_is_asked_for():
         return plan.surfaces[plan.outputs["x"]].key
 
     wanted = {name: key(port(name)) for name in ("inputs.image", "a.out", "b.out", "c.out")}
-    session.select(["a", "b"])
+    session.select([ElementId("a"), ElementId("b")])
     session.enter(session.apply(MakeGroup("outer")))
-    session.select(["b"])
+    session.select([ElementId("b")])
     session.enter(session.apply(MakeGroup("inner")))
     for name, same in (("inputs.image", "a.out"), ("b.out", "b.out"), ("outputs.out", "b.out")):
         session.view(port(name))
@@ -123,7 +124,7 @@ def test_what_the_compiler_is_asked_for():
 
 
 def test_viewer_keys(session):
-    session.select("n1")
+    session.select(ElementId("n1"))
     session.apply(AssignViewer(1))
     session.apply(AssignViewer(2, port("inputs.beauty")))
     assert session.viewers == {1: port("n1.out"), 2: port("inputs.beauty")}
@@ -132,7 +133,7 @@ def test_viewer_keys(session):
     assert session.viewed("B") == port("n1.out") and session.viewed() == port("inputs.beauty")
     session.apply(RenameNode("n1", "middle"))
     assert session.viewers[1] == port("middle.out")
-    session.select("middle")
+    session.select(ElementId("middle"))
     session.apply(DeleteSelection())
     assert set(session.viewers) == {2}
     for number, said in ((3, "nothing is assigned"), (1, "nothing is assigned")):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from halation.authoring.edits.decor import add_frame
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.layout import pin_places, positions
 from halation.editor.canvas.gestures import (
     LinkGesture,
@@ -149,14 +150,14 @@ def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
     box = scene.boxes["clip"]
     x, y = scene.by_target[P("bloom.image")].middle
     there = scene.move({"clip"}, x - box.x - box.w / 2, y - box.y - 24.0)
-    assert find_insertion(graph, there, {"clip"}, (x, y), 9.0) == P("bloom.image")
-    assert find_insertion(graph, there, {"exposure"}, (x, y), 9.0) is None
-    assert find_insertion(graph, there, {"clip", "bloom"}, (x, y), 9.0) is None
+    assert find_insertion(graph, there, {ElementId("clip")}, (x, y), 9.0) == P("bloom.image")
+    assert find_insertion(graph, there, {ElementId("exposure")}, (x, y), 9.0) is None
+    assert find_insertion(graph, there, {ElementId("clip"), ElementId("bloom")}, (x, y), 9.0) is None
     pair = graph.add("vignette", catalogue()["vignette"]()).connect(P("clip.out"), P("vignette.image"))
     scene = staged(pair)
     there = scene.move({"clip", "vignette"}, x - scene.boxes["clip"].x - 90.0, y - scene.boxes["clip"].y - 24.0)
-    assert find_insertion(pair, there, {"clip", "vignette"}, (x, y), 9.0) == P("bloom.image")
-    assert find_insertion(pair, there, {"clip"}, (x, y), 9.0) is None, "it is linked with what stays"
+    assert find_insertion(pair, there, {ElementId("clip"), ElementId("vignette")}, (x, y), 9.0) == P("bloom.image")
+    assert find_insertion(pair, there, {ElementId("clip")}, (x, y), 9.0) is None, "it is linked with what stays"
 
 
 def test_links_of_one_source_share_the_dot_that_a_line_makes() -> None:
@@ -175,7 +176,7 @@ def test_rectangles_take_what_they_touch_but_frames_only_whole() -> None:
     box = scene.boxes["exposure"]
     rect = (box.x - 5, box.y - 5, box.x + 5, box.y + 5)
     assert find_touched(scene, rect) == ("exposure",)
-    framed, _ = add_frame(graph, ["exposure"], positions(graph))
+    framed, _ = add_frame(graph, [ElementId("exposure")], positions(graph))
     scene = staged(framed)
     assert find_touched(scene, rect) == ("exposure",)
     assert set(find_touched(scene, (-900.0, -900.0, 2000.0, 900.0))) == set(scene.boxes)
@@ -183,17 +184,19 @@ def test_rectangles_take_what_they_touch_but_frames_only_whole() -> None:
 
 def test_moving_snaps_to_the_grid_and_resizing_keeps_the_other_edges() -> None:
     scene = staged(chain("exposure"))
-    move = move_to(MoveGesture("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
+    move = move_to(
+        MoveGesture(ElementId("exposure"), (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True
+    )
     box = preview_gesture(scene, move).boxes["exposure"]
     assert box.x % 16 == 0 and box.y % 16 == 0
     before = (0.0, 0.0, 200.0, 100.0)
-    assert resize_to(ResizeGesture("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (
+    assert resize_to(ResizeGesture(ElementId("f"), "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (
         0,
         0,
         260,
         100,
     )
-    assert resize_to(ResizeGesture("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (
+    assert resize_to(ResizeGesture(ElementId("f"), "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (
         104,
         36,
         200,

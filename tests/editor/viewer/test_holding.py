@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from halation.authoring.commands import AddNode, Disconnect, ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.handles import handles
@@ -96,7 +97,7 @@ def lit(editor: Any, *lights: Light) -> Port:
     graph = session.graph.add("lamps", Lit(lights=numbers_of(lights)) if lights else Lit())
     graph = graph.add("camera", catalogue()["camera"]()).connect(Port("camera", "camera"), Port("lamps", "camera"))
     session.apply(ReplaceGraph("Add", graph))
-    session.select(["lamps"])
+    session.select([ElementId("lamps")])
     return Port("lamps", "lights")
 
 

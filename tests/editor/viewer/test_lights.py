@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from halation.authoring.commands import AddNode, Connect, Disconnect, ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
 from halation.editor.viewer.geometry import Sight
@@ -70,7 +71,7 @@ def editor() -> Any:
     )
     graph = made.session.graph.add("lamps", Lit()).add("camera", catalogue()["camera"]())
     made.session.apply(ReplaceGraph("Add", graph.connect(Port("camera", "camera"), Port("lamps", "camera"))))
-    made.session.select(["lamps"])
+    made.session.select([ElementId("lamps")])
     return made
 
 
@@ -90,7 +91,7 @@ def see(editor: Any, socket: str, *values: float) -> None:
     session = editor.session
     source = session.apply(AddNode("scene")) if "scene" not in session.graph.nodes else "scene"
     session.apply(Connect(Port(source, socket), Port("lamps", socket)))
-    session.select(["lamps"])
+    session.select([ElementId("lamps")])
     known = {"depth": "depth", "place": "position"}
     editor.probe = SimpleNamespace(read_pixel=lambda texture, x, y: values)
     editor.preview.shown = lambda name: (

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from halation.authoring.commands import AddNode, Connect, ReplaceGraph, SetValue
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.editor.viewer.axes import axes
 from halation.editor.viewer.geometry import Sight
@@ -158,7 +159,7 @@ def test_the_scene_that_is_seen_or_selected(editor: Any) -> None:
     assert orbited(session) == "scene"
     noise = session.apply(AddNode("noise"))
     session.view(Port(noise, "value"))
-    session.select(["scene"])
+    session.select([ElementId("scene")])
     assert orbited(session) == ""
 
 
