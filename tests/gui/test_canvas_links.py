@@ -6,14 +6,14 @@ import dataclasses
 
 from gui_canvas import chain, empty, show
 from halation.authoring.edits.element_id import ElementId
-from halation.authoring.edits.elements import with_places
+from halation.authoring.edits.elements import list_decor, with_places
 from halation.graph import Group, Port
 from halation.nodes import catalogue
 
 
 def with_node(graph, id: str, at: tuple[float, float]):
     """One more node that nothing is linked to."""
-    return with_places(graph.add(id, catalogue()[id]()), {id: at})
+    return with_places(graph.add(id, catalogue()[id]()), {ElementId(id): at})
 
 
 def test_drags_a_link_from_output_to_input(gui) -> None:
@@ -120,8 +120,8 @@ def test_puts_dots_on_links_which_then_move_alone(gui) -> None:
         show(ui, chain("exposure", "bloom"))
         x, y = ui.at("link bloom.image")
         ui.drag((x, y - 60), (x, y + 60), button=1, keys="Shift")
-        (dot,) = ui.session.graph.ui["dots"]
-        assert list(ui.session.graph.ui["routes"]["bloom.image"]) == [dot]
+        (dot,) = list_decor(ui.session.graph, "dot")
+        assert list(ui.session.graph.ui["routes"]["bloom.image"]) == [dot.name]
         before = ui.session.position(dot)
         x, y = ui.at(f"node {dot}")
         ui.drag((x, y), (x, y + 50))

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, SystemText
+    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
 
 
@@ -22,6 +23,11 @@ class EditContext:
     clipboard: SystemText
     dialogs: Dialogs
 
+    @classmethod
+    def compose(cls, services: Services, canvas: ElementView) -> EditContext:
+        """Pick what the actions use."""
+        return cls(services.session, canvas, services.clipboard, services.dialogs)
+
 
 @dataclass(frozen=True)
 class ViewSettingsContext:
@@ -30,3 +36,8 @@ class ViewSettingsContext:
     store: PreferenceStore
     dialogs: Dialogs
     commands: WindowCommands
+
+    @classmethod
+    def compose(cls, services: Services) -> ViewSettingsContext:
+        """Pick what the actions use."""
+        return cls(services.store, services.dialogs, services.commands)

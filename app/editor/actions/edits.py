@@ -16,7 +16,7 @@ def _some(context: EditContext) -> bool:
     return bool(context.session.selection)
 
 
-EDITS: tuple[Action, ...] = (
+EDITS: tuple[Action[EditContext], ...] = (
     Action(
         "edit.undo",
         "Undo",

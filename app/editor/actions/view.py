@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..shared.action import Act, Action, Ask
+from ..shared.action import Action
 
 if TYPE_CHECKING:
     from .context import ViewSettingsContext
 
 
-def _toggle(name: str) -> Act:
+def _toggle(name: str) -> Callable[[ViewSettingsContext], object]:
     def toggle(context: ViewSettingsContext) -> None:
         context.store.change(**{name: not getattr(context.store.current, name)})
 
     return toggle
 
 
-def _is_shown(name: str) -> Ask:
+def _is_shown(name: str) -> Callable[[ViewSettingsContext], bool]:
     return lambda context: bool(getattr(context.store.current, name))
 
 
@@ -25,7 +26,7 @@ def _theme(context: ViewSettingsContext) -> None:
     context.store.change(theme="light" if context.store.current.theme == "dark" else "dark")
 
 
-def _scale(step: float) -> Act:
+def _scale(step: float) -> Callable[[ViewSettingsContext], object]:
     def scale(context: ViewSettingsContext) -> None:
         current_scale = context.store.current.ui_scale or 1.0
         context.store.change(ui_scale=min(max(round(current_scale + step, 2), 0.75), 3.0))
@@ -33,7 +34,7 @@ def _scale(step: float) -> Act:
     return scale
 
 
-VIEW: tuple[Action, ...] = (
+VIEW: tuple[Action[ViewSettingsContext], ...] = (
     Action(
         "view.thumbnails", "Thumbnails", _toggle("thumbnails"), "View", "T", "graph", checked=_is_shown("thumbnails")
     ),

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -20,3 +21,8 @@ class BrowserContext(PanelContext):
     session: Session
     store: PreferenceStore
     dialogs: Dialogs
+
+    @classmethod
+    def compose(cls, services: Services) -> BrowserContext:
+        """Pick what the panel uses."""
+        return cls(services.interface, services.log, services.session, services.store, services.dialogs)

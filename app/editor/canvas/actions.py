@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +21,7 @@ from ...authoring.commands import (
     Ungroup,
 )
 from ...graph import Group
-from ..shared.action import Act, Action
+from ..shared.action import Action
 from ..shared.dialogs import Browse
 from .pictures import reserve_pictures
 from .view import Tool
@@ -94,14 +95,14 @@ def _rename(context: CanvasContext) -> None:
     context.canvas.renaming = context.session.active
 
 
-def _make_tool_act(tool: Tool) -> Act:
+def _make_tool_act(tool: Tool) -> Callable[[CanvasContext], object]:
     def set_tool(context: CanvasContext) -> None:
         context.canvas.tool = tool
 
     return set_tool
 
 
-def _make_align_action(side: str, label: str) -> Action:
+def _make_align_action(side: str, label: str) -> Action[CanvasContext]:
     return Action(
         f"align.{side.replace(' ', '_')}",
         label,
@@ -112,7 +113,7 @@ def _make_align_action(side: str, label: str) -> Action:
     )
 
 
-GRAPH: tuple[Action, ...] = (
+GRAPH: tuple[Action[CanvasContext], ...] = (
     Action("node.add", "Add Node...", _open_search, "Graph", "Tab", "graph", contexts=frozenset({"canvas"})),
     Action(
         "node.mute",

@@ -69,8 +69,6 @@ class _FitState:
 class Canvas:
     """The graph canvas: draws nodes, links and overlays, and handles the mouse."""
 
-    title = "Graph"
-
     def __init__(self, context: CanvasContext) -> None:
         self._context = context
         self._builder = SceneBuilder()

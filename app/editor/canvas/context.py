@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import PixelPicker
+    from ..shared.services import Services
     from ..workflows.code_files import CodeFileWorkflow
     from ..workflows.documents import DocumentWorkflow
     from .view import CanvasView
@@ -34,3 +35,28 @@ class CanvasContext(PanelContext):
     viewer: PixelPicker
     documents: DocumentWorkflow
     code_files: CodeFileWorkflow
+
+    @classmethod
+    def compose(
+        cls,
+        services: Services,
+        canvas: CanvasView,
+        viewer: PixelPicker,
+        documents: DocumentWorkflow,
+        code_files: CodeFileWorkflow,
+    ) -> CanvasContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            canvas,
+            services.preview,
+            services.store,
+            services.actions,
+            services.dialogs,
+            services.shaders,
+            viewer,
+            documents,
+            code_files,
+        )

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
 from ...authoring.edits.element_id import ElementId
 from ...graph import Group, Port
-from ..shared.action import Action
+from ..shared.action import ListedAction
 from ..toolkit.buttons import entry
 from ..toolkit.keys import display_shortcut
 from ..toolkit.places import record
@@ -125,7 +125,7 @@ def _draw_colors(context: CanvasContext, frame: ElementId) -> None:
     imgui.separator()
 
 
-def _draw_action(context: CanvasContext, action: Action) -> None:
+def _draw_action(context: CanvasContext, action: ListedAction) -> None:
     if action.separated:
         imgui.separator()
     entry(context, action)

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
+    from ..shared.services import Services
     from ..workflows.code_files import CodeFileWorkflow
     from .state import CodeState
 
@@ -24,3 +25,10 @@ class CodeContext(PanelContext):
     preview: Preview
     actions: Actions
     code_files: CodeFileWorkflow
+
+    @classmethod
+    def compose(cls, services: Services, code: CodeState, code_files: CodeFileWorkflow) -> CodeContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface, services.log, services.session, code, services.preview, services.actions, code_files
+        )

@@ -32,8 +32,6 @@ _SIZE = EM * 0.94
 class CodePanel:
     """Shows the code of the active node, or else of the last node with code."""
 
-    title = "Code"
-
     def __init__(self, context: CodeContext) -> None:
         self._context = context
         self._pages: OrderedDict[tuple[str, ...], Page] = OrderedDict()

@@ -12,7 +12,7 @@ from ...authoring.commands import AddGroupFile, AddNode
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
-from ..shared.action import Action
+from ..shared.action import ListedAction
 from ..shared.entries import code_entries, spell_out
 from ..shared.fuzzy import Match, match
 
@@ -57,7 +57,7 @@ def rank_commands(
     return tuple(sorted(matches, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
 
 
-def explain_disabled(context: PaletteContext, action: Action) -> str:
+def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
     """Why an action cannot be done now, "" if it can."""
     if context.actions.is_enabled(action):
         return ""

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
+    from ..shared.services import Services
     from ..workflows.documents import DocumentWorkflow
 
 
@@ -24,3 +25,10 @@ class PaletteContext(PanelContext):
     canvas: ElementView
     dialogs: Dialogs
     documents: DocumentWorkflow
+
+    @classmethod
+    def compose(cls, services: Services, canvas: ElementView, documents: DocumentWorkflow) -> PaletteContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface, services.log, services.session, services.actions, canvas, services.dialogs, documents
+        )

@@ -27,7 +27,7 @@ _EXTRAPOLATIONS: tuple[tuple[Extrapolation, str, str], ...] = (
 )
 
 
-def _make_interpolation_action(how: Interpolation, doc: str) -> Action:
+def _make_interpolation_action(how: Interpolation, doc: str) -> Action[CurvesContext]:
     return Action(
         f"keys.{how}",
         how.title(),
@@ -40,7 +40,7 @@ def _make_interpolation_action(how: Interpolation, doc: str) -> Action:
     )
 
 
-def _make_outside_action(how: Extrapolation, label: str, doc: str) -> Action:
+def _make_outside_action(how: Extrapolation, label: str, doc: str) -> Action[CurvesContext]:
     return Action(
         f"keys.outside_{how}",
         f"Outside: {label}",
@@ -57,7 +57,7 @@ def _toggle_snap(context: CurvesContext) -> None:
     context.curves.snap = not context.curves.snap
 
 
-ANIMATION: tuple[Action, ...] = (
+ANIMATION: tuple[Action[CurvesContext], ...] = (
     Action("keys.mode", "Dope Sheet or Curves", commands.swap_mode, shortcut="Tab", scope="animation"),
     Action(
         "keys.here",

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.protocols import SystemText
+    from ..shared.services import Services
     from .state import CurvesState
 
 
@@ -22,3 +23,8 @@ class CurvesContext(PanelContext):
     curves: CurvesState
     actions: Actions
     clipboard: SystemText
+
+    @classmethod
+    def compose(cls, services: Services, curves: CurvesState) -> CurvesContext:
+        """Pick what the panel uses."""
+        return cls(services.interface, services.log, services.session, curves, services.actions, services.clipboard)

@@ -39,8 +39,6 @@ _BUTTONS = (
 class AnimationPanel:
     """A dope sheet and a curve editor over one time line."""
 
-    title = "Animation"
-
     def __init__(self, context: CurvesContext) -> None:
         self._context = context
         self._mouse = CurvesMouse()

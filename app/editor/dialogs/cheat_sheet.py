@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
-from ..shared.action import Action
+from ..shared.action import ListedAction
 from ..shared.shortcut_groups import MOUSE, balance_columns, condense_rows, group_actions
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import close_button
@@ -74,7 +74,7 @@ def _draw_columns(context: DialogContext, blocks: Blocks, columns: Sequence[Sequ
     imgui.end_child()
 
 
-def _list_lines(context: DialogContext, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
+def _list_lines(context: DialogContext, actions: tuple[ListedAction, ...]) -> tuple[tuple[str, str], ...]:
     lines = (
         (display_shortcut(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions
     )

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import SystemText
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -20,3 +21,8 @@ class DialogContext(PanelContext):
     dialogs: Dialogs
     actions: Actions
     clipboard: SystemText
+
+    @classmethod
+    def compose(cls, services: Services) -> DialogContext:
+        """Pick what the panel uses."""
+        return cls(services.interface, services.log, services.dialogs, services.actions, services.clipboard)

@@ -9,6 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -16,3 +17,8 @@ class HistoryContext(PanelContext):
     """The collaborators of the History panel."""
 
     session: Session
+
+    @classmethod
+    def compose(cls, services: Services) -> HistoryContext:
+        """Pick what the panel uses."""
+        return cls(services.interface, services.log, services.session)

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 class HistoryPanel:
     """Steps, oldest first; a click goes there. Steps that were undone stay until something else is done."""
 
-    title = "History"
-
     def __init__(self, context: HistoryContext) -> None:
         self._context = context
         self._seen = (0, 0)

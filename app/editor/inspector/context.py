@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, PixelPicker, Player, SystemText
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -33,3 +34,24 @@ class InspectorContext(PanelContext):
     coloring: ColorFallback
     lights: dict[str, int]
     """The light that is selected, by the value that lists it."""
+
+    @classmethod
+    def compose(
+        cls, services: Services, canvas: ElementView, viewer: PixelPicker, timeline: Player
+    ) -> InspectorContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            services.preview,
+            services.actions,
+            services.dialogs,
+            services.clipboard,
+            canvas,
+            viewer,
+            timeline,
+            services.renders,
+            services.coloring,
+            services.lights,
+        )

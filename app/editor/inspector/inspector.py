@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 class Inspector:
     """Values, links and descriptions of the active element; of the graph if there is none."""
 
-    title = "Inspector"
-
     def __init__(self, context: InspectorContext) -> None:
         self._context = context
         self._fields = Fields(DARK)

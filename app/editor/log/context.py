@@ -9,6 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ..shared.protocols import SystemText
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -16,3 +17,8 @@ class LogContext(PanelContext):
     """The collaborators of the Log panel and the messages."""
 
     clipboard: SystemText
+
+    @classmethod
+    def compose(cls, services: Services) -> LogContext:
+        """Pick what the panel uses."""
+        return cls(services.interface, services.log, services.clipboard)

@@ -24,8 +24,6 @@ _ORDER: tuple[Level, ...] = ("info", "warning", "error")
 class LogPanel:
     """Sentences with their time, oldest first."""
 
-    title = "Log"
-
     def __init__(self, context: LogContext) -> None:
         self._context = context
         self._least: Level = "info"

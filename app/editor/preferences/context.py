@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import SystemText
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -24,3 +25,16 @@ class PreferencesContext(PanelContext):
     dialogs: Dialogs
     recovery: RecoveryFile
     clipboard: SystemText
+
+    @classmethod
+    def compose(cls, services: Services) -> PreferencesContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.store,
+            services.actions,
+            services.dialogs,
+            services.recovery,
+            services.clipboard,
+        )

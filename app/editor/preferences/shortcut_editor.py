@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ..shared.action import Action
+from ..shared.action import ListedAction
 from ..shared.fuzzy import match
 from ..shared.shortcut_groups import group_actions
 from ..theme.style import ui_scale, vec4
@@ -62,7 +62,7 @@ class ShortcutEditor:
         """Listen no more."""
         self._waiting, self._offered = "", None
 
-    def _draw_row(self, action: Action) -> None:
+    def _draw_row(self, action: ListedAction) -> None:
         scale, palette = ui_scale(), self._context.palette
         left = imgui.get_cursor_pos_x()
         room = imgui.get_content_region_avail().x

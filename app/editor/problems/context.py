@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ...watch.watching import FileWatcher
     from ..shared.protocols import ElementView, SystemText
+    from ..shared.services import Services
 
 
 @dataclass(frozen=True)
@@ -29,3 +30,19 @@ class ProblemsContext(PanelContext):
     store: PreferenceStore
     faults: dict[str, str]
     """Panels that failed, with the traceback."""
+
+    @classmethod
+    def compose(cls, services: Services, canvas: ElementView) -> ProblemsContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            services.preview,
+            canvas,
+            services.clipboard,
+            services.recovery,
+            services.watcher,
+            services.store,
+            services.faults,
+        )

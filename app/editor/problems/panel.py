@@ -22,8 +22,6 @@ _COPY = f"{icons.ICON_FA_COPY} Copy"
 class ProblemsPanel:
     """Sentences that say what is wrong; a click leads to the node."""
 
-    title = "Problems"
-
     def __init__(self, context: ProblemsContext) -> None:
         self._context = context
 

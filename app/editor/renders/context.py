@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import PlayedSpan, SystemText
+    from ..shared.services import Services
     from ..workflows.flipbook import FlipbookPlayer
 
 
@@ -29,3 +30,19 @@ class RendersContext(PanelContext):
     clipboard: SystemText
     coloring: ColorFallback
     flipbooks: FlipbookPlayer
+
+    @classmethod
+    def compose(cls, services: Services, timeline: PlayedSpan, flipbooks: FlipbookPlayer) -> RendersContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.session,
+            services.exports,
+            services.store,
+            timeline,
+            services.dialogs,
+            services.clipboard,
+            services.coloring,
+            flipbooks,
+        )

@@ -24,8 +24,6 @@ _FORM, _WIDE = 420.0, 760.0
 class RendersPanel:
     """A form and a queue. Rendering runs beside the editor, on the graph as it was when it was asked for."""
 
-    title = "Renders"
-
     def __init__(self, context: RendersContext) -> None:
         self._context = context
         self._forms: dict[Path | None, RenderForm] = {}

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Generic, Literal, Never, TypeVar
 
 from ...authoring.log import Log
 
 Scope = Literal["", "graph", "viewer", "animation"]
 """Where a shortcut works: everywhere, or while the mouse is over that panel."""
 
-Act = Callable[[Any], object]
-Ask = Callable[[Any], bool]
-"""What an action does with its context, and a question about that context."""
+C = TypeVar("C", contravariant=True)
+"""What an action works on: the frozen context of its panel."""
 
 
 def always(context: object) -> bool:
@@ -22,21 +21,22 @@ def always(context: object) -> bool:
 
 
 @dataclass(frozen=True)
-class Action:
+class Action(Generic[C]):
     """Something the user can do from a menu, by a shortcut, from a context menu or the command palette.
 
+    `run` does it with the context of the panel that it belongs to; `enabled` and `checked` are questions about that.
     `menu` is the path in the menu bar, such as `File` or `View/Channels`; without one it is only in the palette.
     `shortcut` is written like `Ctrl+Shift+S`; Ctrl is Command on macOS. `contexts` are the context menus that list it.
     """
 
     id: str
     label: str
-    run: Act
+    run: Callable[[C], object]
     menu: str = ""
     shortcut: str = ""
     scope: Scope = ""
-    enabled: Ask = always
-    checked: Ask | None = None
+    enabled: Callable[[C], bool] = always
+    checked: Callable[[C], bool] | None = None
     contexts: frozenset[str] = frozenset()
     doc: str = ""
     separated: bool = False
@@ -45,49 +45,64 @@ class Action:
     """True does it again and again while its keys are held."""
 
 
-class Actions:
-    """The table of actions with the user's own shortcuts, each action with the context that it works on.
+ListedAction = Action[Never]
+"""An action of any panel: it can be listed, but only `Actions`, which has its context, can run it."""
 
-    `overrides` gives the user's shortcuts by action id, "" for none at all. Contexts are bound after they are made,
-    since panels, which are part of them, run actions themselves.
+
+@dataclass(frozen=True)
+class BoundAction:
+    """What an action does, with the context that it works on."""
+
+    run: Callable[[], object]
+    is_enabled: Callable[[], bool]
+    is_checked: Callable[[], bool]
+
+
+class Actions:
+    """All actions in the order of the menus, with the user's own shortcuts.
+
+    `overrides` gives the user's shortcuts by action id, "" for none at all. Actions are added with their contexts after
+    both are made, since panels run actions themselves.
     """
 
-    def __init__(self, all: tuple[Action, ...], overrides: Callable[[], Mapping[str, str]], log: Log) -> None:
-        self.all = all
+    def __init__(self, overrides: Callable[[], Mapping[str, str]], log: Log) -> None:
+        self.all: tuple[ListedAction, ...] = ()
         self.overrides = overrides
         self._log = log
-        self._contexts: dict[str, object] = {}
+        self._by_id: dict[str, tuple[ListedAction, BoundAction]] = {}
 
-    def __getitem__(self, id: str) -> Action:
-        return next(action for action in self.all if action.id == id)
+    def __getitem__(self, id: str) -> ListedAction:
+        return self._by_id[id][0]
 
-    def bind(self, actions: Iterable[Action], context: object) -> None:
-        """Let actions work on a context."""
-        self._contexts.update((action.id, context) for action in actions)
+    def bind(self, actions: tuple[Action[C], ...], context: C) -> None:
+        """Add actions that work on a context."""
+        self.all += actions
+        for action in actions:
+            self._by_id[action.id] = action, bind_action(action, context)
 
     def shortcut(self, id: str) -> str:
         """The shortcut that is in force."""
         return self.overrides().get(id, self[id].shortcut)
 
-    def in_menu(self, name: str) -> Iterator[Action]:
+    def in_menu(self, name: str) -> Iterator[ListedAction]:
         """The actions of a context menu."""
         return (action for action in self.all if name in action.contexts)
 
-    def is_enabled(self, action: Action) -> bool:
+    def is_enabled(self, action: ListedAction) -> bool:
         """True if it can be done now."""
-        return action.enabled(self._contexts[action.id])
+        return self._by_id[action.id][1].is_enabled()
 
-    def is_checked(self, action: Action) -> bool:
+    def is_checked(self, action: ListedAction) -> bool:
         """True if it is a switch that is on."""
-        return action.checked is not None and action.checked(self._contexts[action.id])
+        return self._by_id[action.id][1].is_checked()
 
     def run(self, id: str) -> None:
         """Do it, if it can be done now."""
-        action = self[id]
-        if self.is_enabled(action):
-            self._log.attempt(lambda: action.run(self._contexts[id]))
+        bound = self._by_id[id][1]
+        if bound.is_enabled():
+            self._log.attempt(bound.run)
 
-    def conflicts(self, id: str, shortcut: str) -> tuple[Action, ...]:
+    def conflicts(self, id: str, shortcut: str) -> tuple[ListedAction, ...]:
         """Other actions that this shortcut would set off too."""
         scope = self[id].scope
         return tuple(
@@ -98,3 +113,13 @@ class Actions:
             and self.shortcut(action.id) == shortcut
             and (not scope or not action.scope or scope == action.scope)
         )
+
+
+def bind_action(action: Action[C], context: C) -> BoundAction:
+    """An action together with what it works on."""
+    checked = action.checked
+    return BoundAction(
+        lambda: action.run(context),
+        lambda: action.enabled(context),
+        lambda: checked is not None and checked(context),
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from .action import Action, Actions
+from .action import Actions, ListedAction
 
 _SCOPES = {
     "graph": "Graph, with the mouse over it",
@@ -23,9 +23,9 @@ MOUSE: tuple[tuple[str, str], ...] = (
 )
 
 
-def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
+def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[ListedAction, ...]]]:
     """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
-    by_title: dict[str, list[Action]] = {}
+    by_title: dict[str, list[ListedAction]] = {}
     for action in actions.all:
         if every or actions.shortcut(action.id):
             title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")

@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from enum import StrEnum
 
-PanelTitle = Literal[
-    "Viewer", "Graph", "Animation", "Code", "Problems", "Renders", "Log", "Inspector", "Scopes", "History"
-]
-"""Titles of the panels that can be docked, as they stand on their tabs."""
+
+class PanelTitle(StrEnum):
+    """Titles of the panels that can be docked, as they stand on their tabs."""
+
+    VIEWER = "Viewer"
+    GRAPH = "Graph"
+    ANIMATION = "Animation"
+    CODE = "Code"
+    PROBLEMS = "Problems"
+    RENDERS = "Renders"
+    LOG = "Log"
+    INSPECTOR = "Inspector"
+    SCOPES = "Scopes"
+    HISTORY = "History"
 
 
 @dataclass

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
+    from ..shared.services import Services
     from ..workflows.documents import DocumentWorkflow
 
 
@@ -24,3 +25,16 @@ class StartContext(PanelContext):
     actions: Actions
     recovery: RecoveryFile
     documents: DocumentWorkflow
+
+    @classmethod
+    def compose(cls, services: Services, documents: DocumentWorkflow) -> StartContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.store,
+            services.dialogs,
+            services.actions,
+            services.recovery,
+            documents,
+        )

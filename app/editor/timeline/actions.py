@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetFrameRange
-from ..shared.action import Act, Action
+from ..shared.action import Action
 from .playback import LOOPS, Loop
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def play(context: TimelineContext) -> None:
     context.timeline.play(context.session, imgui.get_time(), context.preview.remembers)
 
 
-def _step(by: int) -> Act:
+def _step(by: int) -> Callable[[TimelineContext], object]:
     """One frame on; within what is played, the other end comes after the last one."""
 
     def step(context: TimelineContext) -> None:
@@ -34,7 +35,7 @@ def _step(by: int) -> Act:
     return step
 
 
-def _end(place: int) -> Act:
+def _end(place: int) -> Callable[[TimelineContext], object]:
     def jump(context: TimelineContext) -> None:
         if context.timeline.playback.playing and place:
             context.timeline.stop()
@@ -43,7 +44,7 @@ def _end(place: int) -> Act:
     return jump
 
 
-def _to_key(later: bool) -> Act:
+def _to_key(later: bool) -> Callable[[TimelineContext], object]:
     def jump(context: TimelineContext) -> None:
         session = context.session
         frame = session.next_key() if later else session.previous_key()
@@ -54,7 +55,7 @@ def _to_key(later: bool) -> Act:
     return jump
 
 
-def _set_loop(loop: Loop) -> Act:
+def _set_loop(loop: Loop) -> Callable[[TimelineContext], object]:
     def choose(context: TimelineContext) -> None:
         context.timeline.loop = loop
 
@@ -88,7 +89,7 @@ def _has_part(context: TimelineContext) -> bool:
     return context.timeline.part is not None
 
 
-def _loop(loop: Loop, label: str, doc: str) -> Action:
+def _loop(loop: Loop, label: str, doc: str) -> Action[TimelineContext]:
     return Action(
         f"time.{loop.replace('-', '_')}",
         label,
@@ -107,7 +108,7 @@ _LABELS = {
     "ping-pong": ("To and Fro", "From the last frame back to the first one, and so on."),
 }
 
-PLAYBACK: tuple[Action, ...] = (
+PLAYBACK: tuple[Action[TimelineContext], ...] = (
     Action(
         "time.play",
         "Play or Stop",

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
+    from ..shared.services import Services
     from ..shared.stage import DocumentStage
     from .state import TimelineState
 
@@ -30,3 +31,16 @@ class TimelineContext(PanelContext):
     def session(self) -> Session:
         """The document, or the flipbook that is shown in its place."""
         return self.stage.session
+
+    @classmethod
+    def compose(cls, services: Services, timeline: TimelineState) -> TimelineContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.stage,
+            timeline,
+            services.preview,
+            services.actions,
+            services.lights,
+        )

@@ -37,8 +37,6 @@ _ROOMY, _NARROW = 1050.0, 760.0
 class Timeline:
     """Frames, and playing them."""
 
-    title = "Timeline"
-
     def __init__(self, context: TimelineContext) -> None:
         self._context = context
         self._fields = Fields(DARK)

@@ -14,7 +14,7 @@ from .places import WidgetSurface, item_rect, record
 from .words import tip
 
 if TYPE_CHECKING:
-    from ..shared.action import Action, Actions
+    from ..shared.action import Actions, ListedAction
 
 
 class ActionSurface(WidgetSurface, Protocol):
@@ -125,7 +125,7 @@ def dropdown(
 # --- actions ---------------------------------------------------------------------------------------------------------
 
 
-def tip_of(surface: ActionSurface, action: Action) -> str:
+def tip_of(surface: ActionSurface, action: ListedAction) -> str:
     """What the tooltip of an action says."""
     shortcut = surface.actions.shortcut(action.id)
     title = action.label.removesuffix("...")
@@ -143,7 +143,7 @@ def tool(surface: ActionSurface, icon: str, id: str) -> None:
         surface.actions.run(id)
 
 
-def entry(surface: ActionSurface, action: Action, icon: str = "") -> None:
+def entry(surface: ActionSurface, action: ListedAction, icon: str = "") -> None:
     """An action as an entry of the menu that is open."""
     checked = surface.actions.is_checked(action)
     label = f"{icon}  {action.label}" if icon else action.label

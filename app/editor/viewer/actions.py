@@ -90,7 +90,7 @@ def _shown(context: ViewerContext) -> bool:
     return context.session.viewed("A") is not None
 
 
-def _background(name: Background) -> Action:
+def _background(name: Background) -> Action[ViewerContext]:
     return Action(
         f"viewer.background.{name}",
         name.capitalize(),
@@ -100,7 +100,7 @@ def _background(name: Background) -> Action:
     )
 
 
-def _proxy(scale: float) -> Action:
+def _proxy(scale: float) -> Action[ViewerContext]:
     return Action(
         f"viewer.proxy.{1 / scale:.0f}",
         f"1/{1 / scale:.0f}",
@@ -111,7 +111,7 @@ def _proxy(scale: float) -> Action:
     )
 
 
-def _scope(name: str) -> Action:
+def _scope(name: str) -> Action[ViewerContext]:
     def act(context: ViewerContext) -> None:
         context.viewer.scopes ^= {name}
 
@@ -120,8 +120,8 @@ def _scope(name: str) -> Action:
     )
 
 
-def _numbered(number: int) -> tuple[Action, Action]:
-    recall = Action(
+def _numbered(number: int) -> tuple[Action[ViewerContext], Action[ViewerContext]]:
+    recall: Action[ViewerContext] = Action(
         f"viewer.recall.{number}",
         f"Show {number}",
         lambda context: context.session.recall_viewer(number),
@@ -130,7 +130,7 @@ def _numbered(number: int) -> tuple[Action, Action]:
         enabled=lambda context: number in context.session.viewers,
         doc="Show what this key was given to.",
     )
-    assign = Action(
+    assign: Action[ViewerContext] = Action(
         f"viewer.assign.{number}",
         f"Assign {number}",
         lambda context: context.session.apply(AssignViewer(number)),
@@ -144,7 +144,7 @@ def _numbered(number: int) -> tuple[Action, Action]:
 
 _BOOKMARKS = tuple(_numbered(number) for number in range(1, 10))
 
-VIEWER: tuple[Action, ...] = (
+VIEWER: tuple[Action[ViewerContext], ...] = (
     Action(
         "viewer.fit",
         "Fit",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, PlayState, ReportedFault, SystemText
+    from ..shared.services import Services
     from ..shared.stage import DocumentStage
     from .state import ViewerState
 
@@ -47,3 +48,28 @@ class ViewerContext(PanelContext):
     def session(self) -> Session:
         """The document, or the flipbook that is shown in its place."""
         return self.stage.session
+
+    @classmethod
+    def compose(
+        cls, services: Services, viewer: ViewerState, timeline: PlayState, canvas: ElementView, code: ReportedFault
+    ) -> ViewerContext:
+        """Pick what the panel uses."""
+        return cls(
+            services.interface,
+            services.log,
+            services.stage,
+            viewer,
+            services.preview,
+            services.display,
+            services.probe,
+            services.store,
+            services.actions,
+            services.dialogs,
+            services.clipboard,
+            timeline,
+            canvas,
+            code,
+            services.renders,
+            services.coloring,
+            services.lights,
+        )

@@ -26,7 +26,7 @@ def _picks(context: ViewerContext) -> bool:
     return port is not None and context.viewer.picking == str(port)
 
 
-HANDLES: tuple[Action, ...] = (
+HANDLES: tuple[Action[ViewerContext], ...] = (
     Action(
         "viewer.orbit",
         "Orbit the Scene",

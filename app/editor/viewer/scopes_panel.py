@@ -35,8 +35,6 @@ _ICONS = (icons.ICON_FA_CHART_AREA, icons.ICON_FA_WAVE_SQUARE, icons.ICON_FA_CHA
 class ScopesPanel:
     """Draws the scopes that are chosen, below each other or side by side, as fits."""
 
-    title = "Scopes"
-
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
         self._reader = ValueReader()

@@ -70,8 +70,6 @@ class _Now:
 class Viewer:
     """Draws what `editor.viewer` says of what the session views."""
 
-    title = "Viewer"
-
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
         self._hand = ViewerInput(context)

@@ -22,7 +22,6 @@ from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import PixelProbe
 from ...resources.sandbox import Sandbox
 from ...watch.watching import FileWatcher
-from ..actions import table
 from ..shared.action import Actions
 from ..shared.stage import DocumentStage
 from ..toolkit.context import Interface
@@ -52,7 +51,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         DocumentStage(session),
         Preview(renderer, display),
         store,
-        Actions(table(), lambda: store.current.shortcuts, log),
+        Actions(lambda: store.current.shortcuts, log),
         RecoveryFile(folder, store.current.autosave),
         SystemClipboard(),
         display,

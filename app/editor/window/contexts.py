@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..actions import ACTION_GROUPS, ActionGroup
 from ..actions.context import EditContext, ViewSettingsContext
+from ..actions.edits import EDITS
+from ..actions.view import VIEW
 from ..browser.context import BrowserContext
+from ..canvas.actions import GRAPH
 from ..canvas.context import CanvasContext
 from ..code.context import CodeContext
 from ..command_palette.context import PaletteContext
+from ..curves.actions import ANIMATION
 from ..curves.context import CurvesContext
 from ..dialogs.context import DialogContext
 from ..history.context import HistoryContext
@@ -19,11 +22,14 @@ from ..preferences.context import PreferencesContext
 from ..problems.context import ProblemsContext
 from ..renders.context import RendersContext
 from ..start.context import StartContext
+from ..timeline.actions import PLAYBACK
 from ..timeline.context import TimelineContext
+from ..viewer.actions import VIEWER
 from ..viewer.context import ViewerContext
-from ..workflows.code_files import CodeFileWorkflow
-from ..workflows.documents import DocumentWorkflow
-from ..workflows.flipbook import FlipbookPlayer
+from ..viewer.handle_actions import HANDLES
+from ..workflows.code_files import CODE, CodeFileWorkflow
+from ..workflows.documents import DOCUMENTS, DocumentWorkflow
+from ..workflows.flipbook import FLIPBOOK, FlipbookPlayer
 from .editor import Editor
 
 
@@ -52,132 +58,44 @@ class Contexts:
 
 
 def compose_contexts(editor: Editor) -> Contexts:
-    """Give each panel its collaborators, and bind the actions to theirs."""
-    code_files = CodeFileWorkflow(
-        editor.session, editor.watcher, editor.dialogs, editor.log, editor.code, editor.commands
-    )
-    documents = DocumentWorkflow(
-        editor.session,
-        editor.store,
-        editor.watcher,
-        editor.recovery,
-        editor.exports,
-        editor.canvas,
-        editor.dialogs,
-        editor.log,
-        editor.commands,
-        code_files,
-    )
-    flipbooks = FlipbookPlayer(
-        editor.stage, editor.viewer, editor.timeline, editor.preview, editor.dialogs, editor.commands
-    )
-    interface, log = editor.interface, editor.log
+    """Give each panel its collaborators."""
+    code_files = CodeFileWorkflow.compose(editor, editor.code)
+    documents = DocumentWorkflow.compose(editor, editor.canvas, code_files)
+    flipbooks = FlipbookPlayer.compose(editor, editor.viewer, editor.timeline)
     contexts = Contexts(
         documents,
         code_files,
         flipbooks,
-        BrowserContext(interface, log, editor.session, editor.store, editor.dialogs),
-        CanvasContext(
-            interface,
-            log,
-            editor.session,
-            editor.canvas,
-            editor.preview,
-            editor.store,
-            editor.actions,
-            editor.dialogs,
-            editor.shaders,
-            editor.viewer,
-            documents,
-            code_files,
-        ),
-        CodeContext(interface, log, editor.session, editor.code, editor.preview, editor.actions, code_files),
-        PaletteContext(interface, log, editor.session, editor.actions, editor.canvas, editor.dialogs, documents),
-        CurvesContext(interface, log, editor.session, editor.curves, editor.actions, editor.clipboard),
-        DialogContext(interface, log, editor.dialogs, editor.actions, editor.clipboard),
-        HistoryContext(interface, log, editor.session),
-        InspectorContext(
-            interface,
-            log,
-            editor.session,
-            editor.preview,
-            editor.actions,
-            editor.dialogs,
-            editor.clipboard,
-            editor.canvas,
-            editor.viewer,
-            editor.timeline,
-            editor.renders,
-            editor.coloring,
-            editor.lights,
-        ),
-        LogContext(interface, log, editor.clipboard),
-        PreferencesContext(
-            interface, log, editor.store, editor.actions, editor.dialogs, editor.recovery, editor.clipboard
-        ),
-        ProblemsContext(
-            interface,
-            log,
-            editor.session,
-            editor.preview,
-            editor.canvas,
-            editor.clipboard,
-            editor.recovery,
-            editor.watcher,
-            editor.store,
-            editor.faults,
-        ),
-        RendersContext(
-            interface,
-            log,
-            editor.session,
-            editor.exports,
-            editor.store,
-            editor.timeline,
-            editor.dialogs,
-            editor.clipboard,
-            editor.coloring,
-            flipbooks,
-        ),
-        StartContext(interface, log, editor.store, editor.dialogs, editor.actions, editor.recovery, documents),
-        TimelineContext(interface, log, editor.stage, editor.timeline, editor.preview, editor.actions, editor.lights),
-        ViewerContext(
-            interface,
-            log,
-            editor.stage,
-            editor.viewer,
-            editor.preview,
-            editor.display,
-            editor.probe,
-            editor.store,
-            editor.actions,
-            editor.dialogs,
-            editor.clipboard,
-            editor.timeline,
-            editor.canvas,
-            editor.code,
-            editor.renders,
-            editor.coloring,
-            editor.lights,
-        ),
+        BrowserContext.compose(editor),
+        CanvasContext.compose(editor, editor.canvas, editor.viewer, documents, code_files),
+        CodeContext.compose(editor, editor.code, code_files),
+        PaletteContext.compose(editor, editor.canvas, documents),
+        CurvesContext.compose(editor, editor.curves),
+        DialogContext.compose(editor),
+        HistoryContext.compose(editor),
+        InspectorContext.compose(editor, editor.canvas, editor.viewer, editor.timeline),
+        LogContext.compose(editor),
+        PreferencesContext.compose(editor),
+        ProblemsContext.compose(editor, editor.canvas),
+        RendersContext.compose(editor, editor.timeline, flipbooks),
+        StartContext.compose(editor, documents),
+        TimelineContext.compose(editor, editor.timeline),
+        ViewerContext.compose(editor, editor.viewer, editor.timeline, editor.canvas, editor.code),
     )
     bind_actions(editor, contexts)
     return contexts
 
 
 def bind_actions(editor: Editor, contexts: Contexts) -> None:
-    """Say what each group of actions works on."""
-    by_group: dict[ActionGroup, object] = {
-        "documents": contexts.documents,
-        "edits": EditContext(editor.session, editor.canvas, editor.clipboard, editor.dialogs),
-        "graph": contexts.canvas,
-        "code": contexts.code_files,
-        "viewer": contexts.viewer,
-        "flipbook": contexts.flipbooks,
-        "handles": contexts.viewer,
-        "playback": contexts.timeline,
-        "animation": contexts.curves,
-        "view": ViewSettingsContext(editor.store, editor.dialogs, editor.commands),
-    }
-    for group, context in by_group.items():
-        editor.actions.bind(ACTION_GROUPS[group], context)
+    """Add all actions, in the order of the menus, each table with what it works on."""
+    bind = editor.actions.bind
+    bind(DOCUMENTS, contexts.documents)
+    bind(EDITS, EditContext.compose(editor, editor.canvas))
+    bind(GRAPH, contexts.canvas)
+    bind(CODE, contexts.code_files)
+    bind(VIEWER, contexts.viewer)
+    bind(FLIPBOOK, contexts.flipbooks)
+    bind(HANDLES, contexts.viewer)
+    bind(PLAYBACK, contexts.timeline)
+    bind(ANIMATION, contexts.curves)
+    bind(VIEW, ViewSettingsContext.compose(editor))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..shared.window_commands import PanelTitle
 from ..toolkit.keys import display_shortcut
 from ..viewer.context import ViewerContext
 from ..viewer.lights import can_add
@@ -15,7 +16,7 @@ Hint = tuple[str, str]
 def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint, ...]:
     """For the panel of that title; what is most needed first."""
     viewer, canvas = editor.viewer, editor.canvas
-    if panel == "Viewer":
+    if panel == PanelTitle.VIEWER:
         if viewer.picking:
             return ("Click", "take it from the picture"), ("Right click", "leave it")
         if viewer.drawing_region:
@@ -38,7 +39,7 @@ def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint
                 ("Double click", "add one"),
                 (key_text(editor, "viewer.remove_light"), "remove it"),
             )
-    if panel == "Graph" and canvas.tool:
+    if panel == PanelTitle.GRAPH and canvas.tool:
         return ("Drag", "across links"), ("Escape", "leave it")
     return tuple(
         (key_text(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if key_text(editor, keys)
@@ -51,7 +52,7 @@ def key_text(editor: Editor, keys: str) -> str:
 
 
 _HINTS: dict[str, tuple[Hint, ...]] = {
-    "Graph": (
+    PanelTitle.GRAPH: (
         ("node.add", "add a node"),
         ("Drag a pin", "link"),
         ("Middle drag", "move the view"),
@@ -59,7 +60,7 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Right click", "menu"),
         ("Ctrl+Right drag", "cut links"),
     ),
-    "Viewer": (
+    PanelTitle.VIEWER: (
         ("Wheel", "zoom"),
         ("Middle drag", "move the picture"),
         ("viewer.fit", "fit"),
@@ -68,7 +69,7 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Ctrl+click", "marker"),
         ("Right click", "menu"),
     ),
-    "Inspector": (
+    PanelTitle.INSPECTOR: (
         ("Drag", "change (Shift: finely)"),
         ("Click", "type, also +1 or *2"),
         ("Double click a name", "reset"),
@@ -82,9 +83,9 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Drag a corner", "play only a part"),
         ("Right click", "more"),
     ),
-    "Scopes": (("viewer.region", "measure a part of the picture"),),
-    "History": (("Click", "go back or forth to a step"),),
-    "Problems": (("Click", "show the node"), ("Right click", "copy")),
-    "Log": (("Right click", "copy"),),
+    PanelTitle.SCOPES: (("viewer.region", "measure a part of the picture"),),
+    PanelTitle.HISTORY: (("Click", "go back or forth to a step"),),
+    PanelTitle.PROBLEMS: (("Click", "show the node"), ("Right click", "copy")),
+    PanelTitle.LOG: (("Right click", "copy"),),
 }
 _ANYWHERE = (("help.palette", "find any command"), ("help.shortcuts", "all shortcuts"))

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from imgui_bundle import imgui
 
 from ..actions import MENUS
-from ..shared.action import Action
+from ..shared.action import Action, ListedAction
+from ..shared.window_commands import PanelTitle
 from ..toolkit.buttons import ActionSurface, entry
 
 
@@ -15,10 +16,10 @@ from ..toolkit.buttons import ActionSurface, entry
 class _Menu:
     """Actions and submenus in the order in which they appear."""
 
-    entries: dict[str, Action | _Menu] = field(default_factory=dict)
+    entries: dict[str, ListedAction | _Menu] = field(default_factory=dict)
 
 
-def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
+def draw_menus(context: ActionSurface, panels: dict[PanelTitle, bool]) -> None:
     """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
     for name, menu in arrange_menus(context.actions.all).items():
         if imgui.begin_menu(name):
@@ -32,7 +33,7 @@ def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
             imgui.end_menu()
 
 
-def arrange_menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
+def arrange_menus(actions: tuple[ListedAction, ...]) -> dict[str, _Menu]:
     """The menus of the menu bar by title, with what each holds in order."""
     menus = {name: _Menu() for name in MENUS}
     for action in actions:

@@ -45,16 +45,16 @@ class Docked:
 
 
 DOCKED = (
-    Docked("Viewer", "MainDockSpace", lambda contexts: Viewer(contexts.viewer), bare=True),
-    Docked("Graph", "Lower", lambda contexts: Canvas(contexts.canvas), bare=True),
-    Docked("Animation", "Lower", lambda contexts: AnimationPanel(contexts.curves), bare=True),
-    Docked("Code", "Lower", lambda contexts: CodePanel(contexts.code)),
-    Docked("Problems", "Lower", lambda contexts: ProblemsPanel(contexts.problems)),
-    Docked("Renders", "Lower", lambda contexts: RendersPanel(contexts.renders)),
-    Docked("Log", "Lower", lambda contexts: LogPanel(contexts.log)),
-    Docked("Inspector", "Right", lambda contexts: Inspector(contexts.inspector)),
-    Docked("Scopes", "RightLower", lambda contexts: ScopesPanel(contexts.viewer)),
-    Docked("History", "RightLower", lambda contexts: HistoryPanel(contexts.history)),
+    Docked(PanelTitle.VIEWER, "MainDockSpace", lambda contexts: Viewer(contexts.viewer), bare=True),
+    Docked(PanelTitle.GRAPH, "Lower", lambda contexts: Canvas(contexts.canvas), bare=True),
+    Docked(PanelTitle.ANIMATION, "Lower", lambda contexts: AnimationPanel(contexts.curves), bare=True),
+    Docked(PanelTitle.CODE, "Lower", lambda contexts: CodePanel(contexts.code)),
+    Docked(PanelTitle.PROBLEMS, "Lower", lambda contexts: ProblemsPanel(contexts.problems)),
+    Docked(PanelTitle.RENDERS, "Lower", lambda contexts: RendersPanel(contexts.renders)),
+    Docked(PanelTitle.LOG, "Lower", lambda contexts: LogPanel(contexts.log)),
+    Docked(PanelTitle.INSPECTOR, "Right", lambda contexts: Inspector(contexts.inspector)),
+    Docked(PanelTitle.SCOPES, "RightLower", lambda contexts: ScopesPanel(contexts.viewer)),
+    Docked(PanelTitle.HISTORY, "RightLower", lambda contexts: HistoryPanel(contexts.history)),
 )
 
 OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (

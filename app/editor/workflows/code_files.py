@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 from ...authoring.commands import EmbedCode
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
+from ..shared.window_commands import PanelTitle
 
 if TYPE_CHECKING:
     from ...authoring.log import Log
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     from ...custom_nodes import Code
     from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
+    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
 
 
@@ -41,6 +43,11 @@ class CodeFileWorkflow:
     editor: CodeEditor
     commands: WindowCommands
 
+    @classmethod
+    def compose(cls, services: Services, editor: CodeEditor) -> CodeFileWorkflow:
+        """Pick what files of code use."""
+        return cls(services.session, services.watcher, services.dialogs, services.log, editor, services.commands)
+
     @property
     def active_code(self) -> Code | None:
         """The code of the active node."""
@@ -54,7 +61,7 @@ class CodeFileWorkflow:
 
     def show(self) -> None:
         """Open the Code panel for the active node, ready for typing."""
-        self.commands.show_panel("Code")
+        self.commands.show_panel(PanelTitle.CODE)
         self.editor.focus = True
 
     def save(self, id: str) -> None:
@@ -108,7 +115,7 @@ class CodeFileWorkflow:
         )
 
 
-CODE: tuple[Action, ...] = (
+CODE: tuple[Action[CodeFileWorkflow], ...] = (
     Action(
         "code.edit",
         "Edit Code",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
+from ..shared.window_commands import PanelTitle
 
 if TYPE_CHECKING:
     from ...authoring.log import Log
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
+    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
     from .code_files import CodeFileWorkflow
 
@@ -41,6 +43,22 @@ class DocumentWorkflow:
     log: Log
     commands: WindowCommands
     code_files: CodeFileWorkflow
+
+    @classmethod
+    def compose(cls, services: Services, canvas: ElementView, code_files: CodeFileWorkflow) -> DocumentWorkflow:
+        """Pick what the File menu uses."""
+        return cls(
+            services.session,
+            services.store,
+            services.watcher,
+            services.recovery,
+            services.exports,
+            canvas,
+            services.dialogs,
+            services.log,
+            services.commands,
+            code_files,
+        )
 
     # --- opening -----------------------------------------------------------------------------------------------------
 
@@ -208,7 +226,7 @@ class DocumentWorkflow:
         self.dialogs.open.discard("start")
 
 
-DOCUMENTS: tuple[Action, ...] = (
+DOCUMENTS: tuple[Action[DocumentWorkflow], ...] = (
     Action("file.new", "New", DocumentWorkflow.ask_for_new, "File", "Ctrl+N"),
     Action("file.open", "Open...", DocumentWorkflow.ask_for_graph, "File", "Ctrl+O"),
     Action("file.start", "Presets and Recent Files...", lambda files: files.dialogs.open.add("start"), "File"),
@@ -224,7 +242,7 @@ DOCUMENTS: tuple[Action, ...] = (
     Action(
         "file.render",
         "Render to Files...",
-        lambda files: files.commands.show_panel("Renders"),
+        lambda files: files.commands.show_panel(PanelTitle.RENDERS),
         "File",
         "F12",
         separated=True,

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Protocol
 from ...authoring.flipbook import Flipbook, FlipbookStrip
 from ..shared.action import Action
 from ..shared.dialogs import Browse
+from ..shared.window_commands import PanelTitle
 
 if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Player
+    from ..shared.services import Services
     from ..shared.stage import DocumentStage
     from ..shared.window_commands import WindowCommands
 
@@ -41,6 +43,11 @@ class FlipbookPlayer:
     dialogs: Dialogs
     commands: WindowCommands
 
+    @classmethod
+    def compose(cls, services: Services, viewer: FlipbookScreen, timeline: Player) -> FlipbookPlayer:
+        """Pick what flipbooks use."""
+        return cls(services.stage, viewer, timeline, services.preview, services.dialogs, services.commands)
+
     def open(self, *strips: FlipbookStrip) -> None:
         """Play sequences in the viewer; two are side by side unless they are compared otherwise already."""
         document, before = self.stage.document, self.stage.flipbook
@@ -50,7 +57,7 @@ class FlipbookPlayer:
         self.timeline.stop()
         self.viewer.begin_flipbook(len(strips), again=before is not None)
         self.stage.flipbook = flipbook
-        self.commands.show_panel("Viewer")
+        self.commands.show_panel(PanelTitle.VIEWER)
 
     def close(self) -> None:
         """Show the document again."""
@@ -92,7 +99,7 @@ def _is_open(player: FlipbookPlayer) -> bool:
     return player.stage.flipbook is not None
 
 
-FLIPBOOK: tuple[Action, ...] = (
+FLIPBOOK: tuple[Action[FlipbookPlayer], ...] = (
     Action(
         "flipbook.open",
         "Play Pictures...",

@@ -11,7 +11,6 @@ from halation.authoring.commands import Disconnect, MakeGroup
 from halation.authoring.log import Log
 from halation.authoring.preferences import PreferenceStore
 from halation.authoring.session import Session
-from halation.editor.actions import table
 from halation.editor.command_palette.commands import list_commands, rank_commands
 from halation.editor.preferences.shortcut_changes import assign_shortcut, reset_shortcut, take_shortcut
 from halation.editor.problems.findings import list_problems, show_element
@@ -36,7 +35,7 @@ def desk(tmp_path: Path) -> Editor:
     none = cast(Any, None)
     preview, recovery, watcher = (cast(Any, SimpleNamespace(fault="", faults={})) for _ in range(3))
     log = Log()
-    actions = Actions(table(), lambda: store.current.shortcuts, log)
+    actions = Actions(lambda: store.current.shortcuts, log)
     return Editor(
         DocumentStage(Session(sandbox=UNRESTRICTED)),
         preview,
@@ -62,12 +61,12 @@ def first(contexts: Contexts, query: str) -> str:
     return rank_commands(query, list_commands(contexts.command_palette), ())[0][0].label
 
 
-def test_every_shortcut_can_be_pressed_and_is_written_in_one_way() -> None:
-    assert [one.id for one in table() if one.shortcut and text(chord(one.shortcut)) != one.shortcut] == []
+def test_every_shortcut_can_be_pressed_and_is_written_in_one_way(desk: Editor, contexts: Contexts) -> None:
+    assert [one.id for one in desk.actions.all if one.shortcut and text(chord(one.shortcut)) != one.shortcut] == []
 
 
-def test_no_two_actions_share_a_shortcut(desk: Editor) -> None:
-    assert not {one.id: clash for one in table() if (clash := desk.actions.conflicts(one.id, one.shortcut))}
+def test_no_two_actions_share_a_shortcut(desk: Editor, contexts: Contexts) -> None:
+    assert not {one.id: clash for one in desk.actions.all if (clash := desk.actions.conflicts(one.id, one.shortcut))}
 
 
 def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, contexts: Contexts) -> None:
@@ -121,15 +120,16 @@ def test_the_same_keys_may_serve_two_panels() -> None:
         Action("b", "B", print, shortcut="A", scope="viewer"),
         Action("c", "C", print, shortcut="A"),
     )
-    actions = Actions(acts, dict, Log())
+    actions = Actions(dict, Log())
+    actions.bind(acts, None)
     assert [one.id for one in actions.conflicts("a", "A")] == ["c"]
     assert [one.id for one in actions.conflicts("c", "A")] == ["a", "b"]
 
 
-def test_the_sheet_has_every_shortcut_once(desk: Editor) -> None:
+def test_the_sheet_has_every_shortcut_once(desk: Editor, contexts: Contexts) -> None:
     listed = [action.id for _, actions in group_actions(desk.actions) for action in actions]
-    assert sorted(listed) == sorted(one.id for one in table() if one.shortcut)
-    assert len([1 for _, actions in group_actions(desk.actions, every=True) for _ in actions]) == len(table())
+    assert sorted(listed) == sorted(one.id for one in desk.actions.all if one.shortcut)
+    assert len([1 for _, actions in group_actions(desk.actions, every=True) for _ in actions]) == len(desk.actions.all)
 
 
 def test_rows_that_count_up_are_one_line() -> None:

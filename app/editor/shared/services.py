@@ -1,0 +1,62 @@
+"""What the panels of a window share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from ...authoring.background.render_overviews import RenderOverviews
+from ...authoring.background.shader_files import ShaderFiles
+from ...authoring.log import Log
+from ...authoring.preview.color_fallback import ColorFallback
+from ...authoring.render_queue.queue import RenderQueue
+from ...watch.watching import FileWatcher
+from ..toolkit.context import Interface
+from .dialogs import Dialogs
+from .stage import DocumentStage
+from .window_commands import WindowCommands
+
+if TYPE_CHECKING:
+    from ...authoring.preferences import PreferenceStore
+    from ...authoring.preview import Preview
+    from ...authoring.recovery.recovery import RecoveryFile
+    from ...authoring.session import Session
+    from ...renderer.viewing.display import Display
+    from ...renderer.viewing.probe import PixelProbe
+    from .action import Actions
+    from .protocols import SystemText
+
+
+@dataclass
+class Services:
+    """The document, its pictures, the user's preferences, and what goes on in the background.
+
+    Only the `compose` of each panel's context sees all of it, to pick what that panel uses.
+    """
+
+    stage: DocumentStage
+    preview: Preview
+    store: PreferenceStore
+    actions: Actions
+    recovery: RecoveryFile
+    clipboard: SystemText
+    display: Display
+    probe: PixelProbe
+    interface: Interface
+    exports: RenderQueue
+    watcher: FileWatcher
+    renders: RenderOverviews
+    coloring: ColorFallback
+    log: Log = field(default_factory=Log)
+    shaders: ShaderFiles = field(default_factory=ShaderFiles)
+    dialogs: Dialogs = field(default_factory=Dialogs)
+    commands: WindowCommands = field(default_factory=WindowCommands)
+    faults: dict[str, str] = field(default_factory=dict[str, str])
+    """Panels that failed, with the traceback: shown in Problems."""
+    lights: dict[str, int] = field(default_factory=dict[str, int])
+    """The light that is selected, by the value that lists it: the inspector shows it, the viewer marks it."""
+
+    @property
+    def session(self) -> Session:
+        """The document."""
+        return self.stage.document
