@@ -47,7 +47,7 @@ def value(ui, port: str):
 
 def select(ui, *keys: str) -> int:
     """Select elements; how many steps the history has."""
-    ui.session.select(keys)
+    ui.session.select([*map(ElementId, keys)])
     ui.wait(3)
     return len(ui.session.history.steps)
 

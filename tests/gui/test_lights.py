@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from halation.authoring.commands import ReplaceGraph
+from halation.authoring.edits.element_id import ElementId
 from halation.editor.fields.value_field import height_of
 from halation.graph import Graph, Port
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
@@ -22,7 +23,7 @@ def start(ui, *lights: Light) -> int:
 
 
 def select(ui, key: str) -> int:
-    ui.session.select([key])
+    ui.session.select([ElementId(key)])
     ui.wait(3)
     return len(ui.session.history.steps)
 

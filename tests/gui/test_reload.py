@@ -19,6 +19,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from gui_driver import drive
+from halation.authoring.edits.element_id import ElementId
 from halation import document
 from halation.authoring.commands import SetValue
 from halation.editor.problems.findings import list_problems
@@ -108,7 +109,7 @@ def body(ui):
     ui.settled()
     good, text = file.read_text(), path.read_text()
     ui.session.apply(SetValue(Port("light", "stops"), 2.0))
-    ui.session.select(["light"])
+    ui.session.select([ElementId("light")])
     file.write_text(good.replace("stops:", "gain: Annotated[float, Slider(0.0, 9.0, unit='ratio')] = 7.0\\n    stops:"))
     ui.until(lambda: "field light.gain" in ui.editor.places)
     assert ui.session.value(Port("light", "gain")) == 7.0 and ui.session.value(Port("light", "stops")) == 2.0

@@ -14,8 +14,8 @@ from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
-from ..fields.lights import counted
-from ..fields.numbers import SUFFIX, bar, shown
+from ..fields.lights import describe_count
+from ..fields.numbers import SUFFIX, bar, format_number
 from ..shared.entries import spell_out
 from .geometry import Rect
 
@@ -291,12 +291,16 @@ def _make_field_texts(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     if value.type in ("choice", "text"):
         return (FieldText(spell_out(str(plain))),)
     if value.type == "lights" and isinstance(plain, tuple):
-        return (FieldText(counted(plain)),)
+        return (FieldText(describe_count(plain)),)
     if value.type in ("vector", "matrix") and isinstance(plain, tuple):
-        return tuple(FieldText(shown(part, value), bar(part, value)) for part in plain)
+        return tuple(FieldText(format_number(part, value), bar(part, value)) for part in plain)
     if value.type in ("float", "int") and isinstance(plain, int | float):
         suffix = SUFFIX[value.unit]
-        return (FieldText(f"{shown(plain, value)} {suffix}" if suffix else shown(plain, value), bar(plain, value)),)
+        return (
+            FieldText(
+                f"{format_number(plain, value)} {suffix}" if suffix else format_number(plain, value), bar(plain, value)
+            ),
+        )
     return (FieldText(""),)
 
 

@@ -84,12 +84,12 @@ class Page:
         widget.set_read_only_enabled(bool(self.context.session.borrowed))
         widget.render(f"##code {self.path}", ImVec2(*size))
         text = widget.get_text()
-        now = imgui.get_time()
+        time_now = imgui.get_time()
         if text != self._text:
-            if now - self._typed_at > BURST:
+            if time_now - self._typed_at > BURST:
                 self._bursts += 1
-            self._text, self._typed_at, self._pending = text, now, True
-        if self._pending and now - self._typed_at >= PAUSE:
+            self._text, self._typed_at, self._pending = text, time_now, True
+        if self._pending and time_now - self._typed_at >= PAUSE:
             self.commit()
 
     def commit(self) -> None:

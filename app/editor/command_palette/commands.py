@@ -45,7 +45,7 @@ def rank_commands(
 ) -> tuple[tuple[Command, Match], ...]:
     """The commands that match, best first; without a query those used last, then those that can be done now."""
     labels = tuple(command.label for command in offered)
-    matches = [(offered[one.index], one) for one in match(query, labels)]
+    matches = [(offered[ranked.index], ranked) for ranked in match(query, labels)]
     if query.strip():
 
         def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:

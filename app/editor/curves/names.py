@@ -81,7 +81,7 @@ class NameColumn:
         if letter is not None:
             state.hidden ^= {(port, letter)}
         elif io.key_shift and state.anchor:
-            ports = [other.port for other in frame.rows if other.port]
+            ports = [row.port for row in frame.rows if row.port]
             if state.anchor in ports:
                 a, b = sorted((ports.index(state.anchor), ports.index(port)))
                 state.chosen_rows = frozenset(ports[a : b + 1])

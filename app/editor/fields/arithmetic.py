@@ -63,12 +63,12 @@ def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
     start: list[float | str] = []
     if relative := _RELATIVE.match(text):
         start, text = [old, relative[1] or relative[2]], text[relative.end() :]
-    reader = _ExpressionReader([*start, *_tokens(text, unit)])
+    reader = _ExpressionReader([*start, *_read_tokens(text, unit)])
     try:
-        number = reader.sum()
+        number = reader.read_sum()
     except _FAULTS as error:
-        what = "divides by zero" if isinstance(error, ZeroDivisionError) else "is too large"
-        raise UsageError(f"this {what}") from None
+        fault = "divides by zero" if isinstance(error, ZeroDivisionError) else "is too large"
+        raise UsageError(f"this {fault}") from None
     if reader.next is not None:
         raise UsageError(f"'{reader.next}' is not expected here" if reader.next != ")" else "a '(' is missing")
     if not math.isfinite(number):
@@ -76,17 +76,17 @@ def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
     return number
 
 
-def _tokens(text: str, unit: Unit | None) -> list[float | str]:
-    found: list[float | str] = []
+def _read_tokens(text: str, unit: Unit | None) -> list[float | str]:
+    tokens: list[float | str] = []
     for match in _TOKEN.finditer(text.rstrip()):
-        number, word, operator, other = match.groups()
-        if other is not None:
-            raise UsageError(f"'{other}' is no part of a number: use digits, + - * / ** and ( )")
-        found.append(operator if operator else float(number) * _factor(word or "", unit))
-    return found
+        number, word, operator, unknown_sign = match.groups()
+        if unknown_sign is not None:
+            raise UsageError(f"'{unknown_sign}' is no part of a number: use digits, + - * / ** and ( )")
+        tokens.append(operator if operator else float(number) * find_factor(word or "", unit))
+    return tokens
 
 
-def _factor(word: str, unit: Unit | None) -> float:
+def find_factor(word: str, unit: Unit | None) -> float:
     """What a number followed by that word is multiplied with."""
     if not word:
         return 1.0
@@ -96,8 +96,8 @@ def _factor(word: str, unit: Unit | None) -> float:
         raise UsageError(f"percent do not fit: this counts {_WORDS[unit]}")
     if word.casefold() not in _UNITS:
         raise UsageError(f"'{word}' is no unit known here")
-    wanted, factor = _UNITS[word.casefold()]
-    if wanted != unit:
+    counted_unit, factor = _UNITS[word.casefold()]
+    if counted_unit != unit:
         raise UsageError(f"'{word}' does not fit: this counts {_WORDS[unit] if unit else 'plain numbers'}")
     return factor
 
@@ -113,45 +113,45 @@ class _ExpressionReader:
     def next(self) -> float | str | None:
         return self._tokens[self._at] if self._at < len(self._tokens) else None
 
-    def sum(self) -> float:
-        return self._chain(self._product, {"+": lambda a, b: a + b, "-": lambda a, b: a - b})
+    def read_sum(self) -> float:
+        return self._read_chain(self._read_product, {"+": lambda a, b: a + b, "-": lambda a, b: a - b})
 
-    def _product(self) -> float:
-        return self._chain(self._signed, {"*": lambda a, b: a * b, "/": lambda a, b: a / b})
+    def _read_product(self) -> float:
+        return self._read_chain(self._read_signed, {"*": lambda a, b: a * b, "/": lambda a, b: a / b})
 
-    def _chain(self, part: Callable[[], float], operators: Mapping[str, Callable[[float, float], float]]) -> float:
+    def _read_chain(self, part: Callable[[], float], operators: Mapping[str, Callable[[float, float], float]]) -> float:
         number = part()
         while isinstance(operator := self.next, str) and operator in operators:
             self._at += 1
             number = operators[operator](number, part())
         return number
 
-    def _signed(self) -> float:
+    def _read_signed(self) -> float:
         if self.next in ("+", "-"):
             sign = -1.0 if self.next == "-" else 1.0
             self._at += 1
-            return sign * self._signed()
-        return self._power()
+            return sign * self._read_signed()
+        return self._read_power()
 
-    def _power(self) -> float:
-        base = self._atom()
+    def _read_power(self) -> float:
+        base = self._read_atom()
         if self.next not in ("**", "^"):
             return base
         self._at += 1
-        exponent = self._signed()
+        exponent = self._read_signed()
         try:
             return math.pow(base, exponent)
         except ValueError:
             raise UsageError(f"{base:g} ** {exponent:g} is no number") from None
 
-    def _atom(self) -> float:
+    def _read_atom(self) -> float:
         token = self.next
         self._at += 1
         if isinstance(token, float | int):
             return float(token)
         if token != "(":
             raise UsageError(f"a number is missing {'at the end' if token is None else f'before {token!r}'}")
-        number = self.sum()
+        number = self.read_sum()
         if self.next != ")":
             raise UsageError("a ')' is missing")
         self._at += 1

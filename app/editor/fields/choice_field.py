@@ -23,51 +23,51 @@ def choice_field(
 ) -> Edit | None:
     """One of the declared choices: a list to pick from, typing finds, Ctrl and the wheel go through them."""
     assert isinstance(value, str)
-    found = choose(fields, id, value, declaration.choices, width, label=label, mixed=mixed)
-    return None if found is None else Edit(declaration.choices[found])
+    index = choose(fields, id, value, declaration.choices, width, label=label, mixed=mixed)
+    return None if index is None else Edit(declaration.choices[index])
 
 
 def choose(
-    fields: Fields, id: str, now: str, choices: Sequence[str], width: float, *, label: str = "", mixed: bool = False
+    fields: Fields, id: str, current: str, choices: Sequence[str], width: float, *, label: str = "", mixed: bool = False
 ) -> int | None:
     """A list of texts; the index of what was chosen."""
     rect, palette = place(width), fields.palette
     pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
     hovered = imgui.is_item_hovered()
-    wheel = _wheeled(now, choices) if hovered else None
+    wheel = _choose_by_wheel(current, choices) if hovered else None
     background(palette, rect, hovered=hovered, active=imgui.is_item_active())
     pad, arrow = imgui.get_style().frame_padding.x, imgui.get_font_size() * 0.8
     inner = (rect[0] + pad, rect[1], rect[2] - pad - arrow, rect[3])
-    text = NO_VALUE if mixed else now
+    text = NO_VALUE if mixed else current
     if label:
         used = write((inner[0], inner[1], inner[0] + (inner[2] - inner[0]) * 0.45, inner[3]), label, palette.dim)
         write((inner[0] + used + pad, inner[1], inner[2], inner[3]), text, palette.text, align=1.0)
     else:
-        write(inner, text, palette.text if mixed or now in choices else palette.error)
+        write(inner, text, palette.text if mixed or current in choices else palette.error)
     draw_arrow(palette, rect)
     if pressed:
         fields.filter = ""
         imgui.open_popup(f"choices {id}")
-    return _popup(fields, id, now, choices, rect) if wheel is None else wheel
+    return _draw_popup(fields, id, current, choices, rect) if wheel is None else wheel
 
 
-def _wheeled(now: str, choices: Sequence[str]) -> int | None:
+def _choose_by_wheel(current: str, choices: Sequence[str]) -> int | None:
     io = imgui.get_io()
-    if not io.key_ctrl or not io.mouse_wheel or now not in choices:
+    if not io.key_ctrl or not io.mouse_wheel or current not in choices:
         return None
-    index = choices.index(now) - (1 if io.mouse_wheel > 0 else -1)
+    index = choices.index(current) - (1 if io.mouse_wheel > 0 else -1)
     return index if 0 <= index < len(choices) else None
 
 
-def _popup(
-    fields: Fields, id: str, now: str, choices: Sequence[str], rect: tuple[float, float, float, float]
+def _draw_popup(
+    fields: Fields, id: str, current: str, choices: Sequence[str], rect: tuple[float, float, float, float]
 ) -> int | None:
     line = imgui.get_text_line_height_with_spacing()
     imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
     imgui.set_next_window_size_constraints((rect[2] - rect[0], 0.0), (line * 40, line * 18))
     if not imgui.begin_popup(f"choices {id}"):
         return None
-    found, word = None, ""
+    chosen_index, word = None, ""
     appearing = imgui.is_window_appearing()
     if len(choices) >= FILTERED:
         if appearing:
@@ -76,27 +76,27 @@ def _popup(
         _, fields.filter = imgui.input_text_with_hint("##find", "Type to find", fields.filter)
         word = fields.filter.strip().casefold()
     else:
-        fields.filter = _typed_ahead(fields.filter)
+        fields.filter = _extend_filter(fields.filter)
         word = fields.filter.casefold()
     matches = [index for index, choice in enumerate(choices) if word in choice.casefold()] or list(range(len(choices)))
     entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
     for index in matches:
-        chosen = choices[index] == now
+        chosen = choices[index] == current
         if imgui.selectable(f"{choices[index] or ' '}##{index}", chosen or (bool(word) and index == matches[0]))[0]:
-            found = index
+            chosen_index = index
         if chosen and appearing:
             imgui.set_scroll_here_y()
             if len(choices) < FILTERED:
                 imgui.set_item_default_focus()
-    if entered and word and found is None:
-        found = matches[0]
-    if found is not None or imgui.is_key_pressed(imgui.Key.escape):
+    if entered and word and chosen_index is None:
+        chosen_index = matches[0]
+    if chosen_index is not None or imgui.is_key_pressed(imgui.Key.escape):
         imgui.close_current_popup()
     imgui.end_popup()
-    return found
+    return chosen_index
 
 
-def _typed_ahead(word: str) -> str:
+def _extend_filter(word: str) -> str:
     """What was typed over a short list so far."""
     if imgui.is_key_pressed(imgui.Key.backspace):
         return word[:-1]

@@ -15,7 +15,7 @@ from ..toolkit.buttons import quiet_button
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
 from ..toolkit.words import draw_dim, write
-from .colors import RGBA, brightened, dimmed, from_hexadecimal, hexadecimal, intensity, picked, swatch
+from .colors import RGBA, brighten, from_display, from_hexadecimal, hexadecimal, intensity, swatch, to_display
 from .fields import Edit, Fields
 from .number_field import NO_VALUE, number_field, row_of_numbers
 from .text_field import text_field
@@ -55,22 +55,24 @@ def color_field(
     if label or numbers:
         draw_swatch(fields, rect, color, hovered)
     else:
-        _in_short(fields, rect, side, color if alpha else color[:3], mixed, hovered)
+        _draw_short(fields, rect, side, color if alpha else color[:3], mixed, hovered)
     if label:
-        _name_on(fields, rect, color, label)
+        _draw_name(fields, rect, color, label)
     if pressed:
         fields.stops = intensity(color)
         imgui.open_popup(f"picker {id}")
-    found = None
+    color_edit = None
     if numbers:
         gap = imgui.get_style().item_inner_spacing.x
         imgui.same_line(0.0, gap)
-        found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES if alpha else _NAMES[:3], mixed)
-    imgui.set_next_window_pos(_inside(rect), imgui.Cond_.appearing)
+        color_edit = row_of_numbers(
+            fields, id, color, _LIGHT, width - side - gap, _NAMES if alpha else _NAMES[:3], mixed
+        )
+    imgui.set_next_window_pos(_place_picker(rect), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
-        found = color_picker(fields, f"{id} picker", color, eyedropper, alpha) or found
+        color_edit = color_picker(fields, f"{id} picker", color, eyedropper, alpha) or color_edit
         imgui.end_popup()
-    return found
+    return color_edit
 
 
 def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True) -> Edit | None:
@@ -80,27 +82,27 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, 
 
     def from_stops(edit: Edit) -> Edit | None:
         number = edit.value
-        return replace(edit, value=brightened(color, number - stops)) if isinstance(number, int | float) else None
+        return replace(edit, value=brighten(color, number - stops)) if isinstance(number, int | float) else None
 
     def from_hex(edit: Edit) -> Edit | None:
-        return _from_text(str(edit.value), color)
+        return _read_color(str(edit.value), color)
 
     fields.part(f"{id} stops", owner, from_stops)
     fields.part(f"{id} light", owner, lambda edit: edit)
     fields.part(f"{id} hex", owner, from_hex)
-    found = _wheel(fields, id, color, width, alpha)
-    _label(fields, "Intensity", side)
+    color_edit = _draw_wheel(fields, id, color, width, alpha)
+    _draw_label(fields, "Intensity", side)
     if edit := number_field(fields, f"{id} stops", stops, _STOPS, width - side):
-        found = from_stops(edit)
+        color_edit = from_stops(edit)
         fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
     numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES if alpha else _NAMES[:3])
-    _label(fields, "sRGB hex", side)
+    _draw_label(fields, "sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
-    fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper, alpha)
+    fresh = numbers or (from_hex(text) if text else None) or _draw_buttons(fields, id, color, eyedropper, alpha)
     if fresh:
         fields.stops = intensity(rgba(fresh.value))
-    return fresh or found
+    return fresh or color_edit
 
 
 def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
@@ -122,11 +124,11 @@ def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) 
         lines.add_rect_filled(rect[:2], rect[2:], u32(swatch(color), alpha), rounding)
         lines.pop_clip_rect()
     if max(color[:3]) > 1.0:
-        _sun(fields, rect, color)
+        _draw_bright_corner(fields, rect, color)
     lines.add_rect(rect[:2], rect[2:], u32(palette.accent if hovered else palette.border), rounding)
 
 
-def _wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> Edit | None:
+def _draw_wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> Edit | None:
     flag = imgui.ColorEditFlags_
     flags = sum(
         int(part)
@@ -141,34 +143,34 @@ def _wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> E
             flag.alpha_bar if alpha else flag.no_alpha,
         )
     )
-    shown = dimmed(color, fields.stops)
+    display_color = to_display(color, fields.stops)
     imgui.set_next_item_width(width)
-    changed, made = imgui.color_picker4(f"##{id} wheel", [*shown, min(max(color[3], 0.0), 1.0)], flags)
+    changed, picked = imgui.color_picker4(f"##{id} wheel", [*display_color, min(max(color[3], 0.0), 1.0)], flags)
     if imgui.is_item_activated():
         fields.start_gesture()
     if not changed:
         return None
-    return Edit(picked((made[0], made[1], made[2]), fields.stops, made[3]), fields.merge)
+    return Edit(from_display((picked[0], picked[1], picked[2]), fields.stops, picked[3]), fields.merge)
 
 
-def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha: bool) -> Edit | None:
-    found = None
+def _draw_buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha: bool) -> Edit | None:
+    pasted = None
     gap = imgui.get_style().item_inner_spacing.x
     imgui.same_line(0.0, gap)
     if quiet_button(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the linear numbers"):
         imgui.set_clipboard_text(" ".join(f"{part:g}" for part in (color if alpha else color[:3])))
     imgui.same_line(0.0, gap)
     if quiet_button(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
-        found = _from_text(imgui.get_clipboard_text(), color)
+        pasted = _read_color(imgui.get_clipboard_text(), color)
     if eyedropper:
         imgui.same_line(0.0, gap)
         if quiet_button(fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", "Pick the color from the viewer"):
             fields.eyedropper = id.removesuffix(" picker")
             imgui.close_current_popup()
-    return found
+    return pasted
 
 
-def _from_text(text: str, color: RGBA) -> Edit | None:
+def _read_color(text: str, color: RGBA) -> Edit | None:
     """A color that was pasted or typed; anything else changes nothing."""
     parts = text.replace(",", " ").split()
     try:
@@ -176,23 +178,23 @@ def _from_text(text: str, color: RGBA) -> Edit | None:
     except ValueError:
         numbers = []
     if len(numbers) in (3, 4):
-        made = (numbers[0], numbers[1], numbers[2], numbers[3] if len(numbers) == 4 else color[3])
+        numbers_read = (numbers[0], numbers[1], numbers[2], numbers[3] if len(numbers) == 4 else color[3])
     else:
         try:
-            made = from_hexadecimal(text, color[3])
+            numbers_read = from_hexadecimal(text, color[3])
         except UsageError:
             return None
-    return Edit(made)
+    return Edit(numbers_read)
 
 
-def _label(fields: Fields, text: str, side: float) -> None:
+def _draw_label(fields: Fields, text: str, side: float) -> None:
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     draw_dim(fields, text)
     imgui.same_line(left + side)
 
 
-def _inside(rect: Rect) -> tuple[float, float]:
+def _place_picker(rect: Rect) -> tuple[float, float]:
     """Where the picker opens: below the swatch, moved so that all of it can be seen."""
     view, pad = imgui.get_main_viewport(), imgui.get_style().window_padding
     width = imgui.get_font_size() * WIDTH + 2 * pad.x
@@ -201,7 +203,7 @@ def _inside(rect: Rect) -> tuple[float, float]:
     return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
 
 
-def _in_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:
+def _draw_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:
     """A swatch, and the numbers in few digits where there is no room to edit them."""
     background(fields.palette, rect, hovered=hovered)
     draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), rgba(color), hovered)
@@ -210,7 +212,7 @@ def _in_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed:
     write((rect[0] + side + pad, rect[1], rect[2] - pad, rect[3]), text, fields.palette.text)
 
 
-def _name_on(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:
+def _draw_name(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:
     pad = imgui.get_style().frame_padding.x
     below, palette = _luma(swatch(color)), fields.palette
     ink = max((palette.text, palette.panel), key=lambda ink: abs(_luma(ink) - below))
@@ -221,7 +223,7 @@ def _luma(color: RGB) -> float:
     return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
 
 
-def _sun(fields: Fields, rect: Rect, color: RGBA) -> None:
+def _draw_bright_corner(fields: Fields, rect: Rect, color: RGBA) -> None:
     """A corner that says: brighter than can be shown."""
     size = (rect[3] - rect[1]) * 0.35
     imgui.get_window_draw_list().add_triangle_filled(

@@ -36,18 +36,18 @@ def intensity(color: RGBA) -> float:
     return max(math.log2(max(*color[:3], 1e-30)), 0.0)
 
 
-def picked(number: RGB, stops: float, alpha: float) -> RGBA:
+def from_display(number: RGB, stops: float, alpha: float) -> RGBA:
     """The scene-linear color of display numbers, brightened by `stops`."""
     red, green, blue = (decode(part) * 2.0**stops for part in number)
     return red, green, blue, alpha
 
 
-def dimmed(color: RGBA, stops: float) -> RGB:
+def to_display(color: RGBA, stops: float) -> RGB:
     """What `picked` makes `color` of."""
     return swatch((color[0] / 2.0**stops, color[1] / 2.0**stops, color[2] / 2.0**stops))
 
 
-def brightened(color: RGBA, stops: float) -> RGBA:
+def brighten(color: RGBA, stops: float) -> RGBA:
     """The color with that many stops more."""
     red, green, blue = (part * 2.0**stops for part in color[:3])
     return red, green, blue, color[3]

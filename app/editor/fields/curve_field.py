@@ -14,7 +14,17 @@ from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
 from .fields import Edit, Fields
 from .number_field import row_of_numbers
-from .points import CURVES, added, changed, curve_line, inverted, nearest, removed, scaled, split
+from .points import (
+    CURVES,
+    curve_line,
+    find_nearest,
+    insert_point,
+    invert,
+    move_point,
+    remove_point,
+    scale_curve,
+    split_points,
+)
 
 HEIGHT = 8.0
 """Heights of a text line that the plot has."""
@@ -33,10 +43,10 @@ def curve_field(
     active, hovered = imgui.is_item_active(), imgui.is_item_hovered()
     low, high = _range(value, declaration)
     area = _Area(rect, low, high)
-    found = _pressed(fields, id, value, area, hovered) or _pulled(fields, id, value, declaration, area, active)
-    now = found.value if found and isinstance(found.value, tuple) else value
-    _draw(fields, id, now, area, hovered)
-    return _below(fields, id, now, declaration, width) or found
+    edit = _press(fields, id, value, area, hovered) or _drag(fields, id, value, declaration, area, active)
+    numbers = edit.value if edit and isinstance(edit.value, tuple) else value
+    _draw(fields, id, numbers, area, hovered)
+    return _draw_below(fields, id, numbers, declaration, width) or edit
 
 
 class _Area:
@@ -72,27 +82,27 @@ def _range(value: tuple[float, ...], declaration: Value) -> tuple[float, float]:
     return min(low, *heights), max(high, *heights)
 
 
-def _pressed(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovered: bool) -> Edit | None:
+def _press(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovered: bool) -> Edit | None:
     if not hovered:
         return None
     x, y = area.mouse()
     if imgui.is_mouse_clicked(imgui.MouseButton_.right):
-        index = nearest(value, 2, x, y, area.reach())
-        return Edit(removed(value, 2, index)) if index >= 0 and len(value) > 4 else None
+        index = find_nearest(value, 2, x, y, area.reach())
+        return Edit(remove_point(value, 2, index)) if index >= 0 and len(value) > 4 else None
     if not imgui.is_item_activated():
         return None
     merge = fields.start_gesture()
     fields.drag_id, fields.before = id, value
-    index = nearest(value, 2, x, y, area.reach())
+    index = find_nearest(value, 2, x, y, area.reach())
     if index >= 0:
         fields.point = (id, index)
         return None
-    made, index = added(value, 2, (min(max(x, 0.0), 1.0), y))
+    numbers, index = insert_point(value, 2, (min(max(x, 0.0), 1.0), y))
     fields.point = (id, index)
-    return Edit(made, merge) if made != value else None
+    return Edit(numbers, merge) if numbers != value else None
 
 
-def _pulled(
+def _drag(
     fields: Fields, id: str, value: tuple[float, ...], declaration: Value, area: _Area, active: bool
 ) -> Edit | None:
     if fields.drag_id != id:
@@ -105,11 +115,11 @@ def _pulled(
         return None
     if area.outside() and len(value) > 4 and 0 < index < len(value) // 2 - 1:
         fields.drag_id, fields.point = "", ("", -1)
-        return Edit(removed(value, 2, index), fields.merge)
+        return Edit(remove_point(value, 2, index), fields.merge)
     x, y = area.mouse()
     y = min(max(y, area.low, declaration.minimum), area.high, declaration.maximum)
-    made = changed(value, 2, index, (x, y))
-    return Edit(made, fields.merge) if made != value else None
+    numbers = move_point(value, 2, index, (x, y))
+    return Edit(numbers, fields.merge) if numbers != value else None
 
 
 def _draw(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovered: bool) -> None:
@@ -121,9 +131,9 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovere
         lines.add_line(area.at(part / 4, area.low), area.at(part / 4, area.high), grid)
         lines.add_line(area.at(0.0, level), area.at(1.0, level), grid)
     lines.push_clip_rect(area.rect[:2], area.rect[2:], True)
-    drawn = [area.at(x, y) for x, y in curve_line(value, 64)]
-    lines.add_polyline([imgui.ImVec2(*point) for point in drawn], u32(palette.accent), 2.0 * scale, 0)
-    for index, point in enumerate(split(value, 2)):
+    line_points = [area.at(x, y) for x, y in curve_line(value, 64)]
+    lines.add_polyline([imgui.ImVec2(*point) for point in line_points], u32(palette.accent), 2.0 * scale, 0)
+    for index, point in enumerate(split_points(value, 2)):
         chosen = fields.point == (id, index)
         lines.add_circle_filled(area.at(*point), (5.0 if chosen else 4.0) * scale, u32(palette.text))
         if chosen:
@@ -131,9 +141,9 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovere
     lines.pop_clip_rect()
 
 
-def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float) -> Edit | None:
+def _draw_below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float) -> Edit | None:
     """The numbers of the selected point, and what can be done with the whole."""
-    found = None
+    curve_edit = None
     gap, side = imgui.get_style().item_inner_spacing.x, imgui.get_font_size() * 4.5
     index = fields.point[1] if fields.point[0] == id else -1
     if 0 <= index < len(value) // 2:
@@ -141,11 +151,13 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
         part = structs.replace(declaration, low=min(0.0, declaration.low), high=max(1.0, declaration.high))
 
         def whole(edit: Edit) -> Edit | None:
-            return replace(edit, value=changed(value, 2, index, edit.value)) if isinstance(edit.value, tuple) else None
+            return (
+                replace(edit, value=move_point(value, 2, index, edit.value)) if isinstance(edit.value, tuple) else None
+            )
 
         fields.part(f"{id} point", id, whole)
         edit = row_of_numbers(fields, f"{id} point", point, part, width - side - gap, ("x", "y"))
-        found = whole(edit) if edit else None
+        curve_edit = whole(edit) if edit else None
         imgui.same_line(0.0, gap)
     if imgui.button(f"Presets##{id}", (side if 0 <= index < len(value) // 2 else width, 0.0)):
         imgui.open_popup(f"presets {id}")
@@ -153,9 +165,9 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
         low, high = (declaration.low, declaration.high) if math.isfinite(declaration.low) else (0.0, 1.0)
         for name, preset in CURVES.items():
             if imgui.menu_item(name, "", False)[0]:
-                found = Edit(scaled(preset, low, high))
+                curve_edit = Edit(scale_curve(preset, low, high))
         imgui.separator()
         if imgui.menu_item("Invert", "", False)[0]:
-            found = Edit(inverted(value, 2, low, high))
+            curve_edit = Edit(invert(value, 2, low, high))
         imgui.end_popup()
-    return found
+    return curve_edit

@@ -10,7 +10,7 @@ from halation.nodes import Plain, Value
 
 from ...errors import UsageError
 from ..theme.palette import Palette
-from .numbers import Drag, typed
+from .numbers import Drag, parse_number
 
 if TYPE_CHECKING:
     from ..toolkit.places import Rect
@@ -39,10 +39,10 @@ class Typing:
     merge: str = ""
     starting: bool = True
     """True until the text cursor is in it."""
-    seen: bool = True
+    drawn: bool = True
     tab: int = 0
     """1 or -1: the next or previous field is wanted."""
-    stepped: bool = False
+    has_stepped: bool = False
     """True in the frame in which an arrow key changed a digit."""
 
     def result(self) -> Edit | None:
@@ -54,7 +54,7 @@ class Typing:
         assert isinstance(self.old, int | float)
         if self.text.lstrip().startswith("="):
             return Edit(self.old, self.merge, self.text, self.text)
-        return Edit(typed(self.text, self.old, self.number), self.merge, self.text)
+        return Edit(parse_number(self.text, self.old, self.number), self.merge, self.text)
 
     @property
     def fault(self) -> str:
@@ -78,7 +78,7 @@ class Fields:
     drag_id: str = ""
     pressed: str = ""
     """The field under a mouse button that has not been dragged yet."""
-    wanted: str = ""
+    next_field: str = ""
     """The field that gets the text cursor when it is drawn next."""
     eyedropper: str = ""
     """The color field whose eyedropper was pressed in this frame."""
@@ -103,33 +103,33 @@ class Fields:
     """How an edit of a field that is part of another (`gain#2` of `gain`) becomes one of that, by the part's name."""
     owners: dict[str, str] = field(default_factory=dict[str, str])
     """The field that a part belongs to."""
-    known: tuple[str, ...] = ()
+    previous_order: tuple[str, ...] = ()
     """The same of the whole frame before."""
 
     def begin(self, held: bool = True) -> None:
         """Call before the panel's fields, every frame; `held` says whether a mouse button is down."""
         if not held:
             self.drag_id = ""
-        self.known = tuple(self.order)
+        self.previous_order = tuple(self.order)
         self.order.clear()
         self.eyedropper = ""
         if self.typing:
-            self.typing.seen = False
+            self.typing.drawn = False
         else:
             self.parts.clear()
             self.owners.clear()
 
     def end(self) -> tuple[str, Edit] | None:
         """Call after them: what was typed in a field that is not there any more, since something else was selected."""
-        left = self.typing
-        if left is None or left.seen:
+        abandoned = self.typing
+        if abandoned is None or abandoned.drawn:
             return None
         self.typing = None
         try:
-            edit = None if left.starting else left.result()
+            edit = None if abandoned.starting else abandoned.result()
         except UsageError:
             edit = None
-        id = left.id
+        id = abandoned.id
         while edit and id in self.owners:
             edit, id = self.parts[id](edit), self.owners[id]
         return (id, edit) if edit else None
@@ -155,11 +155,11 @@ class Fields:
 
     def type_in(self, id: str, text: str, old: Plain, number: Value | None = None) -> None:
         """Put the text cursor into a field."""
-        self.wanted = ""
+        self.next_field = ""
         self.typing = Typing(id, text, text, old, number)
 
     def next_after(self, id: str, direction: int) -> str:
         """The field that Tab goes to."""
-        if id not in self.known or len(self.known) < 2:
+        if id not in self.previous_order or len(self.previous_order) < 2:
             return ""
-        return self.known[(self.known.index(id) + direction) % len(self.known)]
+        return self.previous_order[(self.previous_order.index(id) + direction) % len(self.previous_order)]

@@ -26,21 +26,25 @@ class LightProperty:
     declaration: Value
     kinds: tuple[LightKind, ...] = tuple(LightKind)
 
-    def of(self, light: Light) -> Plain:
+    def read_from(self, light: Light) -> Plain:
         """What it is; a color with an alpha of 1, as all fields of colors have it."""
-        found: Plain = getattr(light, self.name)
-        return (*found, 1.0) if self.name == "color" and isinstance(found, tuple) else found
+        plain: Plain = getattr(light, self.name)
+        return (*plain, 1.0) if self.name == "color" and isinstance(plain, tuple) else plain
 
-    def put(self, light: Light, plain: Plain) -> Light:
+    def apply_to(self, light: Light, plain: Plain) -> Light:
         """The light with another one. It always shines somewhere, and its inner angle is never the wider one."""
         if self.name == "color" and isinstance(plain, tuple):
             return structs.replace(light, color=plain[:3])
         if self.name == "direction" and isinstance(plain, tuple) and not any(plain):
             return light
-        made = structs.replace(light, **{self.name: plain})
+        changed_light = structs.replace(light, **{self.name: plain})
         if self.name == "inner":
-            return structs.replace(made, outer=max(made.inner, made.outer))
-        return structs.replace(made, inner=min(made.inner, made.outer)) if self.name == "outer" else made
+            return structs.replace(changed_light, outer=max(changed_light.inner, changed_light.outer))
+        return (
+            structs.replace(changed_light, inner=min(changed_light.inner, changed_light.outer))
+            if self.name == "outer"
+            else changed_light
+        )
 
     def unit(self, kind: LightKind) -> str | None:
         """What stands behind the number, where that is no unit of values."""
@@ -135,33 +139,33 @@ PARTS = (
 @cache
 def parts_of(kind: LightKind) -> tuple[LightProperty, ...]:
     """What a light of that kind has; each declares as its default what a new one has."""
-    new = fresh(kind)
+    new = make_light(kind)
     return tuple(
-        replace(part, declaration=structs.replace(part.declaration, default=part.of(new)))
+        replace(part, declaration=structs.replace(part.declaration, default=part.read_from(new)))
         for part in PARTS
         if kind in part.kinds
     )
 
 
-def fresh(kind: LightKind) -> Light:
+def make_light(kind: LightKind) -> Light:
     """A new light."""
     return Light(kind, intensity=_SUNLIGHT) if kind is _SUN else Light(kind)
 
 
-def turned(light: Light, kind: LightKind) -> Light:
+def change_kind(light: Light, kind: LightKind) -> Light:
     """The light as one of another kind; an intensity that was never touched becomes that of a new one."""
-    untouched = light.intensity == fresh(light.kind).intensity
-    return structs.replace(light, kind=kind, intensity=fresh(kind).intensity if untouched else light.intensity)
+    untouched = light.intensity == make_light(light.kind).intensity
+    return structs.replace(light, kind=kind, intensity=make_light(kind).intensity if untouched else light.intensity)
 
 
-def count_of(numbers: Numbers) -> int:
+def count_lights(numbers: Numbers) -> int:
     """How many lights there are."""
     return len(numbers) // LIGHT_NUMBERS
 
 
-def counted(numbers: Numbers) -> str:
+def describe_count(numbers: Numbers) -> str:
     """The same in words."""
-    count = count_of(numbers)
+    count = count_lights(numbers)
     return "no lights" if not count else "1 light" if count == 1 else f"{count} lights"
 
 
@@ -170,37 +174,37 @@ def light_at(numbers: Numbers, index: int) -> Light:
     return lights_of(numbers[index * LIGHT_NUMBERS : (index + 1) * LIGHT_NUMBERS])[0]
 
 
-def title(light: Light, index: int) -> str:
+def light_title(light: Light, index: int) -> str:
     """What a light is called: its kind, and which of the list it is."""
     return f"{KINDS[light.kind]} {index + 1}"
 
 
-def strength(light: Light) -> str:
+def describe_intensity(light: Light) -> str:
     """The intensity in few digits."""
     size = abs(light.intensity)
     return f"{light.intensity:.0f}" if 1e3 <= size < 1e6 else f"{light.intensity:.3g}"
 
 
-def changed(numbers: Numbers, index: int, light: Light) -> Numbers:
+def replace_light(numbers: Numbers, index: int, light: Light) -> Numbers:
     """The list with another light at a place."""
     return (*numbers[: index * LIGHT_NUMBERS], *light.numbers, *numbers[(index + 1) * LIGHT_NUMBERS :])
 
 
-def added(numbers: Numbers, index: int, light: Light) -> tuple[Numbers, int]:
+def insert_light(numbers: Numbers, index: int, light: Light) -> tuple[Numbers, int]:
     """The list with one more light behind a place (-1 is before all), and where that is; as it was if it is full."""
-    if count_of(numbers) >= MAX_LIGHTS:
+    if count_lights(numbers) >= MAX_LIGHTS:
         return numbers, index
     at = (index + 1) * LIGHT_NUMBERS
     return (*numbers[:at], *light.numbers, *numbers[at:]), index + 1
 
 
-def removed(numbers: Numbers, index: int) -> tuple[Numbers, int]:
+def remove_light(numbers: Numbers, index: int) -> tuple[Numbers, int]:
     """The list with one light less, and the one that is selected then: that behind it, else the last."""
-    left = (*numbers[: index * LIGHT_NUMBERS], *numbers[(index + 1) * LIGHT_NUMBERS :])
-    return left, min(index, count_of(left) - 1)
+    remaining = (*numbers[: index * LIGHT_NUMBERS], *numbers[(index + 1) * LIGHT_NUMBERS :])
+    return remaining, min(index, count_lights(remaining) - 1)
 
 
-def moved(numbers: Numbers, index: int, by: int) -> tuple[Numbers, int]:
+def move_light(numbers: Numbers, index: int, by: int) -> tuple[Numbers, int]:
     """The list with one light further on, as far as that goes, and where it is then."""
-    light, (rest, _) = light_at(numbers, index), removed(numbers, index)
-    return added(rest, min(max(index + by, 0), count_of(rest)) - 1, light)
+    light, (rest, _) = light_at(numbers, index), remove_light(numbers, index)
+    return insert_light(rest, min(max(index + by, 0), count_lights(rest)) - 1, light)

@@ -16,7 +16,20 @@ from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import tip, write
 from .colors import swatch
 from .fields import Edit, Fields
-from .lights import KINDS, Numbers, added, changed, count_of, counted, fresh, light_at, moved, removed, strength, title
+from .lights import (
+    KINDS,
+    Numbers,
+    count_lights,
+    describe_count,
+    describe_intensity,
+    insert_light,
+    light_at,
+    light_title,
+    make_light,
+    move_light,
+    remove_light,
+    replace_light,
+)
 from .number_field import NO_VALUE
 
 ICONS = (icons.ICON_FA_LIGHTBULB, icons.ICON_FA_BULLSEYE, icons.ICON_FA_SUN, icons.ICON_FA_CIRCLE)
@@ -37,10 +50,10 @@ def lights_field(
     imgui.push_style_color(imgui.Col_.child_bg, vec4(fields.palette.field))
     imgui.begin_child(f"##{id} lights", (width, _list_height(value)), 0, int(imgui.WindowFlags_.no_nav))
     imgui.pop_style_color()
-    found = _list(fields, id, value)
-    found = _menu(fields, id, value) or found
+    edit = _draw_list(fields, id, value)
+    edit = _draw_menu(fields, id, value) or edit
     imgui.end_child()
-    return _buttons(fields, id, value, width, NO_VALUE if mixed else counted(value)) or found
+    return _draw_buttons(fields, id, value, width, NO_VALUE if mixed else describe_count(value)) or edit
 
 
 def lights_height(value: Plain) -> float:
@@ -49,9 +62,9 @@ def lights_height(value: Plain) -> float:
     return _list_height(value) + imgui.get_style().item_spacing.y + imgui.get_frame_height()
 
 
-def selected(fields: Fields, id: str, value: Numbers) -> int:
+def find_selected(fields: Fields, id: str, value: Numbers) -> int:
     """The light whose rows are shown; -1 if there is none."""
-    return min(max(fields.lights.get(id, 0), 0), count_of(value) - 1)
+    return min(max(fields.lights.get(id, 0), 0), count_lights(value) - 1)
 
 
 def _row_height() -> float:
@@ -59,16 +72,16 @@ def _row_height() -> float:
 
 
 def _list_height(value: Numbers) -> float:
-    return _row_height() * min(max(count_of(value), 1), ROWS)
+    return _row_height() * min(max(count_lights(value), 1), ROWS)
 
 
 # --- the list --------------------------------------------------------------------------------------------------------
 
 
-def _list(fields: Fields, id: str, value: Numbers) -> Edit | None:
+def _draw_list(fields: Fields, id: str, value: Numbers) -> Edit | None:
     """Only those that can be seen are drawn, or even read: there may be a thousand."""
-    count, height, found = count_of(value), _row_height(), None
-    chosen = selected(fields, id, value)
+    count, height, edit = count_lights(value), _row_height(), None
+    chosen = find_selected(fields, id, value)
     if not count:
         imgui.dummy((1.0, height))
         pad = imgui.get_style().frame_padding.x
@@ -84,13 +97,13 @@ def _list(fields: Fields, id: str, value: Numbers) -> Edit | None:
     clipper.begin(count, height)
     while clipper.step():
         for index in range(clipper.display_start, clipper.display_end):
-            found = _row(fields, id, value, index, index == chosen) or found
+            edit = _draw_row(fields, id, value, index, index == chosen) or edit
     clipper.end()
     imgui.pop_style_var()
-    return found
+    return edit
 
 
-def _row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool) -> Edit | None:
+def _draw_row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool) -> Edit | None:
     light, palette, scale = light_at(value, index), fields.palette, ui_scale()
     start = imgui.get_cursor_pos()
     rect = place(imgui.get_content_region_avail().x, _row_height())
@@ -112,14 +125,14 @@ def _row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool) -> E
     if chosen or hovered or over_eye:
         color = mix(palette.field, palette.accent, 0.3) if chosen else mix(palette.field, palette.hover, 0.35)
         lines.add_rect_filled(rect[:2], rect[2:], u32(color), imgui.get_style().frame_rounding)
-    _face(fields, light, index, (rect[0], rect[1], eye, rect[3]))
+    _draw_face(fields, light, index, (rect[0], rect[1], eye, rect[3]))
     ink = palette.text if over_eye else palette.dim
-    _centered((eye, rect[1], rect[2], rect[3]), icons.ICON_FA_EYE if light.on else icons.ICON_FA_EYE_SLASH, ink)
+    _draw_icon((eye, rect[1], rect[2], rect[3]), icons.ICON_FA_EYE if light.on else icons.ICON_FA_EYE_SLASH, ink)
     imgui.set_cursor_pos((start.x, start.y + _row_height()))
-    return Edit(changed(value, index, structs.replace(light, on=not light.on))) if switched else None
+    return Edit(replace_light(value, index, structs.replace(light, on=not light.on))) if switched else None
 
 
-def _face(fields: Fields, light: Light, index: int, rect: Rect) -> None:
+def _draw_face(fields: Fields, light: Light, index: int, rect: Rect) -> None:
     """The color, with a bar across it if it takes light away; icon, name, and how strong it is."""
     palette, lines, scale = fields.palette, imgui.get_window_draw_list(), ui_scale()
     left, top, right, bottom = rect
@@ -132,15 +145,15 @@ def _face(fields: Fields, light: Light, index: int, rect: Rect) -> None:
     lines.add_rect(chip[:2], chip[2:], u32(palette.border), 3.0 * scale)
     ink = palette.text if light.on else palette.dim
     icon = chip[2] + pad, top, chip[2] + bottom - top + pad, bottom
-    _centered(icon, ICONS[light.kind], mix(palette.dim, ink, 0.5))
-    number = strength(light)
+    _draw_icon(icon, ICONS[light.kind], mix(palette.dim, ink, 0.5))
+    number = describe_intensity(light)
     room = imgui.calc_text_size(number).x
-    used = write((icon[2] + pad, top, right, bottom), title(light, index), ink)
+    used = write((icon[2] + pad, top, right, bottom), light_title(light, index), ink)
     if icon[2] + 4.0 * pad + used + room <= right:
         write((icon[2], top, right, bottom), number, palette.dim, align=1.0)
 
 
-def _centered(rect: Rect, icon: str, color: tuple[float, float, float]) -> None:
+def _draw_icon(rect: Rect, icon: str, color: tuple[float, float, float]) -> None:
     size = imgui.calc_text_size(icon)
     x, y = (rect[0] + rect[2] - size.x) * 0.5, (rect[1] + rect[3] - size.y) * 0.5
     imgui.get_window_draw_list().add_text((round(x), round(y)), u32(color), icon)
@@ -150,7 +163,7 @@ def _centered(rect: Rect, icon: str, color: tuple[float, float, float]) -> None:
 
 
 @dataclass(frozen=True)
-class _Act:
+class _LightAction:
     """Something that can be done to the selected light: the list that comes of it, and which is selected then."""
 
     icon: str
@@ -159,56 +172,58 @@ class _Act:
     enabled: bool
 
 
-def _acts(value: Numbers, index: int) -> tuple[_Act, ...]:
-    count = count_of(value)
+def _list_actions(value: Numbers, index: int) -> tuple[_LightAction, ...]:
+    count = count_lights(value)
     return (
-        _Act(
+        _LightAction(
             icons.ICON_FA_CLONE,
             "Duplicate",
-            lambda: added(value, index, light_at(value, index)),
+            lambda: insert_light(value, index, light_at(value, index)),
             index >= 0 and count < MAX_LIGHTS,
         ),
-        _Act(icons.ICON_FA_ARROW_UP, "Move Up", lambda: moved(value, index, -1), index > 0),
-        _Act(icons.ICON_FA_ARROW_DOWN, "Move Down", lambda: moved(value, index, 1), 0 <= index < count - 1),
-        _Act(icons.ICON_FA_TRASH, "Remove", lambda: removed(value, index), index >= 0),
+        _LightAction(icons.ICON_FA_ARROW_UP, "Move Up", lambda: move_light(value, index, -1), index > 0),
+        _LightAction(
+            icons.ICON_FA_ARROW_DOWN, "Move Down", lambda: move_light(value, index, 1), 0 <= index < count - 1
+        ),
+        _LightAction(icons.ICON_FA_TRASH, "Remove", lambda: remove_light(value, index), index >= 0),
     )
 
 
-def _done(fields: Fields, id: str, made: tuple[Numbers, int]) -> Edit:
-    value, fields.lights[id] = made
+def _select_and_edit(fields: Fields, id: str, lights_and_index: tuple[Numbers, int]) -> Edit:
+    value, fields.lights[id] = lights_and_index
     return Edit(value)
 
 
-def _menu(fields: Fields, id: str, value: Numbers) -> Edit | None:
+def _draw_menu(fields: Fields, id: str, value: Numbers) -> Edit | None:
     """The menu of a row."""
     if not imgui.begin_popup(_MENU):
         return None
-    found = None
-    for act in _acts(value, selected(fields, id, value)):
+    edit = None
+    for act in _list_actions(value, find_selected(fields, id, value)):
         if imgui.menu_item(f"{act.icon}  {act.label}", "", False, act.enabled)[0]:
-            found = _done(fields, id, act.do())
+            edit = _select_and_edit(fields, id, act.do())
         fields.places[f"menu {act.label}"] = item_rect()
     imgui.end_popup()
-    return found
+    return edit
 
 
-def _buttons(fields: Fields, id: str, value: Numbers, width: float, words: str) -> Edit | None:
-    index, full, found = selected(fields, id, value), count_of(value) >= MAX_LIGHTS, None
+def _draw_buttons(fields: Fields, id: str, value: Numbers, width: float, words: str) -> Edit | None:
+    index, full, edit = find_selected(fields, id, value), count_lights(value) >= MAX_LIGHTS, None
     rect = place(width)
 
-    def kinds() -> None:
-        nonlocal found
+    def draw_kinds() -> None:
+        nonlocal edit
         for kind in LightKind:
             if imgui.menu_item(f"{ICONS[kind]}  {KINDS[kind]}", "", False, not full)[0]:
-                found = _done(fields, id, added(value, index, fresh(kind)))
+                edit = _select_and_edit(fields, id, insert_light(value, index, make_light(kind)))
             fields.places[f"menu {KINDS[kind]}"] = item_rect()
 
-    dropdown(fields, icons.ICON_FA_PLUS, f"button add {id}", "Add a light behind the selected one", kinds)
-    for act in _acts(value, index):
+    dropdown(fields, icons.ICON_FA_PLUS, f"button add {id}", "Add a light behind the selected one", draw_kinds)
+    for act in _list_actions(value, index):
         imgui.same_line(0.0, 0.0)
         doc = f"{act.label}: the selected light"
         if quiet_button(fields, act.icon, f"button {act.label.lower()} {id}", doc, enabled=act.enabled):
-            found = _done(fields, id, act.do())
+            edit = _select_and_edit(fields, id, act.do())
     left = item_rect()[2] + imgui.get_style().item_inner_spacing.x
     write((left, rect[1], rect[2], rect[3]), words, fields.palette.dim, align=1.0)
-    return found
+    return edit

@@ -13,7 +13,7 @@ from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
 from ..toolkit.words import write
 from .fields import Edit, Fields
-from .numbers import SUFFIX, Drag, bar, editable, limited, shortened, shown, step
+from .numbers import SUFFIX, Drag, bar, clamp_number, drop_digit, edit_text, find_step, format_number
 from .text_entry import text_entry
 
 THRESHOLD = 3.0
@@ -41,8 +41,8 @@ def number_field(
     """
     assert isinstance(value, int | float)
     fields.order.append(id)
-    if fields.wanted == id:
-        fields.type_in(id, editable(value), value, declaration)
+    if fields.next_field == id:
+        fields.type_in(id, edit_text(value), value, declaration)
     if fields.typing and fields.typing.id == id:
         return text_entry(fields, width)
     rect = place(width)
@@ -50,27 +50,27 @@ def number_field(
     hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
     if hovered or active:
         imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
-    edit = _dragged(fields, id, value, declaration, rect[2] - rect[0], active)
+    edit = _drag(fields, id, value, declaration, rect[2] - rect[0], active)
     if edit is None and clicked and fields.pressed == id:
-        fields.type_in(id, editable(value), value, declaration)
+        fields.type_in(id, edit_text(value), value, declaration)
     if edit is None and hovered:
-        edit = _wheeled(fields, id, value, declaration)
+        edit = _turn_wheel(fields, id, value, declaration)
     if not active and fields.pressed == id:
         fields.pressed = ""
-    now = edit.value if edit else value
-    assert isinstance(now, int | float)
+    current = edit.value if edit else value
+    assert isinstance(current, int | float)
     unit = SUFFIX[declaration.unit] if suffix is None else suffix
-    _draw(fields, rect, now, declaration, unit, label, mixed and edit is None, hovered, active, plain)
+    _draw(fields, rect, current, declaration, unit, label, mixed and edit is None, hovered, active, plain)
     return edit
 
 
-def _dragged(fields: Fields, id: str, value: float, declaration: Value, width: float, active: bool) -> Edit | None:
+def _drag(fields: Fields, id: str, value: float, declaration: Value, width: float, active: bool) -> Edit | None:
     """The number under a drag that goes on, or what it was at first if Escape cancels it."""
     if imgui.is_item_activated():
         fields.pressed = id
     if fields.drag_id == id and fields.drag and not active:
         start, fields.drag, fields.drag_id = fields.drag.start, None, ""
-        return Edit(limited(start, declaration), fields.merge) if imgui.is_key_pressed(imgui.Key.escape) else None
+        return Edit(clamp_number(start, declaration), fields.merge) if imgui.is_key_pressed(imgui.Key.escape) else None
     if not active or (fields.pressed != id and fields.drag_id != id):
         return None
     io = imgui.get_io()
@@ -81,19 +81,19 @@ def _dragged(fields: Fields, id: str, value: float, declaration: Value, width: f
         fields.start_gesture()
     if fields.drag is None:
         return None
-    fields.drag = fields.drag.moved(io.mouse_delta.x, width, declaration, fine=io.key_shift)
+    fields.drag = fields.drag.move(io.mouse_delta.x, width, declaration, fine=io.key_shift)
     number = fields.drag.number(declaration, fine=io.key_shift, snap=io.key_ctrl)
     return Edit(number, fields.merge) if number != value else None
 
 
-def _wheeled(fields: Fields, id: str, value: float, declaration: Value) -> Edit | None:
+def _turn_wheel(fields: Fields, id: str, value: float, declaration: Value) -> Edit | None:
     io = imgui.get_io()
     if not io.key_ctrl or not io.mouse_wheel:
         return None
-    size = step(declaration) * (0.1 if io.key_shift and declaration.type != "int" else 1.0)
+    size = find_step(declaration) * (0.1 if io.key_shift and declaration.type != "int" else 1.0)
     number = round((value + io.mouse_wheel * size) / size) * size
     low, high = min(declaration.low, value), max(declaration.high, value)
-    return Edit(limited(min(max(round(number, 9), low), high), declaration), f"wheel {id}")
+    return Edit(clamp_number(min(max(round(number, 9), low), high), declaration), f"wheel {id}")
 
 
 def _draw(
@@ -119,13 +119,13 @@ def _draw(
         lines.add_rect_filled(rect[:2], rect[2:], u32(color), rounding)
         lines.pop_clip_rect()
     inner = (rect[0] + pad, rect[1], rect[2] - pad, rect[3])
-    text, suffix = NO_VALUE if mixed else shown(value, declaration), "" if mixed else unit
+    text, suffix = NO_VALUE if mixed else format_number(value, declaration), "" if mixed else unit
     room = inner[2] - inner[0]
     unit_width = imgui.calc_text_size(" " + suffix).x if suffix else 0.0
     text_width = imgui.calc_text_size(text).x
     if text_width + unit_width > room:
         suffix, unit_width = "", 0.0
-    while text_width > room and (shorter := shortened(text)) != text:
+    while text_width > room and (shorter := drop_digit(text)) != text:
         text, text_width = shorter, imgui.calc_text_size(shorter).x
     if label:
         write((inner[0], rect[1], max(inner[2] - text_width - unit_width - pad, inner[0]), rect[3]), label, palette.dim)
@@ -161,7 +161,7 @@ def row_of_numbers(
     """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
     gap = imgui.get_style().item_inner_spacing.x * 0.5
     each = (width - gap * (len(names) - 1)) / len(names)
-    part, found = declaration if keep_type else structs.replace(declaration, type="float"), None
+    part, row_edit = declaration if keep_type else structs.replace(declaration, type="float"), None
     for index, name in enumerate(names, first):
         if index > first:
             imgui.same_line(0.0, gap)
@@ -174,8 +174,8 @@ def row_of_numbers(
 
         fields.part(f"{id}#{index}", id, whole)
         edit = number_field(fields, f"{id}#{index}", value[index], part, each, label=named, mixed=mixed, plain=plain)
-        found = whole(edit) if edit else found
-    return found
+        row_edit = whole(edit) if edit else row_edit
+    return row_edit
 
 
 def matrix_field(
@@ -183,9 +183,9 @@ def matrix_field(
 ) -> Edit | None:
     """Nine numbers in three rows."""
     assert isinstance(value, tuple)
-    found = None
+    matrix_edit = None
     imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, imgui.get_style().item_inner_spacing.x * 0.5))
     for row in range(3):
-        found = row_of_numbers(fields, id, value, declaration, width, ("",) * 3, mixed, row * 3) or found
+        matrix_edit = row_of_numbers(fields, id, value, declaration, width, ("",) * 3, mixed, row * 3) or matrix_edit
     imgui.pop_style_var()
-    return found
+    return matrix_edit

@@ -61,23 +61,23 @@ def near(frame: int, reach: int = 10) -> Value:
     return Value("frame", "int", 1, low=float(frame - reach), high=float(frame + reach))
 
 
-def decimals(declaration: Value) -> int:
+def count_decimals(declaration: Value) -> int:
     """Digits behind the point that matter, by the soft range."""
     return 0 if declaration.type == "int" else min(max(3 - round(math.log10(span(declaration))), 1), 6)
 
 
-def shown(number: float, declaration: Value) -> str:
+def format_number(number: float, declaration: Value) -> str:
     """The number as a field shows it, without its unit; one too small for the usual digits keeps three of its own."""
     if isinstance(number, int) and declaration.type == "int":
         return str(number)
-    digits = decimals(declaration)
+    digits = count_decimals(declaration)
     if number and (abs(number) < 10.0 ** (1 - digits) or abs(number) >= 1e7) and round(number, digits) != number:
         return f"{number:.3g}"
     text = f"{number:.{digits}f}"
     return text.removeprefix("-") if float(text) == 0.0 else text
 
 
-def shortened(text: str) -> str:
+def drop_digit(text: str) -> str:
     """A shown number with one digit less behind the point; the same where there is none to leave out."""
     part = text.partition(".")[2]
     if not part.isdigit():
@@ -86,12 +86,12 @@ def shortened(text: str) -> str:
     return short.removeprefix("-") if float(short) == 0.0 else short
 
 
-def editable(number: float) -> str:
+def edit_text(number: float) -> str:
     """The number as text to edit: all of its digits, no needless ones."""
     return str(number) if isinstance(number, int) else repr(float(number)).removesuffix(".0")
 
 
-def step(declaration: Value) -> float:
+def find_step(declaration: Value) -> float:
     """A round step: about a twentieth of the soft range."""
     raw = span(declaration) / 20.0
     power = 10.0 ** math.floor(math.log10(raw))
@@ -99,7 +99,7 @@ def step(declaration: Value) -> float:
     return max(1.0, round(size)) if declaration.type == "int" else size
 
 
-def limited(number: float, declaration: Value) -> float | int:
+def clamp_number(number: float, declaration: Value) -> float | int:
     """The nearest number within the hard range; a whole one for an int."""
     inside = min(max(number, declaration.minimum), declaration.maximum)
     return round(inside) if declaration.type == "int" else inside
@@ -121,7 +121,7 @@ class Drag:
     start: float
     travel: float = 0.0
 
-    def moved(self, pixels: float, width: float, declaration: Value, *, fine: bool = False) -> Drag:
+    def move(self, pixels: float, width: float, declaration: Value, *, fine: bool = False) -> Drag:
         """Pulled on: the width of the field is the whole soft range, ten times as much if `fine`."""
         speed = span(declaration) / max(width, 1.0)
         return Drag(self.start, self.travel + pixels * speed * (FINE if fine else 1.0))
@@ -131,14 +131,14 @@ class Drag:
         low, high = min(declaration.low, self.start), max(declaration.high, self.start)
         number = min(max(self.start + self.travel, low), high)
         if snap:
-            size = step(declaration)
+            size = find_step(declaration)
             number = round(number / size) * size
         if self.travel:
-            number = round(number, decimals(declaration) + (1 if fine and declaration.type != "int" else 0))
-        return limited(number, declaration)
+            number = round(number, count_decimals(declaration) + (1 if fine and declaration.type != "int" else 0))
+        return clamp_number(number, declaration)
 
 
-def typed(text: str, old: float, declaration: Value) -> float | int:
+def parse_number(text: str, old: float, declaration: Value) -> float | int:
     """The number that was typed. Raises UsageError: no number, or outside the hard range."""
     number = evaluate(text, old, declaration.unit)
     if declaration.type == "int":
@@ -151,7 +151,7 @@ def typed(text: str, old: float, declaration: Value) -> float | int:
     return number
 
 
-def stepped(text: str, caret: int, direction: int) -> tuple[str, int]:
+def step_digit(text: str, caret: int, direction: int) -> tuple[str, int]:
     """Text and caret after one more or less of the digit left of the caret (the first one at the very left)."""
     if not _PLAIN.fullmatch(text) or not any(letter.isdigit() for letter in text):
         return text, caret
@@ -163,13 +163,13 @@ def stepped(text: str, caret: int, direction: int) -> tuple[str, int]:
         at = max(index for index, letter in enumerate(text) if letter.isdigit())
     power = point - at - 1 if at < point else point - at
     number = Decimal(text.strip()) + direction * Decimal(10) ** power
-    made = f"{number:f}"
+    stepped_text = f"{number:f}"
     if number == 0:
-        made = made.removeprefix("-")
-    return made, min(max(len(made) - (len(text.rstrip()) - at - 1), 1), len(made))
+        stepped_text = stepped_text.removeprefix("-")
+    return stepped_text, min(max(len(stepped_text) - (len(text.rstrip()) - at - 1), 1), len(stepped_text))
 
 
-def described(declaration: Value, default: str) -> str:
+def describe_value(declaration: Value, default: str) -> str:
     """The lines of a tooltip: what it is, what it counts, which numbers it takes."""
     lines = [declaration.doc] if declaration.doc else []
     if declaration.type in ("float", "int", "vector", "curve"):
@@ -181,13 +181,13 @@ def described(declaration: Value, default: str) -> str:
     return "\n".join([*lines, f"Default: {default}"] if default else lines)
 
 
-def worded(declaration: Value) -> str:
+def describe_default(declaration: Value) -> str:
     """The default, as a tooltip says it; "" where that is too much."""
     default = declaration.default
     match declaration.type:
         case "float" | "int":
             assert isinstance(default, int | float)
-            return shown(default, declaration)
+            return format_number(default, declaration)
         case "bool":
             return "on" if default else "off"
         case "choice" | "text" | "path":

@@ -68,61 +68,61 @@ RAMPS: Mapping[str, Numbers] = MappingProxyType(
 )
 
 
-def split(numbers: Numbers, width: int) -> list[Numbers]:
+def split_points(numbers: Numbers, width: int) -> list[Numbers]:
     """The points, `width` numbers each."""
     return [numbers[at : at + width] for at in range(0, len(numbers), width)]
 
 
-def joined(points: list[Numbers]) -> Numbers:
+def join_points(points: list[Numbers]) -> Numbers:
     """The flat list of points."""
     return tuple(part for point in points for part in point)
 
 
-def changed(numbers: Numbers, width: int, index: int, point: Numbers) -> Numbers:
+def move_point(numbers: Numbers, width: int, index: int, point: Numbers) -> Numbers:
     """One point moved: it stays between its neighbors and within 0..1."""
-    points = split(numbers, width)
+    points = split_points(numbers, width)
     gap = NEAREST if width == 2 else 0.0
     low = points[index - 1][0] + gap if index > 0 else 0.0
     high = points[index + 1][0] - gap if index + 1 < len(points) else 1.0
     place = min(max(point[0], low), max(high, low))
     points[index] = (place, *point[1:])
-    return joined(points)
+    return join_points(points)
 
 
-def added(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers, int]:
+def insert_point(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers, int]:
     """One more point at its place from left to right, and its index; the index alone where one is already there.
 
     Where there are as many as there may be, the nearest one's.
     """
-    points = split(numbers, width)
+    points = split_points(numbers, width)
     if len(points) >= MAX_POINTS:
         return numbers, min(range(len(points)), key=lambda index: abs(points[index][0] - point[0]))
-    for index, other in enumerate(points):
-        if width == 2 and abs(other[0] - point[0]) < NEAREST:
+    for index, existing in enumerate(points):
+        if width == 2 and abs(existing[0] - point[0]) < NEAREST:
             return numbers, index
     at = sum(other[0] <= point[0] for other in points)
     points.insert(at, (min(max(point[0], 0.0), 1.0), *point[1:]))
-    return joined(points), at
+    return join_points(points), at
 
 
-def removed(numbers: Numbers, width: int, index: int) -> Numbers:
+def remove_point(numbers: Numbers, width: int, index: int) -> Numbers:
     """One point less; the last two stay."""
-    points = split(numbers, width)
+    points = split_points(numbers, width)
     if len(points) > 2:
         del points[index]
-    return joined(points)
+    return join_points(points)
 
 
-def inverted(numbers: Numbers, width: int, low: float = 0.0, high: float = 1.0) -> Numbers:
+def invert(numbers: Numbers, width: int, low: float = 0.0, high: float = 1.0) -> Numbers:
     """A curve turned upside down in its soft range; a ramp from right to left."""
     if width == 2:
-        return joined([(x, low + high - y) for x, y in split(numbers, 2)])
-    return joined([(1.0 - stop[0], *stop[1:]) for stop in reversed(split(numbers, width))])
+        return join_points([(x, low + high - y) for x, y in split_points(numbers, 2)])
+    return join_points([(1.0 - stop[0], *stop[1:]) for stop in reversed(split_points(numbers, width))])
 
 
-def scaled(preset: Numbers, low: float, high: float) -> Numbers:
+def scale_curve(preset: Numbers, low: float, high: float) -> Numbers:
     """A preset curve in another soft range."""
-    return joined([(x, low + y * (high - low)) for x, y in split(preset, 2)])
+    return join_points([(x, low + y * (high - low)) for x, y in split_points(preset, 2)])
 
 
 def curve_line(numbers: Numbers, count: int) -> list[tuple[float, float]]:
@@ -135,11 +135,11 @@ def ramp_color(numbers: Numbers, t: float) -> tuple[float, float, float, float]:
     return ramp_at(numbers, t)
 
 
-def nearest(numbers: Numbers, width: int, x: float, y: float | None, reach: tuple[float, float]) -> int:
+def find_nearest(numbers: Numbers, width: int, x: float, y: float | None, reach: tuple[float, float]) -> int:
     """The point within `reach` of a place (its x alone for a ramp), -1 if none is."""
-    best, found = 1.0, -1
-    for index, point in enumerate(split(numbers, width)):
+    best, nearest_index = 1.0, -1
+    for index, point in enumerate(split_points(numbers, width)):
         away = ((point[0] - x) / reach[0]) ** 2 + (0.0 if y is None else ((point[1] - y) / reach[1]) ** 2)
         if away <= best:
-            best, found = away, index
-    return found
+            best, nearest_index = away, index
+    return nearest_index

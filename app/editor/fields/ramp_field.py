@@ -14,7 +14,7 @@ from .color_field import color_field
 from .colors import swatch
 from .fields import Edit, Fields
 from .number_field import number_field
-from .points import RAMPS, added, changed, inverted, nearest, ramp_color, removed, split
+from .points import RAMPS, find_nearest, insert_point, invert, move_point, ramp_color, remove_point, split_points
 
 BAND, HANDLES = 1.6, 0.9
 """Text lines: the height of the colors, and of the handles below them."""
@@ -32,10 +32,10 @@ def ramp_field(
     rect = place(width, line * (BAND + HANDLES))
     imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
     active, hovered = imgui.is_item_active(), imgui.is_item_hovered()
-    found = _pressed(fields, id, value, rect, hovered) or _pulled(fields, id, value, rect, active)
-    now = found.value if found and isinstance(found.value, tuple) else value
-    _draw(fields, id, now, rect)
-    return _below(fields, id, now, declaration, width) or found
+    edit = _press(fields, id, value, rect, hovered) or _drag(fields, id, value, rect, active)
+    numbers = edit.value if edit and isinstance(edit.value, tuple) else value
+    _draw(fields, id, numbers, rect)
+    return _draw_below(fields, id, numbers, declaration, width) or edit
 
 
 def _sides(rect: Rect) -> tuple[float, float]:
@@ -48,13 +48,13 @@ def _mouse(rect: Rect) -> float:
     return min(max((imgui.get_mouse_pos().x - left) / (right - left), 0.0), 1.0)
 
 
-def _pressed(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, hovered: bool) -> Edit | None:
+def _press(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, hovered: bool) -> Edit | None:
     if not hovered:
         return None
     t, (left, right) = _mouse(rect), _sides(rect)
-    near = nearest(value, 5, t, None, (_REACH * ui_scale() / (right - left), 1.0))
+    near = find_nearest(value, 5, t, None, (_REACH * ui_scale() / (right - left), 1.0))
     if imgui.is_mouse_clicked(imgui.MouseButton_.right):
-        return Edit(removed(value, 5, near)) if near >= 0 and len(value) > 10 else None
+        return Edit(remove_point(value, 5, near)) if near >= 0 and len(value) > 10 else None
     if not imgui.is_item_activated():
         return None
     merge = fields.start_gesture()
@@ -62,12 +62,12 @@ def _pressed(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, hove
     if near >= 0:
         fields.point = (id, near)
         return None
-    made, index = added(value, 5, (t, *ramp_color(value, t)))
+    numbers, index = insert_point(value, 5, (t, *ramp_color(value, t)))
     fields.point = (id, index)
-    return Edit(made, merge) if made != value else None
+    return Edit(numbers, merge) if numbers != value else None
 
 
-def _pulled(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, active: bool) -> Edit | None:
+def _drag(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, active: bool) -> Edit | None:
     if fields.drag_id != id:
         return None
     if not active:
@@ -79,9 +79,9 @@ def _pulled(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, activ
     out = _OUT * ui_scale()
     if len(value) > 10 and not rect[1] - out < mouse.y < rect[3] + out:
         fields.drag_id, fields.point = "", ("", -1)
-        return Edit(removed(value, 5, index), fields.merge)
-    made = changed(value, 5, index, (_mouse(rect), *value[index * 5 + 1 : index * 5 + 5]))
-    return Edit(made, fields.merge) if made != value else None
+        return Edit(remove_point(value, 5, index), fields.merge)
+    numbers = move_point(value, 5, index, (_mouse(rect), *value[index * 5 + 1 : index * 5 + 5]))
+    return Edit(numbers, fields.merge) if numbers != value else None
 
 
 def _draw(fields: Fields, id: str, value: tuple[float, ...], rect: Rect) -> None:
@@ -95,7 +95,7 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], rect: Rect) -> None
         lines.add_rect_filled_multi_color((low, rect[1]), (high, bottom), colors[0], colors[1], colors[1], colors[0])
     lines.add_rect((left, rect[1]), (right, bottom), u32(palette.border))
     size = imgui.get_font_size() * 0.34
-    for index, stop in enumerate(split(value, 5)):
+    for index, stop in enumerate(split_points(value, 5)):
         x, chosen = left + stop[0] * (right - left), fields.point == (id, index)
         edge = u32(palette.accent if chosen else palette.dim)
         lines.add_triangle_filled((x, bottom - 2 * scale), (x - size, bottom + size), (x + size, bottom + size), edge)
@@ -104,8 +104,8 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], rect: Rect) -> None
         lines.add_rect(*box, edge, 0.0, (2.0 if chosen else 1.0) * scale)
 
 
-def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float) -> Edit | None:
-    found = None
+def _draw_below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float) -> Edit | None:
+    ramp_edit = None
     gap = imgui.get_style().item_inner_spacing.x
     side = imgui.get_font_size() * 4.5
     index = fields.point[1] if fields.point[0] == id else -1
@@ -115,32 +115,32 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
     def with_place(edit: Edit) -> Edit | None:
         place = edit.value
         return (
-            replace(edit, value=changed(value, 5, index, (float(place), *stop[1:])))
+            replace(edit, value=move_point(value, 5, index, (float(place), *stop[1:])))
             if isinstance(place, int | float)
             else None
         )
 
     def with_color(edit: Edit) -> Edit | None:
         color = edit.value
-        return replace(edit, value=changed(value, 5, index, (stop[0], *color))) if isinstance(color, tuple) else None
+        return replace(edit, value=move_point(value, 5, index, (stop[0], *color))) if isinstance(color, tuple) else None
 
     if chosen:
         fields.part(f"{id} place", id, with_place)
         fields.part(f"{id} color", id, with_color)
         edit = number_field(fields, f"{id} place", stop[0], _PLACE, width - side - gap, label="at")
-        found = with_place(edit) if edit else None
+        ramp_edit = with_place(edit) if edit else None
         imgui.same_line(0.0, gap)
     if imgui.button(f"Presets##{id}", (side if chosen else width, 0.0)):
         imgui.open_popup(f"presets {id}")
     if chosen:
         edit = color_field(fields, f"{id} color", stop[1:], _PLACE, width, eyedropper=False)
-        found = with_color(edit) if edit else found
+        ramp_edit = with_color(edit) if edit else ramp_edit
     if imgui.begin_popup(f"presets {id}"):
         for name, preset in RAMPS.items():
             if imgui.menu_item(name, "", False)[0]:
-                found = Edit(preset)
+                ramp_edit = Edit(preset)
         imgui.separator()
         if imgui.menu_item("Reverse", "", False)[0]:
-            found = Edit(inverted(value, 5))
+            ramp_edit = Edit(invert(value, 5))
         imgui.end_popup()
-    return found
+    return ramp_edit

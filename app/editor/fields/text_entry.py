@@ -7,7 +7,7 @@ from imgui_bundle import imgui
 from ..toolkit.places import item_rect
 from ..toolkit.words import note_below
 from .fields import Edit, Fields, Typing
-from .numbers import shown, stepped
+from .numbers import format_number, step_digit
 
 _SIGNS = set("+-*/^(%")
 
@@ -19,13 +19,13 @@ def text_entry(fields: Fields, width: float, *, lines: int = 1, hint: str = "") 
     """
     typing = fields.typing
     assert typing is not None
-    typing.seen = True
+    typing.drawn = True
     if typing.starting:
         imgui.set_keyboard_focus_here()
     escaped, shift = imgui.is_key_pressed(imgui.Key.escape), imgui.get_io().key_shift
     if shift and not typing.starting and imgui.is_key_pressed(imgui.Key.tab):
         typing.tab = -1
-    entered = _input(typing, width, lines, hint)
+    entered = _draw_input(typing, width, lines, hint)
     rect, active = item_rect(), imgui.is_item_active()
     if typing.starting:
         typing.starting = not active
@@ -34,12 +34,12 @@ def text_entry(fields: Fields, width: float, *, lines: int = 1, hint: str = "") 
         fields.typing = None
         return Edit(typing.old, typing.merge) if typing.merge else None
     if active and not entered and not typing.tab:
-        _note(fields, typing, rect)
-        return _stepped(fields, typing)
-    return _over(fields, typing, entered)
+        _draw_note(fields, typing, rect)
+        return _take_step(fields, typing)
+    return _finish(fields, typing, entered)
 
 
-def _over(fields: Fields, typing: Typing, entered: bool) -> Edit | None:
+def _finish(fields: Fields, typing: Typing, entered: bool) -> Edit | None:
     if fault := typing.fault:
         if entered or typing.tab:
             typing.starting, typing.tab = True, 0
@@ -47,20 +47,20 @@ def _over(fields: Fields, typing: Typing, entered: bool) -> Edit | None:
         typing.text = typing.before
     fields.typing = None
     if typing.tab:
-        fields.wanted = fields.next_after(typing.id, typing.tab)
+        fields.next_field = fields.next_after(typing.id, typing.tab)
     return None if fault else typing.result()
 
 
-def _stepped(fields: Fields, typing: Typing) -> Edit | None:
+def _take_step(fields: Fields, typing: Typing) -> Edit | None:
     """An arrow key shows its effect at once."""
-    if not typing.stepped:
+    if not typing.has_stepped:
         return None
-    typing.stepped = False
+    typing.has_stepped = False
     typing.merge = typing.merge or fields.start_gesture()
     return None if typing.fault else typing.result()
 
 
-def _input(typing: Typing, width: float, lines: int, hint: str) -> bool:
+def _draw_input(typing: Typing, width: float, lines: int, hint: str) -> bool:
     """The text field of the window library; True when Enter ended it."""
     flag = imgui.InputTextFlags_
     flags = int(flag.auto_select_all) | int(flag.callback_completion)
@@ -72,12 +72,12 @@ def _input(typing: Typing, width: float, lines: int, hint: str) -> bool:
             typing.tab = 1
         elif data.event_flag == flag.callback_history:
             direction = 1 if data.event_key == imgui.Key.up_arrow else -1
-            text, caret = stepped(typing.text, data.cursor_pos, direction)
+            text, caret = step_digit(typing.text, data.cursor_pos, direction)
             data.delete_chars(0, data.buf_text_len)
             data.insert_chars(0, text)
             data.cursor_pos = caret
             data.clear_selection()
-            typing.stepped = True
+            typing.has_stepped = True
         return 0
 
     imgui.set_next_item_width(width)
@@ -95,7 +95,7 @@ def _enter_pressed() -> bool:
     return imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
 
 
-def _note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float]) -> None:
+def _draw_note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float]) -> None:
     """What is wrong with the number, or what the arithmetic comes to."""
     if typing.number is None or typing.text == typing.before or typing.text.lstrip().startswith("="):
         return
@@ -107,4 +107,4 @@ def _note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float
     elif _SIGNS & set(typing.text.strip()[1:]) or typing.text.strip()[:1] in _SIGNS - {"-"}:
         edit = typing.result()
         if edit and isinstance(edit.value, int | float):
-            note_below(fields.palette, rect, f"= {shown(edit.value, typing.number)}", fields.palette.dim)
+            note_below(fields.palette, rect, f"= {format_number(edit.value, typing.number)}", fields.palette.dim)

@@ -38,7 +38,7 @@ def text_field(
     assert isinstance(value, str)
     count = lines or lines_of(value)
     fields.order.append(id)
-    if fields.wanted == id:
+    if fields.next_field == id:
         fields.type_in(id, value, value)
     if fields.typing and fields.typing.id == id:
         return text_entry(fields, width, lines=count, hint=hint)

@@ -11,7 +11,7 @@ from ...authoring.commands import ReplaceGraph, ResetValue, SetValue, SetValues
 from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, signature
 from ..fields.fields import Edit
-from ..fields.numbers import typed
+from ..fields.numbers import parse_number
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
@@ -64,14 +64,14 @@ def as_text(value: Plain) -> str:
 def from_text(text: str) -> Plain:
     """A value from the clipboard. Raises UsageError."""
     try:
-        found = json.loads(text)
+        parsed = json.loads(text)
     except ValueError:
         return text.strip()
-    if isinstance(found, list):
-        found = tuple(found)
-    if not isinstance(found, int | float | bool | str | tuple):
+    if isinstance(parsed, list):
+        parsed = tuple(parsed)
+    if not isinstance(parsed, int | float | bool | str | tuple):
         raise UsageError("the clipboard holds no value: copy one first")
-    return found
+    return parsed
 
 
 def _for_one(session: Session, port: Port, declaration: Value, edit: Edit) -> Plain:
@@ -79,7 +79,7 @@ def _for_one(session: Session, port: Port, declaration: Value, edit: Edit) -> Pl
     if not edit.text or declaration.type not in ("float", "int") or not isinstance(old, int | float):
         return edit.value
     try:
-        return typed(edit.text, old, declaration)
+        return parse_number(edit.text, old, declaration)
     except UsageError as error:
         raise GraphError(f"{port}: {error}") from None
 

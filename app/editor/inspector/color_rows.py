@@ -39,7 +39,7 @@ def _linear(manager: ColorManager) -> tuple[str, ...]:
     return tuple(
         name
         for name in ("scene_linear", *manager.list_spaces())
-        if (found := manager.find(name)) and not found.data and manager.spaces.isColorSpaceLinear(found.name, kind)
+        if (space := manager.find(name)) and not space.data and manager.spaces.isColorSpaceLinear(space.name, kind)
     )
 
 
@@ -87,20 +87,20 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         doc="The linear color space that pictures are in between nodes",
         changed=bool(color.working),
     )
-    known = (_REC709, *_linear(usable))
-    index = choose(fields, "working space", color.working or _REC709, known, rows.field())
+    spaces = (_REC709, *_linear(usable))
+    index = choose(fields, "working space", color.working or _REC709, spaces, rows.field())
     rows.record("working space")
     if index is not None:
-        working = "" if index == 0 else known[index]
+        working = "" if index == 0 else spaces[index]
         rows.act(lambda: session.apply(SetColorSettings(working=working)))
 
 
-def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:
+def space_field(rows: Rows, fields: Fields, key: str, current: str, width: float) -> Edit | None:
     """Which color space something is in, from those of the config; empty stands for finding out."""
-    known = (FOUND, *space_names(find_color_manager(rows.context)))
-    shown = FOUND if now in ("", "auto") else now
-    choices = known if shown in known else (shown, *known)
-    index = choose(fields, key, shown, choices, width)
+    spaces = (FOUND, *space_names(find_color_manager(rows.context)))
+    label = FOUND if current in ("", "auto") else current
+    choices = spaces if label in spaces else (label, *spaces)
+    index = choose(fields, key, label, choices, width)
     if index is None:
         return None
     return Edit("" if choices[index] == FOUND else choices[index])

@@ -23,7 +23,7 @@ from ..shared.coloring import find_color_manager
 from ..toolkit.words import tip
 from .color_rows import space_field
 from .file_field import PICTURE, FileField
-from .heading import faults, heading, name_field
+from .heading import draw_faults, draw_heading, draw_name_field
 from .value_rows import link_chip
 
 if TYPE_CHECKING:
@@ -39,12 +39,12 @@ DEFAULT_VIEW = "viewer's choice"
 MISSING: tuple[Missing, ...] = get_args(Missing)
 
 
-def bound_to(session: Session, name: str) -> str:
+def describe_binding(session: Session, name: str) -> str:
     """What was given for an input of the graph in this window: a path, or that it is no file; "" if nothing was."""
     if session.place or name not in session.bindings:
         return ""
-    found: object = session.bindings[name]
-    return found if isinstance(found, str) else "a picture in memory"
+    file: object = session.bindings[name]
+    return file if isinstance(file, str) else "a picture in memory"
 
 
 class EndView:
@@ -59,10 +59,10 @@ class EndView:
         end = graph.inputs[port.socket] if port.node == INPUTS else graph.outputs[port.socket]
         width = str(end.width) if end.kind is Kind.VECTOR else ""
         word = "Input" if isinstance(end, Input) else "Output"
-        heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
+        draw_heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
         session, element = rows.context.session, ElementId.of_port(port)
-        name_field(rows, self._fields, element, port.socket, lambda new: session.apply(RenameEnd(element, new)))
-        faults(rows, element)
+        draw_name_field(rows, self._fields, element, port.socket, lambda new: session.apply(RenameEnd(element, new)))
+        draw_faults(rows, element)
         if isinstance(end, Input):
             self._input(rows, port, end)
         else:
@@ -73,7 +73,7 @@ class EndView:
     def _input(self, rows: Rows, port: Port, end: Input) -> None:
         context, name, key = rows.context, port.socket, str(port)
         session = context.session
-        bound = bound_to(session, name)
+        bound = describe_binding(session, name)
         if bound:
             rows.name(f"{key} bound", "bound to", doc="A file that was given for this window only; it is not saved")
             doc = f"{bound}\nClick to use the file below"
@@ -106,9 +106,9 @@ class EndView:
             if index is not None:
                 rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
         rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
-        found = self._default(rows, name, end, rows.field())
-        if found:
-            rows.act(lambda: session.apply(SetInput(name, default=found.value, merge=found.merge)))
+        edit_of_default = self._default(rows, name, end, rows.field())
+        if edit_of_default:
+            rows.act(lambda: session.apply(SetInput(name, default=edit_of_default.value, merge=edit_of_default.merge)))
         self._text(
             rows,
             f"{key} doc",
@@ -165,13 +165,13 @@ class EndView:
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
-            known = ("", *list_views(manager=find_color_manager(context)))
+            views = ("", *list_views(manager=find_color_manager(context)))
             index = choose(
-                self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
+                self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *views[1:]), rows.field()
             )
             rows.record(f"{key} view")
             if index is not None:
-                rows.act(lambda: session.apply(SetOutput(name, view=known[index])))
+                rows.act(lambda: session.apply(SetOutput(name, view=views[index])))
 
     def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, doc: str, hint: str = "") -> None:
         draw_text(rows, self._fields, key, label, text, then, doc, hint)

@@ -23,7 +23,7 @@ from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
 from ..toolkit.textures import Textures
 from ..toolkit.words import tip, write
-from .layers import HEIGHT, WIDTH, Layers, described
+from .layers import HEIGHT, WIDTH, Layers, describe_layer
 
 if TYPE_CHECKING:
     from .rows import Rows
@@ -86,18 +86,18 @@ class FileField:
         elif declaration.holds == "picture":
             header = self.known.header(self._file(rows, value))
             frames = _frames(self._full(rows, value), rows.context.session.sandbox)
-            rows.field_note(frames + described(header, layer) if isinstance(header, ImageInfo) else "reading…")
+            rows.field_note(frames + describe_layer(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
-    def space(self, rows: Rows, value: str, layer: str, wanted: str) -> None:
-        """One line on the color space of a layer, which is `wanted` or found out; nothing for data."""
-        said, wrong = (
+    def space(self, rows: Rows, value: str, layer: str, chosen_space: str) -> None:
+        """One line on the color space of a layer, which is `chosen_space` or found out; nothing for data."""
+        sentence, wrong = (
             ("", False)
             if not value
-            else self.known.space(self._file(rows, value), layer, find_color_manager(rows.context), wanted)
+            else self.known.space(self._file(rows, value), layer, find_color_manager(rows.context), chosen_space)
         )
-        if said:
-            shown = said.removeprefix(f"{self._file(rows, value)}: ")
-            rows.field_note(shown, rows.palette.error if wrong else rows.palette.dim)
+        if sentence:
+            shortened_sentence = sentence.removeprefix(f"{self._file(rows, value)}: ")
+            rows.field_note(shortened_sentence, rows.palette.error if wrong else rows.palette.dim)
 
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
@@ -108,7 +108,7 @@ class FileField:
         if not isinstance(header, ImageInfo):
             return text_field(self.fields, key, value, _TEXT, width, hint=first, fault=fault)
         imgui.set_next_item_width(width)
-        found = None
+        edit = None
         names = [layer.name for layer in header.layers]
         flags = int(imgui.ComboFlags_.height_large) | int(imgui.ComboFlags_.no_arrow_button)
         ink = rows.palette.error if fault else rows.palette.text if value else rows.palette.dim
@@ -121,15 +121,15 @@ class FileField:
         draw_arrow(rows.palette, rect)
         if opened:
             if imgui.selectable(first, not value)[0]:
-                found = Edit("")
+                edit = Edit("")
             rows.context.places[f"layer {key} "] = item_rect()
             for name in names:
                 if self._choice(rows, path, name, name == value):
-                    found = Edit(name)
+                    edit = Edit(name)
                 rows.context.places[f"layer {key} {name}"] = item_rect()
             imgui.end_combo()
         rows.context.places[f"field {key}"] = rect
-        return found
+        return edit
 
     def _choice(self, rows: Rows, path: Path, name: str, chosen: bool) -> bool:
         """A layer in the list, with its picture as soon as that is ready."""
@@ -169,9 +169,9 @@ class FileField:
 def _frames(path: Path, sandbox: Sandbox) -> str:
     """Which frames a sequence has; nothing for a single picture."""
     try:
-        found = find_sequence(str(path), sandbox=sandbox)
+        sequence = find_sequence(str(path), sandbox=sandbox)
     except HalationError:
         return ""
-    if found is None or not found.frames:
+    if sequence is None or not sequence.frames:
         return ""
-    return f"frames {found.frames_text}{f', {found.missing} missing' if found.missing else ''} · "
+    return f"frames {sequence.frames_text}{f', {sequence.missing} missing' if sequence.missing else ''} · "

@@ -41,8 +41,8 @@ from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .color_rows import color_rows
-from .end_view import bound_to, draw_text
-from .heading import faults, heading
+from .end_view import describe_binding, draw_text
+from .heading import draw_faults, draw_heading
 from .rows import Rows
 from .value_rows import ValueRows, go_to
 
@@ -68,8 +68,10 @@ class GraphView:
         """The graph that the canvas shows."""
         session = rows.context.session
         inside = session.place[-1] if session.place else ""
-        heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
-        faults(rows, NO_ELEMENT)
+        draw_heading(
+            rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else "")
+        )
+        draw_faults(rows, NO_ELEMENT)
         if not inside:
             self._size(rows)
             self._time(rows)
@@ -82,7 +84,7 @@ class GraphView:
         """A frame: its title and color."""
         session = rows.context.session
         facts = entry(session.graph, frame)
-        heading(rows, "Frame", rows.palette.accent)
+        draw_heading(rows, "Frame", rows.palette.accent)
         draw_text(
             rows,
             self._fields,
@@ -91,20 +93,26 @@ class GraphView:
             str(facts.get("title", "")),
             lambda title: session.apply(EditFrame(frame, title=title)),
         )
-        given = facts.get("color")
-        shown = tuple(float(part) for part in given) if isinstance(given, tuple) and len(given) == 3 else None
-        red, green, blue = shown or rows.palette.raised
+        saved_color = facts.get("color")
+        color = (
+            tuple(float(part) for part in saved_color)
+            if isinstance(saved_color, tuple) and len(saved_color) == 3
+            else None
+        )
+        red, green, blue = color or rows.palette.raised
         rows.name(f"{frame} color", "color")
         light = decode(red), decode(green), decode(blue), 1.0
         edit = color_field(self._fields, f"{frame} color", light, _COLOR, rows.field(), eyedropper=False)
         if edit and isinstance(edit.value, tuple):
-            made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
-            rows.act(lambda: session.apply(EditFrame(frame, color=(made[0], made[1], made[2]), merge=edit.merge)))
+            encoded = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
+            rows.act(
+                lambda: session.apply(EditFrame(frame, color=(encoded[0], encoded[1], encoded[2]), merge=edit.merge))
+            )
 
     def comment(self, rows: Rows, comment: ElementId) -> None:
         """A comment: its text."""
         session = rows.context.session
-        heading(rows, "Comment", rows.palette.accent)
+        draw_heading(rows, "Comment", rows.palette.accent)
         text = str(entry(session.graph, comment).get("text", ""))
         edit = text_field(self._fields, f"{comment} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
         rows.record(f"{comment} text")
@@ -200,10 +208,10 @@ class GraphView:
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.context.session
-        known = session.graph.inputs if side == "inputs" else session.graph.outputs
-        rows.heading(side.title())
-        rows.fit((f"{end.kind}2" for end in known.values()), least=0.0)
-        for name, end in known.items():
+        ends = session.graph.inputs if side == "inputs" else session.graph.outputs
+        rows.draw_heading(side.title())
+        rows.fit((f"{end.kind}2" for end in ends.values()), least=0.0)
+        for name, end in ends.items():
             key = f"{side}.{name}"
             width = str(end.width) if end.kind is Kind.VECTOR else ""
             rows.name(f"{key} row", f"{end.kind}{width}", color=rows.palette.kinds[end.kind])
@@ -229,22 +237,22 @@ class GraphView:
                 chosen = imgui.menu_item(label, "", False)[0]
                 rows.context.places[f"menu {label}"] = item_rect()
                 if chosen:
-                    name = fresh_name(kind.lower(), known)
+                    name = fresh_name(kind.lower(), ends)
                     command = AddInput if side == "inputs" else AddOutput
                     rows.act(partial(session.apply, command(name, kind, width)))
             imgui.end_popup()
 
     def _controls(self, rows: Rows) -> None:
         session = rows.context.session
-        rows.heading("Controls")
+        rows.draw_heading("Controls")
         rows.fit(session.graph.controls)
         if not session.graph.controls:
             rows.note("Values that this graph shows under names of its own, to the command line and as a group.")
         for name, control in session.graph.controls.items():
             key, target = f"controls.{name}", control.target
             item = session.graph.nodes.get(target.node)
-            known = {} if item is None or isinstance(item, Unknown) else signature(item).values
-            declaration = known.get(target.socket)
+            values = {} if item is None or isinstance(item, Unknown) else signature(item).values
+            declaration = values.get(target.socket)
             if declaration:
                 self._values.draw(rows, (target,), declaration, control.label or name)
             else:
@@ -299,23 +307,23 @@ class GraphView:
     def _candidates(self, rows: Rows) -> None:
         """Every value that is no control yet, by node."""
         session = rows.context.session
-        taken = {control.target for control in session.graph.controls.values()}
-        found = False
+        exposed = {control.target for control in session.graph.controls.values()}
+        has_candidates = False
         for id, item in session.graph.nodes.items():
             ports = (
                 []
                 if isinstance(item, Unknown)
-                else [port for name in signature(item).values if (port := Port(id, name)) not in taken]
+                else [port for name in signature(item).values if (port := Port(id, name)) not in exposed]
             )
             if not ports or not imgui.begin_menu(id):
-                found |= bool(ports)
+                has_candidates |= bool(ports)
                 continue
-            found = True
+            has_candidates = True
             for port in ports:
                 if imgui.menu_item(f"{value_label(session.graph, port)}##{port}", "", False)[0]:
                     rows.act(lambda port=port: session.apply(ExposeValue(port)))
             imgui.end_menu()
-        if not found:
+        if not has_candidates:
             imgui.text_disabled("No value is left to expose")
 
 
@@ -323,7 +331,7 @@ def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
     """What an input of the graph brings in as things are, and the color to say it in."""
     session, palette = rows.context.session, rows.palette
     end = session.graph.inputs[name]
-    bound = bound_to(session, name)
+    bound = describe_binding(session, name)
     if bound:
         return f"bound to {PurePath(bound).name}", palette.good
     if end.file:

@@ -26,7 +26,9 @@ if TYPE_CHECKING:
 _NAME = Value("name", "text", "")
 
 
-def heading(rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | None = None, count: int = 0) -> None:
+def draw_heading(
+    rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | None = None, count: int = 0
+) -> None:
     """A line with the kind of thing, in the color that it has on the canvas, and room for `count` buttons."""
     room = rows.width - count * (imgui.get_frame_height() + 2.0 * ui_scale())
     rect = place(room)
@@ -44,7 +46,9 @@ def heading(rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | N
         imgui.pop_style_var()
 
 
-def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], doc: str = "") -> None:
+def draw_name_field(
+    rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], doc: str = ""
+) -> None:
     """The editable name of an element."""
     rows.name(f"{key} name", "name", doc=doc)
     edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
@@ -53,15 +57,15 @@ def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[
         rows.act(lambda: then(str(edit.value)))
 
 
-def explanation(rows: Rows, doc: str, open: bool) -> bool:
+def draw_explanation(rows: Rows, doc: str, open: bool) -> bool:
     """The first line of a docstring; a click shows the rest. True while all of it is shown."""
     if not doc:
         return False
     first, _, rest = doc.partition("\n")
     text = doc if open else f"{first} {icons.ICON_FA_ELLIPSIS}" if rest.strip() else first
-    rows.note(_flowing(text))
+    rows.note(_join_lines(text))
     if rest.strip():
-        tip("" if open else _flowing(doc))
+        tip("" if open else _join_lines(doc))
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if imgui.is_item_clicked():
@@ -70,16 +74,16 @@ def explanation(rows: Rows, doc: str, open: bool) -> bool:
     return open
 
 
-def faults(rows: Rows, element: ElementId) -> None:
+def draw_faults(rows: Rows, element: ElementId) -> None:
     """What is wrong with an element: what the graph says, and what happened while rendering."""
     context = rows.context
     path = "/".join((*context.session.place, element))
-    known = context.session.problems.get(element, ())
-    for problem in known:
+    problems = context.session.problems.get(element, ())
+    for problem in problems:
         color = rows.palette.error if problem.severity == "error" else rows.palette.warning
         rows.note(problem.sentence, color, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
     rendered = context.preview.faults.get(path, "")
-    if rendered and all(rendered != problem.sentence for problem in known):
+    if rendered and all(rendered != problem.sentence for problem in problems):
         rows.note(rendered, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
 
 
@@ -95,6 +99,6 @@ def doc_of(item: Item) -> str:
     return inspect.getdoc(type(item)) or "" if isinstance(item, Node) else ""
 
 
-def _flowing(doc: str) -> str:
+def _join_lines(doc: str) -> str:
     """Paragraphs without the line breaks and marks inside them."""
     return "\n\n".join(" ".join(part.split()) for part in doc.replace("`", "").split("\n\n"))

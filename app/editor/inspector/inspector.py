@@ -11,7 +11,7 @@ from ..theme.palette import DARK
 from .end_view import EndView
 from .file_field import FileField
 from .graph_view import GraphView
-from .heading import heading
+from .heading import draw_heading
 from .node_view import NodeView
 from .rows import Rows
 from .value_rows import ValueRows
@@ -46,7 +46,7 @@ class Inspector:
             self._context.session.seal()
         left = fields.end()
         if left:
-            self._values.left(self._context, left)
+            self._values.take_abandoned(self._context, left)
         self._context.interface.dragging |= fields.dragging
 
     def close(self) -> None:
@@ -71,7 +71,7 @@ class Inspector:
         elif active.kind == "comment":
             self._graph.comment(rows, active)
         elif active.kind == "dot":
-            heading(rows, "Dot", rows.palette.dim)
+            draw_heading(rows, "Dot", rows.palette.dim)
             rows.note("Links pass it on their way; pixels do not notice.")
         else:
             self._graph.draw(rows)

@@ -77,16 +77,18 @@ def toggle(session: Session, ports: Ports) -> None:
     if len(ports) == 1:
         session.apply(ToggleKey(ports[0]))
         return
-    removes, made = session.key_at(ports[0]) is not None, dict[Port, Animation | None]()
+    removes, animations = session.key_at(ports[0]) is not None, dict[Port, Animation | None]()
     for port in ports:
         keys = session.animation(port)
         if isinstance(keys, Expression):
             continue
         if removes:
-            made[port] = keys and keys.remove(session.frame)
+            animations[port] = keys and keys.remove(session.frame)
         else:
-            made[port] = (keys or Keys()).set(session.frame, session.value_now(port))
-    session.apply(AnimateValues(made, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes"))
+            animations[port] = (keys or Keys()).set(session.frame, session.value_now(port))
+    session.apply(
+        AnimateValues(animations, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
+    )
 
 
 class Keying:
@@ -118,11 +120,11 @@ class Keying:
     def begin(self, session: Session, port: Port, text: str = "") -> None:
         """Type an expression."""
         key, animation = str(port), session.animation(port)
-        now = animation.text if isinstance(animation, Expression) else text
-        self._drafts[key] = now
-        self._fields.wanted = f"{key} expression"
+        current_text = animation.text if isinstance(animation, Expression) else text
+        self._drafts[key] = current_text
+        self._fields.next_field = f"{key} expression"
 
-    def typed(self, session: Session, port: Port, text: str) -> None:
+    def take_expression(self, session: Session, port: Port, text: str) -> None:
         """An expression was typed where a number stood: one that cannot be stays to be mended."""
         if session.expression_fault(port, text):
             self._drafts[str(port)] = text.strip().removeprefix("=").strip()
@@ -135,15 +137,15 @@ class Keying:
         context, fields, key = rows.context, self._fields, str(port)
         session = context.session
         animation, id = session.animation(port), f"{key} expression"
-        known = animation.text if isinstance(animation, Expression) else ""
-        if not known and key not in self._drafts:
+        expression = animation.text if isinstance(animation, Expression) else ""
+        if not expression and key not in self._drafts:
             return False
-        text = self._drafts.get(key, known)
+        text = self._drafts.get(key, expression)
         fields.order.append(id)
-        if fields.wanted == id:
+        if fields.next_field == id:
             fields.type_in(id, text, text)
         if fields.typing and fields.typing.id == id:
-            self._typed(rows, port, id, text, width)
+            self._draw_typing(rows, port, id, text, width)
             return True
         rect = place(width)
         if imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1])):
@@ -154,11 +156,11 @@ class Keying:
         background(rows.palette, rect, hovered=imgui.is_item_hovered(), fault=bool(fault))
         rows.record(key)
         with font(context, "mono", SMALL):
-            cut = _colored(rows.palette, rect, text)
+            cut = _draw_colored(rows.palette, rect, text)
         tip(f"= {text}" if cut else "")
         return True
 
-    def note(self, rows: Rows, port: Port, shown: str) -> None:
+    def note(self, rows: Rows, port: Port, field_text: str) -> None:
         """Below the field: what the expression comes to, or what is wrong with it."""
         session, key = rows.context.session, str(port)
         animation = session.animation(port)
@@ -171,7 +173,7 @@ class Keying:
             with font(rows.context, "mono", SMALL * 0.92):
                 draw_wrapped(rows.palette.error, fault.removeprefix(f"{port}: "))
         else:
-            rows.field_note(f"= {shown}")
+            rows.field_note(f"= {field_text}")
 
     def tint(self, rows: Rows, port: Port, rect: Rect) -> None:
         """Color the field of a value that changes over time."""
@@ -181,11 +183,11 @@ class Keying:
             lines.add_rect_filled(rect[:2], rect[2:], u32(color, 0.13), imgui.get_style().frame_rounding)
             lines.add_rect(rect[:2], rect[2:], u32(color, 0.6), imgui.get_style().frame_rounding)
 
-    def menu(self, rows: Rows, ports: Ports, shown: str) -> None:
+    def menu(self, rows: Rows, ports: Ports, field_text: str) -> None:
         """Entries of the menu that is open."""
         context, port = rows.context, ports[0]
         session, look = context.session, look_of(context.session, ports[0])
-        one, keyed = len(ports) == 1, look in ("keys", "key")
+        is_single, keyed = len(ports) == 1, look in ("keys", "key")
 
         def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
             if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
@@ -217,17 +219,20 @@ class Keying:
             lambda: jump(session.next_key(port)),
         )
         imgui.separator()
-        entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", one, lambda: self.begin(session, port, shown))
+        entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", is_single, lambda: self.begin(session, port, field_text))
         entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
         entry(
-            icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.apply(BakeKeys(port))
+            icons.ICON_FA_BARS_STAGGERED,
+            "Bake to Keys",
+            is_single and look != "still",
+            lambda: session.apply(BakeKeys(port)),
         )
         entry(
             icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: context.clipboard.put(as_text(session, port))
         )
         entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, context.clipboard.get()))
 
-    def _typed(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
+    def _draw_typing(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
         """The field while it is typed in."""
         fields, context = self._fields, rows.context
         session = context.session
@@ -242,9 +247,13 @@ class Keying:
             return
         self._drafts.pop(str(port), None)
         if edit is not None and isinstance(edit.value, str):
-            said = edit.value
+            typed_text = edit.value
             rows.act(
-                lambda: self.typed(session, port, said) if said.strip() else session.apply(SetExpression(port, ""))
+                lambda: (
+                    self.take_expression(session, port, typed_text)
+                    if typed_text.strip()
+                    else session.apply(SetExpression(port, ""))
+                )
             )
         elif text and session.expression_fault(port, text):
             self._drafts[str(port)] = text
@@ -278,7 +287,7 @@ def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
     draw.add_ngon(center, size, u32(mix(color, palette.text, 0.3) if hovered else color, strong), 4, 1.3 * scale)
 
 
-def _colored(palette: Palette, rect: Rect, text: str) -> bool:
+def _draw_colored(palette: Palette, rect: Rect, text: str) -> bool:
     """The words of an expression, each in the color of what it is; True if there is no room for all of them."""
     colors = {
         "number": palette.good,

@@ -43,8 +43,8 @@ class Layers:
     def header(self, path: Path) -> ImageInfo | str | None:
         """The header, a sentence if there is none, None while it is being read."""
         version, fault = self._versions.of(path)
-        found = fault or self._made.get((str(path), version, None))
-        return found if isinstance(found, ImageInfo | str) else None
+        header = fault or self._made.get((str(path), version, None))
+        return header if isinstance(header, ImageInfo | str) else None
 
     def fault(self, path: Path) -> str:
         """Why there is no such file, or ""."""
@@ -53,21 +53,21 @@ class Layers:
     def picture(self, path: Path, layer: str) -> Array | None:
         """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
         version, fault = self._versions.of(path)
-        found = None if fault else self._made.get((str(path), version, layer))
-        return found if isinstance(found, np.ndarray) else None
+        picture = None if fault else self._made.get((str(path), version, layer))
+        return picture if isinstance(picture, np.ndarray) else None
 
-    def space(self, path: Path, layer: str, manager: ColorManager, wanted: str) -> tuple[str, bool]:
+    def space(self, path: Path, layer: str, manager: ColorManager, chosen_space: str) -> tuple[str, bool]:
         """What the color of a layer is in and how that is known, and whether that is a fault; "" while it is read."""
         version, fault = self._versions.of(path)
-        found = None if fault else self._spaces.get((str(path), version, manager, wanted))
+        spaces = None if fault else self._spaces.get((str(path), version, manager, chosen_space))
         header = self.header(path)
-        if found is None or isinstance(found, str) or not isinstance(header, ImageInfo):
-            return (found, True) if isinstance(found, str) else ("", False)
+        if spaces is None or isinstance(spaces, str) or not isinstance(header, ImageInfo):
+            return (spaces, True) if isinstance(spaces, str) else ("", False)
         try:
-            known = found.get(find_layer(header, layer).full_name)
+            space = spaces.get(find_layer(header, layer).full_name)
         except HalationError:
             return "", False
-        return (f"{known.name}: {known.reason}", False) if known else ("", False)
+        return (f"{space.name}: {space.reason}", False) if space else ("", False)
 
     def version(self, path: Path) -> str:
         """Changes when the file does."""
@@ -96,9 +96,9 @@ class Layers:
             return f"{path}: cannot be shown ({fault})"
 
     def _find_spaces(self, key: SpaceKey) -> Mapping[str, FileSpace] | str:
-        path, _, manager, wanted = key
+        path, _, manager, chosen_space = key
         try:
-            return find_layer_spaces(path, manager, wanted, sandbox=self._sandbox)
+            return find_layer_spaces(path, manager, chosen_space, sandbox=self._sandbox)
         except HalationError as fault:
             return str(fault)
         except Exception as fault:
@@ -110,11 +110,11 @@ def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) ->
 
     Raises InputError.
     """
-    found = find_layer(header, layer)
+    named_layer = find_layer(header, layer)
     array = read_layer(path, layer, Kind.IMAGE, sandbox=sandbox).array
     step = max(1, -(-array.shape[1] // WIDTH), -(-array.shape[0] // HEIGHT))
     small = np.ascontiguousarray(array[::step, ::step, :3], dtype=np.float32)
-    if found.is_data:
+    if named_layer.is_data:
         finite = small[np.isfinite(small) & (np.abs(small) < _NOTHING)]
         low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
         small = np.nan_to_num((small - low) / max(high - low, 1e-12), nan=0.0, posinf=1.0, neginf=0.0)
@@ -122,12 +122,16 @@ def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) ->
     return to_display(small, NO_VIEW)
 
 
-def described(header: ImageInfo, layer: str) -> str:
+def describe_layer(header: ImageInfo, layer: str) -> str:
     """One line about a file: size, the channels of a layer, how they are stored."""
     try:
-        found = find_layer(header, layer)
+        named_layer = find_layer(header, layer)
     except HalationError as fault:
         return str(fault).removeprefix(f"{header.path}: ")
-    channels = "".join(found.channels) if all(len(name) == 1 for name in found.channels) else ", ".join(found.channels)
-    kind = "data" if found.is_data else "color"
-    return f"{header.size[0]} x {header.size[1]}, {channels}, {found.format}, {kind}"
+    channels = (
+        "".join(named_layer.channels)
+        if all(len(name) == 1 for name in named_layer.channels)
+        else ", ".join(named_layer.channels)
+    )
+    kind = "data" if named_layer.is_data else "color"
+    return f"{header.size[0]} x {header.size[1]}, {channels}, {named_layer.format}, {kind}"

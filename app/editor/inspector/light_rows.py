@@ -15,10 +15,10 @@ from ...graph.values import value_fault
 from ..fields.choice_field import choice_field
 from ..fields.color_field import color_field
 from ..fields.fields import Edit
-from ..fields.lights import KINDS, LightProperty, Numbers, changed, light_at, parts_of, turned
-from ..fields.lights_field import selected
+from ..fields.lights import KINDS, LightProperty, Numbers, change_kind, light_at, parts_of, replace_light
+from ..fields.lights_field import find_selected
 from ..fields.number_field import number_field, vector_field
-from ..fields.numbers import described, worded
+from ..fields.numbers import describe_default, describe_value
 from ..theme.style import u32, ui_scale
 from ..toolkit.places import item_rect
 from .applying import as_text, from_text
@@ -33,11 +33,11 @@ _KIND = Value("kind", "choice", KINDS[0], choices=KINDS, doc="What shines: a poi
 
 def light_rows(rows: Rows, id: str, value: Numbers, put: Put) -> None:
     """The rows; `put` sets the whole list. Fields have the light's number in their ids: what is typed stays there."""
-    index = selected(rows.fields, id, value)
+    index = find_selected(rows.fields, id, value)
     if index < 0:
         return
     light, top = light_at(value, index), imgui.get_cursor_screen_pos()
-    _kind(rows, f"{id} {index} kind", light, lambda made: put(Edit(changed(value, index, made))))
+    _kind(rows, f"{id} {index} kind", light, lambda new_light: put(Edit(replace_light(value, index, new_light))))
     for part in parts_of(light.kind):
         _Row(rows, id, value, index, light, part, put).draw()
     left, scale = top.x - 4.0 * ui_scale(), ui_scale()
@@ -51,8 +51,8 @@ def _kind(rows: Rows, key: str, light: Light, put: Callable[[Light], object]) ->
     edit = choice_field(rows.fields, key, KINDS[light.kind], _KIND, rows.field())
     rows.record(key)
     if edit:
-        made = turned(light, LightKind(KINDS.index(str(edit.value))))
-        rows.act(lambda: put(made))
+        new_light = change_kind(light, LightKind(KINDS.index(str(edit.value))))
+        rows.act(lambda: put(new_light))
 
 
 class _Row:
@@ -62,12 +62,12 @@ class _Row:
         self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: LightProperty, put: Put
     ) -> None:
         self.rows, self.id, self.value, self.index, self.light, self.part = rows, id, value, index, light, part
-        self.key, self.plain, self.put = f"{id} {index} {part.name}", part.of(light), put
+        self.key, self.plain, self.put = f"{id} {index} {part.name}", part.read_from(light), put
 
     def draw(self) -> None:
         """Name, field, and a menu for both."""
         rows, part, declaration = self.rows, self.part, self.part.declaration
-        doc = f"{described(declaration, worded(declaration))}\nDouble click: reset. Right click: more."
+        doc = f"{describe_value(declaration, describe_default(declaration))}\nDouble click: reset. Right click: more."
         rows.name(self.key, declaration.name, doc=doc, changed=self.plain != declaration.default)
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             self._set(Edit(declaration.default))
@@ -107,9 +107,9 @@ class _Row:
 
         entry(icons.ICON_FA_ROTATE_LEFT, "Reset", lambda: self._now(Edit(declaration.default)))
         entry(icons.ICON_FA_COPY, "Copy Value", lambda: context.clipboard.put(as_text(self.plain)))
-        entry(icons.ICON_FA_PASTE, "Paste Value", lambda: self._now(Edit(self._pasted(context.clipboard.get()))))
+        entry(icons.ICON_FA_PASTE, "Paste Value", lambda: self._now(Edit(self._read_pasted(context.clipboard.get()))))
 
-    def _pasted(self, text: str) -> Plain:
+    def _read_pasted(self, text: str) -> Plain:
         plain = from_text(text)
         if fault := value_fault(self.part.declaration, plain):
             raise UsageError(f"{self.part.declaration.name}: {fault}")
@@ -123,8 +123,8 @@ class _Row:
                 fields.lights_gesture, fields.before = edit.merge, self.value
             assert isinstance(fields.before, tuple)
             before = fields.before
-        made = self.part.put(light_at(before, self.index), edit.value)
-        return replace(edit, value=changed(before, self.index, made)) if made != self.light else None
+        new_light = self.part.apply_to(light_at(before, self.index), edit.value)
+        return replace(edit, value=replace_light(before, self.index, new_light)) if new_light != self.light else None
 
     def _now(self, edit: Edit) -> None:
         if whole := self._whole(edit):

@@ -55,7 +55,7 @@ class MatteRows:
         rows.field_note(f"{len(picked)} of {len(matte.ids)} picked. A click in the viewer picks, too.")
         if session.linked(port) is not None:
             return
-        names = self._found(rows, key, matte)
+        names = self._find_names(rows, key, matte)
         self._list(
             rows, key, names, picked, lambda name: session.apply(SetValue(port, toggle_name(pick, name, matte.ids)))
         )
@@ -72,7 +72,7 @@ class MatteRows:
             self._seek = next(iter(new)) if len(new) == 1 else ""
         return self._picked
 
-    def _found(self, rows: Rows, key: str, matte: Matte) -> list[str]:
+    def _find_names(self, rows: Rows, key: str, matte: Matte) -> list[str]:
         """The names that the search field asks for, in the order of the alphabet."""
         if self._sorted[0] is not matte.ids:
             self._sorted = matte.ids, sorted(matte.ids, key=str.casefold)

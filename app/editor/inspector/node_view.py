@@ -20,7 +20,7 @@ from ..shared.render_facts import render_path
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common
-from .heading import doc_of, explanation, faults, heading, name_field, title_of
+from .heading import doc_of, draw_explanation, draw_faults, draw_heading, draw_name_field, title_of
 from .render_rows import RenderRows
 from .value_rows import ValueRows, link_chip
 
@@ -42,12 +42,14 @@ class NodeView:
         item = session.graph.nodes[id]
         face = signature(item)
         rows.fit(("name", *face.inputs, *(value.label or name for name, value in face.values.items())))
-        heading(rows, title_of(item), rows.palette.category(_category(item)), lambda: self._buttons(rows, id, item), 3)
-        name_field(
+        draw_heading(
+            rows, title_of(item), rows.palette.category(_category(item)), lambda: self._draw_buttons(rows, id, item), 3
+        )
+        draw_name_field(
             rows, self._fields, id, id, lambda new: session.apply(RenameNode(id, new)), "What links and files call it"
         )
-        self._explained = explanation(rows, doc_of(item), self._explained)
-        faults(rows, ElementId(id))
+        self._explained = draw_explanation(rows, doc_of(item), self._explained)
+        draw_faults(rows, ElementId(id))
         if isinstance(item, Group):
             self._group(rows, id, item)
         if code := session.code(id):
@@ -58,14 +60,14 @@ class NodeView:
             rows.note("This type of node is not installed. It does nothing, and is saved back as it was.")
             return
         if face.values:
-            rows.heading("Controls" if isinstance(item, Group) else "Values")
+            rows.draw_heading("Controls" if isinstance(item, Group) else "Values")
         if isinstance(item, Node) and render_path(item):
             self._renders.draw(rows, id, item)
         else:
             for name, declaration in face.values.items():
                 self._values.draw(rows, (Port(id, name),), declaration)
         if face.inputs:
-            rows.heading("Inputs")
+            rows.draw_heading("Inputs")
         for name, socket in face.inputs.items():
             _input(rows, Port(id, name), socket)
 
@@ -75,20 +77,22 @@ class NodeView:
         items = [session.graph.nodes[id] for id in ids]
         kinds = {title_of(item) for item in items}
         kind = f"{len(ids)} × {kinds.pop()}" if len(kinds) == 1 else f"{len(ids)} Nodes"  # noqa: RUF001
-        heading(rows, kind, rows.palette.category(_category(items[0])), lambda: self._shared_buttons(rows, ids), 1)
+        draw_heading(
+            rows, kind, rows.palette.category(_category(items[0])), lambda: self._draw_shared_buttons(rows, ids), 1
+        )
         rows.note(", ".join(ids))
-        found = common(session.graph, ids)
-        if not found:
+        declarations = common(session.graph, ids)
+        if not declarations:
             rows.note("These nodes have no value in common.")
             return
-        rows.fit(declaration.label or declaration.name for declaration in found)
-        rows.heading("Values in Common")
-        for declaration in found:
+        rows.fit(declaration.label or declaration.name for declaration in declarations)
+        rows.draw_heading("Values in Common")
+        for declaration in declarations:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _buttons(self, rows: Rows, id: str, item: Item) -> None:
+    def _draw_buttons(self, rows: Rows, id: str, item: Item) -> None:
         context = rows.context
         session = context.session
         if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
@@ -96,11 +100,11 @@ class NodeView:
         imgui.same_line()
         self._mute(rows, (id,))
         imgui.same_line()
-        known = not isinstance(item, Unknown) and bool(signature(item).values)
-        if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=known):
+        has_values = not isinstance(item, Unknown) and bool(signature(item).values)
+        if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=has_values):
             rows.act(lambda: session.apply(ResetNode(id)))
 
-    def _shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
+    def _draw_shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
         self._mute(rows, ids)
 
     def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:

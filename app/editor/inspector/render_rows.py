@@ -41,46 +41,48 @@ class RenderRows:
     def draw(self, rows: Rows, id: str, item: Node) -> None:
         """The values, then what there is to know."""
         context, path = rows.context, render_path(item)
-        seen = overview_of(context, id)
-        others = [value for value in item.values.values() if not value.role]
-        rows.fit([*(value.name for value in others), *(_label(value) for value in item.values.values() if value.role)])
-        for value in others:
+        overview = overview_of(context, id)
+        plain_values = [value for value in item.values.values() if not value.role]
+        rows.fit(
+            [*(value.name for value in plain_values), *(_label(value) for value in item.values.values() if value.role)]
+        )
+        for value in plain_values:
             self._values.draw(rows, (Port(id, value.name),), value)
             if value.name == path:
-                _about(rows, seen)
+                _about(rows, overview)
             if value.matte:
                 self._mattes.draw(rows, Port(id, value.name))
         roles = [value for value in item.values.values() if value.role]
         if roles:
-            self._layers(rows, id, item, roles, seen)
-        if not isinstance(seen, RenderOverview):
+            self._layers(rows, id, item, roles, overview)
+        if not isinstance(overview, RenderOverview):
             return
         if roles:
-            self._others(rows, id, roles, seen)
+            self._others(rows, id, roles, overview)
         if any(output.socket.kind is Kind.CAMERA for output in item.outputs.values()):
-            _camera(rows, id, seen)
-        _file(rows, id, seen)
+            _camera(rows, id, overview)
+        _file(rows, id, overview)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _layers(
-        self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: RenderOverview | str | None
+        self, rows: Rows, id: str, item: Node, roles: Sequence[Value], overview: RenderOverview | str | None
     ) -> None:
         """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
-        uses = seen.uses if isinstance(seen, RenderOverview) else {}
+        uses = overview.uses if isinstance(overview, RenderOverview) else {}
         there = {role for role, use in uses.items() if use.layer or use.is_open or use.fault}
         there |= {Role(value.role) for value in roles if item.setting(value.name) != value.default}
-        shown = [value for value in roles if Role(value.role) in there]
+        visible_roles = [value for value in roles if Role(value.role) in there]
         rest = [value for value in roles if Role(value.role) not in there]
-        if shown:
-            rows.heading("Layers")
-        for value in shown:
+        if visible_roles:
+            rows.draw_heading("Layers")
+        for value in visible_roles:
             self._role(rows, id, item, value, uses.get(Role(value.role)))
         if not rest:
             return
         count = len({value.role for value in rest})
         title = f"Not in This File ({count})" if uses else f"Layers ({count})"
-        if _opened(rows, f"{title}###rest {id}", f"more {id} layers"):
+        if _draw_fold(rows, f"{title}###rest {id}", f"more {id} layers"):
             for value in rest:
                 self._role(rows, id, item, value, None)
 
@@ -93,8 +95,10 @@ class RenderRows:
             return
         has_choice = f"{_output(value)}_is" in item.values
         if value.type == "text":
-            said = use.fault or use.reason
-            rows.field_note(said, rows.palette.error if use.fault else rows.palette.warning if use.is_open else None)
+            explanation = use.fault or use.reason
+            rows.field_note(
+                explanation, rows.palette.error if use.fault else rows.palette.warning if use.is_open else None
+            )
             if use.rule and not has_choice:
                 rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
@@ -103,14 +107,14 @@ class RenderRows:
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)
 
-    def _others(self, rows: Rows, id: str, roles: Sequence[Value], seen: RenderOverview) -> None:
+    def _others(self, rows: Rows, id: str, roles: Sequence[Value], overview: RenderOverview) -> None:
         """Layers that no output shows, each with a list of what to use it for."""
-        if seen.mattes:
-            self._offer_mattes(rows, id, seen)
-        if not seen.other_passes:
+        if overview.mattes:
+            self._offer_mattes(rows, id, overview)
+        if not overview.other_passes:
             return
-        rows.heading("Not Used")
-        for item in seen.other_passes:
+        rows.draw_heading("Not Used")
+        for item in overview.other_passes:
             self._other(rows, id, [value for value in roles if value.type == "text"], item)
 
     def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: RenderPass) -> None:
@@ -140,61 +144,64 @@ class RenderRows:
         with font(rows.context, "text", SMALL):
             draw_wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
 
-    def _offer_mattes(self, rows: Rows, id: str, seen: RenderOverview) -> None:
+    def _offer_mattes(self, rows: Rows, id: str, overview: RenderOverview) -> None:
         """What cryptomattes there are, and a button for a node that cuts out."""
-        rows.heading("Cryptomatte")
+        rows.draw_heading("Cryptomatte")
         words = [
             f"{matte.kind or 'nameless'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
-            for matte in seen.mattes
+            for matte in overview.mattes
         ]
         rows.note(", ".join(words))
         session = rows.context.session
         if rows.wide_button(f"{icons.ICON_FA_OBJECT_GROUP}  Pick Objects", f"matte {id}", "Add a cryptomatte node"):
-            rows.act(lambda: session.apply(AddMatte(id, seen.mattes[0].kind)))
+            rows.act(lambda: session.apply(AddMatte(id, overview.mattes[0].kind)))
 
 
-def _about(rows: Rows, seen: RenderOverview | str | None) -> None:
+def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
     """What the file is, below its path."""
-    if seen is None:
+    if overview is None:
         rows.field_note("looking at it…")
-    elif isinstance(seen, RenderOverview):
-        rows.field_note(f"{seen.size}\n{seen.maker}")
-        if seen.fault:
-            rows.field_note(seen.fault, rows.palette.error)
+    elif isinstance(overview, RenderOverview):
+        rows.field_note(f"{overview.size}\n{overview.maker}")
+        if overview.fault:
+            rows.field_note(overview.fault, rows.palette.error)
 
 
-def _camera(rows: Rows, id: str, seen: RenderOverview) -> None:
+def _camera(rows: Rows, id: str, overview: RenderOverview) -> None:
     """Whether there is one, and how exactly it was found."""
-    rows.heading("Camera")
-    facts = dict(list_camera(seen.camera))
+    rows.draw_heading("Camera")
+    facts = dict(list_camera(overview.camera))
     for name in ("found", "none", "residual", "field of view"):
         if name in facts:
             _fact(rows, name, facts[name], rows.palette.warning if name == "none" else None)
     rows.context.places[f"camera {id}"] = item_rect()
 
 
-def _file(rows: Rows, id: str, seen: RenderOverview) -> None:
+def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
     """What `halation info` shows besides: parts, the whole camera, metadata."""
-    rows.heading("File")
-    if _opened(rows, f"Parts ({len(seen.parts)})###parts {id}", f"more {id} parts"):
-        names = [part[1] or f"part {part[0]}" for part in seen.parts]
+    rows.draw_heading("File")
+    if _draw_fold(rows, f"Parts ({len(overview.parts)})###parts {id}", f"more {id} parts"):
+        names = [part[1] or f"part {part[0]}" for part in overview.parts]
         heads = {name.partition(".")[0] for name in names}
         shared = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
         _facts(
             rows,
             [
                 (name.removeprefix(f"{shared}."), ", ".join(word for word in part[2:] if word))
-                for name, part in zip(names, seen.parts, strict=True)
+                for name, part in zip(names, overview.parts, strict=True)
             ],
         )
-    if seen.camera.camera and _opened(rows, f"Camera###camera {id}", f"more {id} camera"):
-        _facts(rows, list_camera(seen.camera))
-    if seen.metadata and _opened(rows, f"Metadata ({len(seen.metadata)})###metadata {id}", f"more {id} metadata"):
+    if overview.camera.camera and _draw_fold(rows, f"Camera###camera {id}", f"more {id} camera"):
+        _facts(rows, list_camera(overview.camera))
+    if overview.metadata and _draw_fold(
+        rows, f"Metadata ({len(overview.metadata)})###metadata {id}", f"more {id} metadata"
+    ):
         _facts(
-            rows, [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata]
+            rows,
+            [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in overview.metadata],
         )
-    if seen.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
-        rows.context.clipboard.put(seen.report)
+    if overview.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
+        rows.context.clipboard.put(overview.report)
 
 
 def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
@@ -217,7 +224,7 @@ def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: fl
         draw_wrapped(color or rows.palette.text, words)
 
 
-def _opened(rows: Rows, label: str, key: str) -> bool:
+def _draw_fold(rows: Rows, label: str, key: str) -> bool:
     """A part that is folded at first."""
     imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
     opened = imgui.tree_node_ex(label, int(imgui.TreeNodeFlags_.no_tree_push_on_open))

@@ -48,8 +48,8 @@ class Rows:
         """Make the left column as wide as these names ask for: from a `least` part up to half of the panel."""
         scale = ui_scale()
         longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
-        wanted = max(self.width * least, longest + 26.0 * scale)
-        self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
+        needed_width = max(self.width * least, longest + 26.0 * scale)
+        self.name_width = min(needed_width, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
     def name(
@@ -94,7 +94,7 @@ class Rows:
         """Note where the field of a row is: the last item."""
         self.context.places[f"field {key}"] = item_rect()
 
-    def heading(self, text: str) -> None:
+    def draw_heading(self, text: str) -> None:
         """The title of a section."""
         imgui.spacing()
         with font(self.context, "bold", SMALL):

@@ -15,7 +15,7 @@ from ...authoring.edits.element_id import ElementId
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
-from ..fields.numbers import described, worded
+from ..fields.numbers import describe_default, describe_value
 from ..fields.value_field import value_field
 from ..shared.render_facts import convention_words, first_words, use_of
 from ..theme.palette import RGB
@@ -109,9 +109,9 @@ class ValueRows:
             self._menu(rows, ports, declaration, value, source, control)
             imgui.end_popup()
 
-    def left(self, context: InspectorContext, left: tuple[str, Edit]) -> None:
+    def take_abandoned(self, context: InspectorContext, abandoned: tuple[str, Edit]) -> None:
         """What was typed in a field before something else was selected goes where it belongs."""
-        id, edit = left
+        id, edit = abandoned
         graph = context.session.graph
         ports, declaration = self._targets.get(id, ((), None))
         if declaration and all(port.node in graph.nodes for port in ports):
@@ -128,7 +128,7 @@ class ValueRows:
         """Put an edit where it belongs."""
         session = rows.context.session
         if edit.expression:
-            self._keying.typed(session, ports[0], edit.expression)
+            self._keying.take_expression(session, ports[0], edit.expression)
         elif edit.merge and imgui.is_key_pressed(imgui.Key.escape) and session.animation(ports[0]) is not None:
             session.abandon(edit.merge)  # a key that the drag set goes with it
         else:
@@ -171,8 +171,8 @@ class ValueRows:
         use, key = use_of(rows.context, port, declaration), str(port)
         if declaration.type == "choice":
             words = convention_words(declaration, use)
-            now = words[declaration.choices.index(value)] if value in declaration.choices else value
-            index = choose(self.fields, key, now, words, width, mixed=mixed)
+            current = words[declaration.choices.index(value)] if value in declaration.choices else value
+            index = choose(self.fields, key, current, words, width, mixed=mixed)
             return None if index is None else Edit(declaration.choices[index])
         item = rows.context.session.graph.nodes.get(port.node)
         file = str(item.setting(declaration.file)) if isinstance(item, Node) else ""
@@ -263,8 +263,8 @@ def go_to(context: InspectorContext, port: Port) -> None:
 
 def _file_of(graph: Graph, port: Port) -> str | None:
     """The path whose layer a value picks, if it does."""
-    for name, other in signature(graph.node(port.node)).values.items():
-        if other.layer_by == port.socket:
+    for name, declaration in signature(graph.node(port.node)).values.items():
+        if declaration.layer_by == port.socket:
             path = graph.value(Port(port.node, name))
             return path if isinstance(path, str) else None
     return None
@@ -276,6 +276,6 @@ def _layer_of(graph: Graph, port: Port, declaration: Value) -> str:
 
 
 def _tip(declaration: Value, control: str | None) -> str:
-    lines = described(declaration, worded(declaration))
+    lines = describe_value(declaration, describe_default(declaration))
     hints = "Double click: reset. Right click: more."
     return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)

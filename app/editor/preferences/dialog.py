@@ -132,7 +132,9 @@ class PreferencesDialog:
         )
         for index, folder in enumerate(folders):
             if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
-                _change(self._context, isf_folders=tuple(one for one in folders if one != folder))
+                _change(
+                    self._context, isf_folders=tuple(kept_folder for kept_folder in folders if kept_folder != folder)
+                )
             imgui.same_line()
             imgui.align_text_to_frame_padding()
             note = "" if os.path.isdir(folder) else "  (there is no such folder)"  # noqa: PTH112

@@ -12,7 +12,7 @@ from ..shared.fuzzy import match
 from ..shared.shortcut_groups import group_actions
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button
-from ..toolkit.keys import display_shortcut, pressed
+from ..toolkit.keys import display_shortcut, find_pressed_chord
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, draw_wrapped, tip
 from .shortcut_changes import assign_shortcut, reset_shortcut, take_shortcut
@@ -51,7 +51,7 @@ class ShortcutEditor:
         if imgui.begin_child("list"):
             for title, actions in group_actions(self._context.actions, every=True):
                 labels = tuple(action.label for action in actions)
-                matches = sorted(one.index for one in match(self._query, labels))
+                matches = sorted(ranked.index for ranked in match(self._query, labels))
                 if matches:
                     imgui.separator_text(title)
                 for index in matches:
@@ -92,7 +92,7 @@ class ShortcutEditor:
         if imgui.is_key_pressed(imgui.Key.escape, False):
             self._waiting = ""
             return
-        keys = pressed()
+        keys = find_pressed_chord()
         if not keys:
             return
         id, self._waiting = self._waiting, ""

@@ -134,7 +134,7 @@ class RenderForm:
         typed = self.files.get(output, "")
         return Path(typed).expanduser() if typed else self.suggest_file(output)
 
-    def chosen_outputs(self) -> tuple[str, ...]:
+    def list_chosen_outputs(self) -> tuple[str, ...]:
         """The outputs that are chosen; at first those that are pictures."""
         kinds = {name: output.kind for name, output in self.context.session.root.outputs.items()}
         return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
@@ -147,17 +147,17 @@ class RenderForm:
 
     def number(self) -> None:
         """Give all files a place for the frame number."""
-        self.files = {name: _add_number(str(self.file(name))) for name in self.chosen_outputs()}
+        self.files = {name: _add_number(str(self.file(name))) for name in self.list_chosen_outputs()}
 
     # --- all together ------------------------------------------------------------------------------------------------
 
-    def targets(self, now: float) -> RenderTargets:
-        """What would be written; the disk is looked at again when `now` is a second later, or the choices differ."""
+    def targets(self, time_now: float) -> RenderTargets:
+        """What would be written; the disk is looked at again when `time_now` is a second later, or the choices differ."""
         frames = self.frames()
-        paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.chosen_outputs()))
+        paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.list_chosen_outputs()))
         key = paths, frames, self.list_fault if not frames else ""
-        if self._seen[0] != key or now - self._seen[1] > _FRESH:
-            self._seen = (key, now, find_targets(paths, frames, key[2], self.context.session.sandbox))
+        if self._seen[0] != key or time_now - self._seen[1] > _FRESH:
+            self._seen = (key, time_now, find_targets(paths, frames, key[2], self.context.session.sandbox))
         return self._seen[2]
 
     def options(self) -> RenderJob:
@@ -168,7 +168,7 @@ class RenderForm:
             frames=frames,
             precision=self.precision or None,
             view=self.view,
-            resume=self.resume and not any(is_video(str(self.file(name))) for name in self.chosen_outputs()),
+            resume=self.resume and not any(is_video(str(self.file(name))) for name in self.list_chosen_outputs()),
             processes=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
@@ -177,7 +177,7 @@ class RenderForm:
 
     def start(self) -> QueuedRender:
         """Put it into the queue. Raises UsageError or GraphError."""
-        files = [(name, self.file(name)) for name in self.chosen_outputs()]
+        files = [(name, self.file(name)) for name in self.list_chosen_outputs()]
         if not self.frames():
             raise UsageError(self.list_fault)
         render = self.context.exports.start(

@@ -45,7 +45,7 @@ def draw_form(context: RendersContext, form: RenderForm) -> None:
 
 
 def _draw_files(context: RendersContext, form: RenderForm) -> None:
-    chosen_outputs = form.chosen_outputs()
+    chosen_outputs = form.list_chosen_outputs()
     button = width_of_buttons(icons.ICON_FA_FOLDER_OPEN)
     for name in context.session.root.outputs:
         imgui.push_id(name)
@@ -133,12 +133,12 @@ def _draw_frame_list(context: RendersContext, form: RenderForm) -> None:
 
 
 def _draw_options(context: RendersContext, form: RenderForm) -> None:
-    kinds = {form.file(name).suffix.lower() for name in form.chosen_outputs()}
+    kinds = {form.file(name).suffix.lower() for name in form.list_chosen_outputs()}
     format = kinds.pop() if len(kinds) == 1 else "mixed"
     if chosen := choose(context, "Format", format, formats()):
         form.reform(chosen)
     if chosen := choose(context, "Size", form.sizing, _SIZINGS):
-        form.sizing = next(one for one in _SIZINGS if one == chosen)
+        form.sizing = next(sizing for sizing in _SIZINGS if sizing == chosen)
     if form.sizing == "scale":
         label("", _LABELS)
         imgui.set_next_item_width(-1)

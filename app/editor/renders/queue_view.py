@@ -84,7 +84,7 @@ class RenderQueueView:
         ended.sort(key=lambda one: -one.ended_at)
         imgui.align_text_to_frame_padding()
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
-        draw_dim(self._context, ", ".join(f"{count} {what}" for count, what in counts if count))
+        draw_dim(self._context, ", ".join(f"{count} {state}" for count, state in counts if count))
         align_right(f"{icons.ICON_FA_TRASH} Clear")
         doc = "Forget what has ended"
         if quiet_button(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
@@ -247,11 +247,11 @@ class RenderQueueView:
         """The file that stands for it: a new one only now and then, for decoding takes time too."""
         if not export.written_files:
             return None
-        path, now, before = export.written_files[-1], imgui.get_time(), self._seen.get(export)
-        late = before is None or now - before[2] > _PAUSE or export.state != "running"
+        path, time_now, before = export.written_files[-1], imgui.get_time(), self._seen.get(export)
+        late = before is None or time_now - before[2] > _PAUSE or export.state != "running"
         if late and (before is None or before[0] != path):
             try:
-                self._seen[export] = path, os.stat(path).st_mtime, now  # noqa: PTH116
+                self._seen[export] = path, os.stat(path).st_mtime, time_now  # noqa: PTH116
             except OSError:
                 return None
         choice = self._seen.get(export)

@@ -94,8 +94,8 @@ def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequenc
     if query.strip():
         titles = match(query, [entry.title for entry in entries])
         named = [entries[one.index] for one in titles]
-        others = [entries[one.index] for one in match(query, [entry.searched for entry in entries])]
-        rest = [entry for entry in others if entry not in named and _says(entry, query)]
+        described = [entries[one.index] for one in match(query, [entry.searched for entry in entries])]
+        rest = [entry for entry in described if entry not in named and _says(entry, query)]
         return (Section("", (*named, *rest)),)
     by_id = {entry.id: entry for entry in entries}
     last = tuple(by_id[id] for id in recent if id in by_id)

@@ -51,10 +51,10 @@ def overview_of(context: RenderContext, id: str) -> RenderOverview | str | None:
     """What the render of a node holds, a sentence if it cannot be read or none is named, None while it is read."""
     graph = context.session.graph
     file = render_file(graph, id)
-    return "no file" if file is None else context.renders.overview(file, named_layers(graph.nodes[id]))
+    return "no file" if file is None else context.renders.overview(file, find_named_layers(graph.nodes[id]))
 
 
-def named_layers(item: object) -> Mapping[str, str]:
+def find_named_layers(item: object) -> Mapping[str, str]:
     """The layers that a node names, by the roles that they are to have."""
     if not isinstance(item, Node):
         return {}

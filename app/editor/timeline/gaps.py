@@ -33,11 +33,11 @@ class MissingFrames:
     _of: tuple[object, ...] = ()
     _at: float = field(default=float("-inf"))
 
-    def update(self, session: Session, now: float) -> Gaps:
+    def update(self, session: Session, time_now: float) -> Gaps:
         """The frames between the first and the last one of a sequence that have no file."""
         of = session.root, dict(session.bindings)
-        if now - self._at > STALE or (now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
-            self._at, self._of = now, of
+        if time_now - self._at > STALE or (time_now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
+            self._at, self._of = time_now, of
             self.gaps = find_gaps(session.root, session.bindings, session.sandbox)
         return self.gaps
 

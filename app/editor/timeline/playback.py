@@ -74,27 +74,27 @@ class Playback:
         """The frame that is shown, or is to be shown as soon as it is ready."""
         return self.course.at(self._place) if self.course else 0
 
-    def start(self, course: Course, frame: int, now: float) -> None:
+    def start(self, course: Course, frame: int, time_now: float) -> None:
         """Play from a frame on; at the end of what is played once, from its beginning."""
         self.course, self.dropped = course, 0
         self._shown.clear()
         self._seen = None
         place = course.place(frame)
-        self._go(0 if course.ends(place) else place, now)
+        self._go(0 if course.ends(place) else place, time_now)
 
     def stop(self) -> None:
         """Stay where it is."""
         self.course = None
 
-    def keep(self, course: Course, frame: int, now: float) -> None:
+    def keep(self, course: Course, frame: int, time_now: float) -> None:
         """Go on with another course, or from another frame, if either has changed."""
         if self.course is None:
             return
         if course != self.course or frame != self.frame:
             self.course = course
-            self._go(course.place(frame), now)
+            self._go(course.place(frame), time_now)
 
-    def tick(self, now: float, busy: bool, under_way: int | None = None) -> int | None:
+    def tick(self, time_now: float, busy: bool, under_way: int | None = None) -> int | None:
         """The frame to show now, None if playing has come to its end.
 
         A frame that is being computed is waited for: for now if `busy`, else `under_way` for later.
@@ -107,7 +107,7 @@ class Playback:
         if course.ends(self._place):
             self.stop()
             return None
-        due = self._origin[1] + math.floor((now - self._origin[0]) * course.rate + 1e-6)
+        due = self._origin[1] + math.floor((time_now - self._origin[0]) * course.rate + 1e-6)
         if due <= self._place:
             return self.frame
         place = self._place + 1 if course.every else due
@@ -121,16 +121,16 @@ class Playback:
             place = min(place, course.length - 1)
         self.dropped += place - self._place - 1
         if course.every and due > place:
-            self._go(place, now)
+            self._go(place, time_now)
         self._place = place
         return self.frame
 
-    def note(self, now: float) -> None:
+    def note(self, time_now: float) -> None:
         """The frame has been shown."""
         if self._seen != self._place:
             self._seen = self._place
-            self._shown.append(now)
-        while self._shown and now - self._shown[0] > WINDOW:
+            self._shown.append(time_now)
+        while self._shown and time_now - self._shown[0] > WINDOW:
             self._shown.popleft()
 
     def ahead(self, seconds: float) -> int | None:
@@ -157,5 +157,5 @@ class Playback:
         text = f"{self.rate:.1f} of {self.course.rate:g} fps"
         return f"{text}, {self.dropped} dropped" if self.dropped else text
 
-    def _go(self, place: int, now: float) -> None:
-        self._place, self._origin = place, (now, place)
+    def _go(self, place: int, time_now: float) -> None:
+        self._place, self._origin = place, (time_now, place)

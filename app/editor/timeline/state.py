@@ -57,12 +57,12 @@ class TimelineState:
         first, last = self.span(session)
         return Course(first, last, session.settings.rate, self.loop, self.every or every)
 
-    def play(self, session: Session, now: float, every: bool = False) -> None:
+    def play(self, session: Session, time_now: float, every: bool = False) -> None:
         """Play from this second on, or stop."""
         if self.playback.playing:
             self.stop()
         else:
-            self.playback.start(self.course(session, every), session.frame, now)
+            self.playback.start(self.course(session, every), session.frame, time_now)
             session.seek(self.playback.frame)
 
     def stop(self) -> None:

@@ -63,7 +63,7 @@ def display_shortcut(text: str) -> str:
     return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
 
 
-def pressed() -> str:
+def find_pressed_chord() -> str:
     """The chord whose key went down in this frame, "" if none did; Escape is left to whoever asks."""
     held = int(imgui.get_io().key_mods)
     for name, key in _keys().items():

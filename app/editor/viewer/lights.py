@@ -11,7 +11,7 @@ from msgspec import structs
 
 from ...authoring.commands import ReplaceGraph, SetValue
 from ...graph import Port, Unknown, signature
-from ..fields.lights import added, changed, count_of, fresh, light_at, removed
+from ..fields.lights import count_lights, insert_light, light_at, make_light, remove_light, replace_light
 from .geometry import Point
 from .ground import surface_at
 from .perspective import Place, dot, moved, project, unit, unproject
@@ -84,7 +84,7 @@ def _all(context: ViewerContext) -> tuple[Lamp, ...]:
     for port in lists(context) if camera else ():
         numbers = _numbers(context, port)
         chosen = _chosen(context, port)
-        few = count_of(numbers) <= MOST
+        few = count_lights(numbers) <= MOST
         for index, light in enumerate(lights_of(numbers)) if few else ((chosen, light_at(numbers, chosen)),):
             assert camera is not None
             seen = (0.5, 0.5, 0.0) if light.kind is LightKind.SUN else project(camera, light.place)
@@ -110,7 +110,7 @@ def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
 
 def _chosen(context: ViewerContext, port: Port) -> int:
     """The selected light; -1 if there is none."""
-    return min(max(context.lights.get(str(port), 0), 0), count_of(_numbers(context, port)) - 1)
+    return min(max(context.lights.get(str(port), 0), 0), count_lights(_numbers(context, port)) - 1)
 
 
 def _camera(context: ViewerContext) -> CameraModel | None:
@@ -156,9 +156,9 @@ def turn(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
 def change(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
     """Let it be that one; what is done to it in a row is one step."""
     numbers = _numbers(context, lamp.port)
-    if lamp.index >= count_of(numbers):
+    if lamp.index >= count_lights(numbers):
         return
-    value = changed(numbers, lamp.index, light)
+    value = replace_light(numbers, lamp.index, light)
     context.interface.dragging = True
     context.log.attempt(lambda: context.session.apply(SetValue(lamp.port, value, merge=merge or token(lamp))))
 
@@ -178,12 +178,12 @@ def add(context: ViewerContext, to: Point) -> None:
     ports, camera = lists(context), _camera(context)
     if not ports or camera is None:
         return
-    port, light = ports[0], fresh(LightKind.POINT)
+    port, light = ports[0], make_light(LightKind.POINT)
     numbers, chosen = _numbers(context, port), _chosen(context, port)
     depths = [lamp.depth for lamp in lamps(context)]
     deep = depths[-1] if depths else _DEFAULT_DEPTH
     place = _over(context, camera, to, light) or unproject(camera, *to, deep)
-    made, at = added(numbers, chosen, structs.replace(light, place=place))
+    made, at = insert_light(numbers, chosen, structs.replace(light, place=place))
     if made == numbers:
         context.log.add("there is no room for another light")
         return
@@ -203,7 +203,7 @@ def remove(context: ViewerContext) -> None:
     session = context.session
     port = next((port for port in lists(context) if _chosen(context, port) >= 0), None)
     if port is not None:
-        made, at = removed(_numbers(context, port), _chosen(context, port))
+        made, at = remove_light(_numbers(context, port), _chosen(context, port))
         context.lights[str(port)] = max(at, 0)
         context.log.attempt(
             lambda: session.apply(ReplaceGraph(f"Remove light of {port.node}", session.graph.set(port, made)))

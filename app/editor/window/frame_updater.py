@@ -78,13 +78,13 @@ class FrameUpdater:
     def _play(self, session: Session) -> None:
         """Go on to the frame that is due."""
         timeline, preview = self._editor.timeline, self._editor.preview
-        playback, now = timeline.playback, imgui.get_time()
+        playback, time_now = timeline.playback, imgui.get_time()
         if playback.playing:
-            playback.keep(timeline.course(session, preview.remembers), session.frame, now)
+            playback.keep(timeline.course(session, preview.remembers), session.frame, time_now)
             if not preview.busy:
-                playback.note(now)
+                playback.note(time_now)
             words = playback.words
-            frame = playback.tick(now, preview.busy and not preview.paused, preview.under_way)
+            frame = playback.tick(time_now, preview.busy and not preview.paused, preview.under_way)
             timeline.report = words
             if frame is not None:
                 session.seek(frame)

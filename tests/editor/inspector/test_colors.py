@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from halation.color.transforms import decode_srgb
 from halation.editor.fields.colors import (
-    brightened,
+    brighten,
     decode,
-    dimmed,
     encode,
+    from_display,
     from_hexadecimal,
     hexadecimal,
     intensity,
-    picked,
     swatch,
+    to_display,
 )
 from halation.errors import UsageError
 from hypothesis import given
@@ -31,13 +31,13 @@ def test_the_encoding_is_that_of_files(number):
 def test_bright_colors_survive_the_picker(rgb):
     color = (*rgb, 0.5)
     stops = intensity(color)
-    assert picked(dimmed(color, stops), stops, 0.5) == pytest.approx(color, rel=1e-4, abs=1e-6)
+    assert from_display(to_display(color, stops), stops, 0.5) == pytest.approx(color, rel=1e-4, abs=1e-6)
 
 
 def test_intensity():
     assert intensity((4.0, 1.0, 0.0, 1.0)) == 2.0
     assert intensity((0.2, 0.1, 0.0, 1.0)) == 0.0
-    assert brightened((1.0, 0.5, 0.0, 1.0), 1.0) == (2.0, 1.0, 0.0, 1.0)
+    assert brighten((1.0, 0.5, 0.0, 1.0), 1.0) == (2.0, 1.0, 0.0, 1.0)
     assert swatch((-1.0, 0.5, 7.0)) == pytest.approx((0.0, encode(0.5), 1.0))
 
 

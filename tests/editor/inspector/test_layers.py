@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.editor.inspector.layers import Layers, described, small_picture
+from halation.editor.inspector.layers import Layers, describe_layer, small_picture
 from halation.media import ImageInfo, read_info, write_picture
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -76,6 +76,6 @@ def test_another_file_under_the_same_name_is_read_again(layers, picture, monkeyp
 
 def test_the_line_about_a_file(picture):
     header = read_info(picture, sandbox=UNRESTRICTED)
-    assert described(header, "") == "200 x 40, RGBA, float16, color"
-    assert described(header, "depth") == "200 x 40, Z, float32, data"
-    assert described(header, "Deep").startswith("has no layer 'Deep'")
+    assert describe_layer(header, "") == "200 x 40, RGBA, float16, color"
+    assert describe_layer(header, "depth") == "200 x 40, Z, float32, data"
+    assert describe_layer(header, "Deep").startswith("has no layer 'Deep'")

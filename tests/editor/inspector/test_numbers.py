@@ -6,7 +6,17 @@ import ast
 
 import pytest
 from halation.editor.fields.arithmetic import evaluate
-from halation.editor.fields.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
+from halation.editor.fields.numbers import (
+    Drag,
+    bar,
+    describe_value,
+    drop_digit,
+    edit_text,
+    find_step,
+    format_number,
+    parse_number,
+    step_digit,
+)
 from halation.errors import UsageError
 from halation.nodes import Value
 from hypothesis import given
@@ -64,7 +74,7 @@ class TestTyping:
         ],
     )
     def test_units(self, text, declaration, number):
-        assert typed(text, 0.0, declaration) == number
+        assert parse_number(text, 0.0, declaration) == number
 
     @pytest.mark.parametrize(
         ("text", "declaration", "reason"),
@@ -93,7 +103,7 @@ class TestTyping:
     )
     def test_mistakes_are_named(self, text, declaration, reason):
         with pytest.raises(UsageError, match=reason):
-            typed(text, 1.0, declaration)
+            parse_number(text, 1.0, declaration)
 
     @given(
         st.recursive(
@@ -119,27 +129,27 @@ class TestTyping:
 
 class TestDragging:
     def test_the_width_of_the_field_is_the_soft_range(self):
-        assert Drag(0.0).moved(100.0, 100.0, GAIN).number(GAIN) == 4.0
-        assert Drag(1.0).moved(10.0, 100.0, GAIN).number(GAIN) == 1.4
-        assert Drag(1.0).moved(10.0, 100.0, GAIN, fine=True).number(GAIN, fine=True) == 1.04
+        assert Drag(0.0).move(100.0, 100.0, GAIN).number(GAIN) == 4.0
+        assert Drag(1.0).move(10.0, 100.0, GAIN).number(GAIN) == 1.4
+        assert Drag(1.0).move(10.0, 100.0, GAIN, fine=True).number(GAIN, fine=True) == 1.04
 
     def test_it_stays_in_the_soft_range_or_where_it_started(self):
-        assert Drag(1.0).moved(900.0, 100.0, GAIN).number(GAIN) == 4.0
-        assert Drag(9.0).moved(900.0, 100.0, GAIN).number(GAIN) == 9.0
-        assert Drag(9.0).moved(-25.0, 100.0, GAIN).number(GAIN) == 8.0
+        assert Drag(1.0).move(900.0, 100.0, GAIN).number(GAIN) == 4.0
+        assert Drag(9.0).move(900.0, 100.0, GAIN).number(GAIN) == 9.0
+        assert Drag(9.0).move(-25.0, 100.0, GAIN).number(GAIN) == 8.0
 
     def test_coming_back_gives_the_old_number_exactly(self):
-        there = Drag(0.123456789).moved(30.0, 200.0, GAIN)
+        there = Drag(0.123456789).move(30.0, 200.0, GAIN)
         assert there.number(GAIN) == 0.72
-        assert there.moved(-30.0, 200.0, GAIN).number(GAIN) == 0.123456789
+        assert there.move(-30.0, 200.0, GAIN).number(GAIN) == 0.123456789
 
     def test_snapping_and_whole_numbers(self):
-        assert Drag(0.0).moved(33.0, 100.0, GAIN).number(GAIN, snap=True) == 1.4
-        assert Drag(3).moved(10.0, 200.0, SEED).number(SEED) == 53
-        assert isinstance(Drag(3).moved(1.0, 200.0, SEED).number(SEED), int)
+        assert Drag(0.0).move(33.0, 100.0, GAIN).number(GAIN, snap=True) == 1.4
+        assert Drag(3).move(10.0, 200.0, SEED).number(SEED) == 53
+        assert isinstance(Drag(3).move(1.0, 200.0, SEED).number(SEED), int)
 
     def test_steps_are_round(self):
-        assert [step(item) for item in (GAIN, STOPS, ANGLE, SEED)] == [pytest.approx(0.2), 1.0, 20.0, 50.0]
+        assert [find_step(item) for item in (GAIN, STOPS, ANGLE, SEED)] == [pytest.approx(0.2), 1.0, 20.0, 50.0]
 
 
 @pytest.mark.parametrize(
@@ -163,24 +173,24 @@ class TestDragging:
     ],
 )
 def test_arrow_keys_change_the_digit_at_the_caret(text, caret, direction, wanted):
-    assert stepped(text, caret, direction) == wanted
+    assert step_digit(text, caret, direction) == wanted
 
 
 def test_what_is_shown():
-    assert [shown(number, GAIN) for number in (1.0, 0.5, -0.0001, 0.001234, 12.3456)] == [
+    assert [format_number(number, GAIN) for number in (1.0, 0.5, -0.0001, 0.001234, 12.3456)] == [
         "1.00",
         "0.50",
         "-0.0001",
         "0.00123",
         "12.35",
     ]
-    assert shown(-0.0, GAIN) == "0.00"
-    assert shown(7, SEED) == "7"
-    assert [editable(number) for number in (64.0, 1 / 3, 7)] == ["64", repr(1 / 3), "7"]
+    assert format_number(-0.0, GAIN) == "0.00"
+    assert format_number(7, SEED) == "7"
+    assert [edit_text(number) for number in (64.0, 1 / 3, 7)] == ["64", repr(1 / 3), "7"]
 
 
 def test_a_narrow_field_shows_fewer_digits():
-    assert [shortened(text) for text in ("0.185", "1.5", "-0.4", "7", "1.2e-05", "-0.0", "—")] == [
+    assert [drop_digit(text) for text in ("0.185", "1.5", "-0.4", "7", "1.2e-05", "-0.0", "—")] == [
         "0.18",
         "2",
         "0",
@@ -200,5 +210,5 @@ def test_the_bar_starts_at_zero():
 
 
 def test_the_tooltip():
-    assert described(GAIN, "1.00") == "A plain factor; usually 0 to 4; it takes 0 to 16\nDefault: 1.00"
-    assert described(STOPS, "0").splitlines()[0] == "Brightness."
+    assert describe_value(GAIN, "1.00") == "A plain factor; usually 0 to 4; it takes 0 to 16\nDefault: 1.00"
+    assert describe_value(STOPS, "0").splitlines()[0] == "Brightness."

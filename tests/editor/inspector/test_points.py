@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.fields.points import CURVES, RAMPS, added, changed, inverted, nearest, removed, scaled
+from halation.editor.fields.points import (
+    CURVES,
+    RAMPS,
+    find_nearest,
+    insert_point,
+    invert,
+    move_point,
+    remove_point,
+    scale_curve,
+)
 from halation.graph.values import value_fault
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,15 +25,15 @@ CURVE, RAMP = Tint.values["curve"], Tint.values["ramp"]
 @pytest.mark.parametrize("numbers", CURVES.values(), ids=CURVES)
 def test_presets_of_curves_are_legal(numbers):
     assert value_fault(CURVE, numbers) is None
-    assert value_fault(CURVE, inverted(numbers, 2)) is None
-    assert scaled(numbers, -2.0, 2.0)[1] in (-2.0, 2.0)
+    assert value_fault(CURVE, invert(numbers, 2)) is None
+    assert scale_curve(numbers, -2.0, 2.0)[1] in (-2.0, 2.0)
 
 
 @pytest.mark.parametrize("numbers", RAMPS.values(), ids=RAMPS)
 def test_presets_of_ramps_are_legal(numbers):
     assert value_fault(RAMP, numbers) is None
-    assert value_fault(RAMP, inverted(numbers, 5)) is None
-    assert inverted(inverted(numbers, 5), 5) == pytest.approx(numbers)
+    assert value_fault(RAMP, invert(numbers, 5)) is None
+    assert invert(invert(numbers, 5), 5) == pytest.approx(numbers)
 
 
 edits = st.lists(
@@ -42,22 +51,22 @@ def test_whatever_is_done_leaves_a_legal_value(edits, width):
         point = (x, *[y] * (width - 1))
         index %= len(numbers) // width
         if act == "move":
-            numbers = changed(numbers, width, index, point)
+            numbers = move_point(numbers, width, index, point)
         elif act == "add":
-            numbers, _ = added(numbers, width, (min(max(x, 0.0), 1.0), *point[1:]))
+            numbers, _ = insert_point(numbers, width, (min(max(x, 0.0), 1.0), *point[1:]))
         else:
-            numbers = removed(numbers, width, index)
+            numbers = remove_point(numbers, width, index)
         assert value_fault(CURVE if width == 2 else RAMP, numbers) is None
 
 
 def test_points():
-    assert changed(LINE, 2, 1, (7.0, 3.0)) == (0.0, 0.0, 0.999, 3.0, 1.0, 1.0)
-    assert added(LINE, 2, (0.25, 2.0)) == ((0.0, 0.0, 0.25, 2.0, 0.5, 0.5, 1.0, 1.0), 1)
-    assert added(LINE, 2, (0.5, 2.0)) == (LINE, 1)
+    assert move_point(LINE, 2, 1, (7.0, 3.0)) == (0.0, 0.0, 0.999, 3.0, 1.0, 1.0)
+    assert insert_point(LINE, 2, (0.25, 2.0)) == ((0.0, 0.0, 0.25, 2.0, 0.5, 0.5, 1.0, 1.0), 1)
+    assert insert_point(LINE, 2, (0.5, 2.0)) == (LINE, 1)
     full = tuple(part for at in range(17) for part in (at / 16, 0.5))
-    assert added(full, 2, (0.27, 2.0)) == (full, 4)
-    assert removed(LINE, 2, 0) == (0.5, 0.5, 1.0, 1.0)
-    assert removed((0.0, 0.0, 1.0, 1.0), 2, 0) == (0.0, 0.0, 1.0, 1.0)
-    assert nearest(LINE, 2, 0.52, 0.47, (0.05, 0.05)) == 1
-    assert nearest(LINE, 2, 0.52, 0.2, (0.05, 0.05)) == -1
-    assert inverted(LINE, 2) == (0.0, 1.0, 0.5, 0.5, 1.0, 0.0)
+    assert insert_point(full, 2, (0.27, 2.0)) == (full, 4)
+    assert remove_point(LINE, 2, 0) == (0.5, 0.5, 1.0, 1.0)
+    assert remove_point((0.0, 0.0, 1.0, 1.0), 2, 0) == (0.0, 0.0, 1.0, 1.0)
+    assert find_nearest(LINE, 2, 0.52, 0.47, (0.05, 0.05)) == 1
+    assert find_nearest(LINE, 2, 0.52, 0.2, (0.05, 0.05)) == -1
+    assert invert(LINE, 2) == (0.0, 1.0, 0.5, 0.5, 1.0, 0.0)

@@ -106,7 +106,7 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
     desk.session.open(PRESET)
     desk.store.note_folder("export", tmp_path / "x.exr")
     form = RenderForm(desk)
-    assert form.chosen_outputs() == ("image",)
+    assert form.list_chosen_outputs() == ("image",)
     assert form.file("image") == tmp_path / "soft_bloom.exr"
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
