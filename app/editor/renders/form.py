@@ -152,7 +152,7 @@ class RenderForm:
     # --- all together ------------------------------------------------------------------------------------------------
 
     def targets(self, time_now: float) -> RenderTargets:
-        """What would be written; the disk is looked at again when `time_now` is a second later, or the choices differ."""
+        """What would be written; the disk is read again after a second, or when the choices differ."""
         frames = self.frames()
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.list_chosen_outputs()))
         key = paths, frames, self.list_fault if not frames else ""
