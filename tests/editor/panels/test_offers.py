@@ -46,8 +46,11 @@ def desk(tmp_path: Path) -> Editor:
         none,
         none,
         Interface(store),
-        log,
+        exports=none,
         watcher=watcher,
+        renders=none,
+        coloring=none,
+        log=log,
     )
 
 
