@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, SystemText
-    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

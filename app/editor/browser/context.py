@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
-    from ..shared.services import Services
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import PixelPicker
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from ..workflows.code_files import CodeFileWorkflow
     from ..workflows.documents import DocumentWorkflow
     from .view import CanvasView

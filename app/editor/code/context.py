@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from ..workflows.code_files import CodeFileWorkflow
     from .state import CodeState
 

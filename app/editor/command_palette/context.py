@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from ..workflows.documents import DocumentWorkflow
 
 

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.protocols import SystemText
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from .state import CurvesState
 
 

@@ -9,7 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
-    from ..shared.services import Services
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ..shared.protocols import SystemText
-    from ..shared.services import Services
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

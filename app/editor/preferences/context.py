@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import SystemText
-    from ..shared.services import Services
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

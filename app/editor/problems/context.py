@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ...watch.watching import FileWatcher
     from ..shared.protocols import ElementView, SystemText
-    from ..shared.services import Services
+    from ..toolkit.services import Services
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import PlayedSpan, SystemText
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from ..workflows.flipbook import FlipbookPlayer
 
 

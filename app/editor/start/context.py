@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
-    from ..shared.services import Services
+    from ..toolkit.services import Services
     from ..workflows.documents import DocumentWorkflow
 
 

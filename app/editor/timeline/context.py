@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ...authoring.session import Session
     from ..shared.action import Actions
-    from ..shared.services import Services
     from ..shared.stage import DocumentStage
+    from ..toolkit.services import Services
     from .state import TimelineState
 
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView, PlayState, ReportedFault, SystemText
-    from ..shared.services import Services
     from ..shared.stage import DocumentStage
+    from ..toolkit.services import Services
     from .state import ViewerState
 
 

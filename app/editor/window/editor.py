@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from ..canvas.view import CanvasView
 from ..code.state import CodeState
 from ..curves.state import CurvesState
-from ..shared.services import Services
 from ..theme.palette import Palette
 from ..timeline.state import TimelineState
 from ..toolkit.places import Rect
+from ..toolkit.services import Services
 from ..viewer.state import ViewerState
 
 if TYPE_CHECKING:

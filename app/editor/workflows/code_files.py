@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from ...custom_nodes import Code
     from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
-    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
+    from ..toolkit.services import Services
 
 
 class CodeEditor(Protocol):

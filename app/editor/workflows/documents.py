@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import ElementView
-    from ..shared.services import Services
     from ..shared.window_commands import WindowCommands
+    from ..toolkit.services import Services
     from .code_files import CodeFileWorkflow
 
 

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from ...authoring.preview import Preview
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Player
-    from ..shared.services import Services
     from ..shared.stage import DocumentStage
     from ..shared.window_commands import WindowCommands
+    from ..toolkit.services import Services
 
 
 class FlipbookScreen(Protocol):

@@ -11,10 +11,10 @@ from ...authoring.log import Log
 from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.render_queue.queue import RenderQueue
 from ...watch.watching import FileWatcher
-from ..toolkit.context import Interface
-from .dialogs import Dialogs
-from .stage import DocumentStage
-from .window_commands import WindowCommands
+from ..shared.dialogs import Dialogs
+from ..shared.stage import DocumentStage
+from ..shared.window_commands import WindowCommands
+from .context import Interface
 
 if TYPE_CHECKING:
     from ...authoring.preferences import PreferenceStore
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
     from ...renderer.viewing.probe import PixelProbe
-    from .action import Actions
-    from .protocols import SystemText
+    from ..shared.action import Actions
+    from ..shared.protocols import SystemText
 
 
 @dataclass
