@@ -178,7 +178,7 @@ def _animate(rng: Random, tree: dict[str, Any]) -> None:
         f"{id}.{name}"
         for id, node in _section(tree, "nodes").items()
         if isinstance(node, dict)
-        for name in (node.get("values") or {"x": 0})
+        for name in _section(node, "values") or {"x": 0}
     ]
     keys = [{"frame": rng.choice(NUMBERS), "value": any_value(rng, 2)} for _ in range(rng.choice((0, 1, 2, 9)))]
     expression = {"expression": rng.choice([text[1:] for text in TEXTS if text.startswith("=")])}

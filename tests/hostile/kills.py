@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import OpenImageIO as oiio
@@ -38,8 +39,18 @@ SCENES: dict[str, tuple[str, ...]] = {
     "one EXR": ("render", "graph.json", "-o", "out.exr"),
     "a PNG": ("render", "graph.json", "-o", "out.png"),
     "two files": ("render", "graph.json", "-o", "out.exr", "-o", "image=out.png"),
-    "a sequence": ("render", "graph.json", "-o", "out.####.exr", "--frames", "1-3"),
+    "a TIFF": ("render", "graph.json", "-o", "out.tif"),
+    "a JPEG": ("render", "graph.json", "-o", "out.jpg"),
+    "a WebP": ("render", "graph.json", "-o", "out.webp"),
+    "an HDR": ("render", "graph.json", "-o", "out.hdr"),
+    "a DPX": ("render", "graph.json", "-o", "out.dpx"),
+    "two processes": ("render", "graph.json", "-o", "out.####.exr", "--frames", "1-6", "-j", "2"),
     "fmt": ("fmt", "messy.json"),
+    "many graphs": ("fmt", "many"),
+    "a log": ("check", "messy.json", "--sarif", "log.json"),
+    "a long sequence": ("render", "graph.json", "-o", "out.####.exr", "--frames", "1-48"),
+    "tiles": ("render", "graph.json", "-o", "out.exr", "--size", "900x700", "--memory", "12M"),
+    "pictures of a sequence": ("render", "graph.json", "-o", "out.####.png", "--frames", "1-24"),
 }
 
 GRAPH = {
@@ -55,6 +66,10 @@ def prepare(folder: Path) -> None:
     """Graphs, and older results where new ones will be written."""
     (folder / "graph.json").write_text(json.dumps(GRAPH))
     (folder / "messy.json").write_text(json.dumps(GRAPH, indent=7))
+    (folder / "log.json").write_text("{}")
+    (folder / "many").mkdir()
+    for number in range(12):
+        (folder / "many" / f"{number}.json").write_text(json.dumps(GRAPH, indent=5))
     for name in ("out.exr", "out.png", "out.0001.exr", "out.0002.exr"):
         oiio.ImageBuf(oiio.ImageSpec(8, 8, 4, "half")).write(str(folder / name))
 
@@ -65,22 +80,27 @@ def find_broken(folder: Path) -> Iterator[str]:
         picture = oiio.ImageInput.open(str(path))
         if picture is None or picture.read_image() is None:
             yield f"half-written: {path.name}"
-    for path in sorted(folder.glob("*.json")):
+    for path in sorted(folder.rglob("*.json")):
         try:
             json.loads(path.read_text("utf-8"))
         except ValueError:
             yield f"half-written: {path.name}"
 
 
-def run_kills(count: int, keep: Path | None) -> Tally:
-    """Up to so many kills: every call on a file of the folder that a whole run makes, scene after scene."""
+def run_kills(count: int, jobs: int, keep: Path | None) -> Tally:
+    """Up to so many kills: every call that changes a file of the folder in a whole run, scene after scene."""
     if not shutil.which("strace"):
         raise SystemExit("kills need strace: apt-get install strace")
+    with ThreadPoolExecutor(jobs) as threads:
+        calls = threads.map(_find_calls, SCENES.values())
+        moments = [
+            (scene, *call) for scene, scene_calls in zip(SCENES, calls, strict=True) for call in sorted(scene_calls)
+        ]
+        results = list(threads.map(lambda moment: _kill(*moment, keep), moments[:count]))
     tally = Tally()
-    for scene, words in SCENES.items():
-        for call, number in sorted(_find_calls(words)):
-            if tally.count < count:
-                _kill(tally, scene, words, call, number, keep)
+    for name, faults in filter(None, results):
+        tally.count += 1
+        tally.faults += [(name, fault) for fault in faults]
     return tally
 
 
@@ -98,9 +118,18 @@ def _find_calls(words: tuple[str, ...]) -> set[tuple[str, int]]:
             if call not in CALLS:  # the end of a call that another thread interrupted
                 continue
             counts[thread, call] = counts.get((thread, call), 0) + 1
-            if text in rest and "strace.log" not in rest:
+            if _changes_folder(call, rest, text):
                 calls.add((call, counts[thread, call]))
         return calls
+
+
+def _changes_folder(call: str, line: str, folder: str) -> bool:
+    """True for a call that changes a file of the folder. Its path is in every `openat`, as that of the process."""
+    if "strace.log" in line:
+        return False
+    if call == "openat":
+        return "O_CREAT" in line and (folder in line.partition(">, ")[2] or '>, "/' not in line)
+    return folder in line
 
 
 def _run(folder: Path, words: tuple[str, ...], *options: str) -> int:
@@ -109,17 +138,18 @@ def _run(folder: Path, words: tuple[str, ...], *options: str) -> int:
     return subprocess.run(command, cwd=folder, capture_output=True, env=environment).returncode
 
 
-def _kill(tally: Tally, scene: str, words: tuple[str, ...], call: str, number: int, keep: Path | None) -> None:
+def _kill(scene: str, call: str, number: int, keep: Path | None) -> tuple[str, list[str]] | None:
+    """The name and the faults of a kill; None if the run came to its end, because its threads went another way."""
     with tempfile.TemporaryDirectory(prefix="hostile-kill-") as text:
         folder = Path(text)
         prepare(folder)
         inject = f"inject={call}:signal=KILL:when={number}"
-        if _run(folder, words, "-o", "/dev/null", "-e", f"trace={call}", "-e", inject) == 0:
-            return
-        tally.count += 1
+        if _run(folder, SCENES[scene], "-o", "/dev/null", "-e", f"trace={call}", "-e", inject) == 0:
+            return None
         name = f"kill {scene} {call} {number}"
-        for fault in find_broken(folder):
-            tally.faults.append((name, fault))
+        faults = list(find_broken(folder))
+        for fault in faults:
             print(f"{name}: {fault}", flush=True)
-            if keep:
-                shutil.copytree(folder, keep / name.replace(" ", "-"), dirs_exist_ok=True)
+        if faults and keep:
+            shutil.copytree(folder, keep / name.replace(" ", "-"), dirs_exist_ok=True)
+        return name, faults

@@ -50,7 +50,7 @@ def run_kind(kind: str, options: argparse.Namespace) -> Tally:
     """One kind of case."""
     count = options.count if options.count is not None else (FULL if options.full else QUICK).get(kind, 0)
     if kind == "kills":
-        return kills.run_kills(count, options.keep)
+        return kills.run_kills(count, options.jobs, options.keep)
     if kind == "abuse":
         return abuse.run_abuse(options.keep)
     if kind == "concurrency":

@@ -21,6 +21,9 @@ WARM = 60
 GROWTH = 96 << 20
 """Bytes by which a process may grow afterwards: allocators keep some of what was freed."""
 
+GL_OBJECTS = 400
+"""Objects of OpenGL that may be added afterwards: programs and textures of other sizes are kept up to a limit."""
+
 
 def _resident() -> int:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
@@ -30,6 +33,11 @@ def _descriptors() -> int:
     return len(os.listdir("/proc/self/fd"))  # noqa: PTH208 - a listing of descriptors, not of paths
 
 
+def _gl_objects() -> int:
+    """Textures, buffers, programs and framebuffers of OpenGL that are there."""
+    return sum(str(type(item).__module__).startswith("moderngl") for item in gc.get_objects())
+
+
 def run_soak(count: int) -> Tally:
     """So many renders of all presets in turn, at changing sizes and values."""
     import halation as hal
@@ -37,7 +45,7 @@ def run_soak(count: int) -> Tally:
     from halation.errors import HalationError
 
     tally, graphs = Tally(), [hal.load(path) for path in presets.paths()]
-    base = (0, 0)
+    base = (0, 0, 0)
     for number in range(count):
         graph = graphs[number % len(graphs)]
         began = time.perf_counter()
@@ -49,11 +57,13 @@ def run_soak(count: int) -> Tally:
         tally.count += 1
         if number == min(max(WARM, len(graphs)), count // 2):
             gc.collect()
-            base = _resident(), _descriptors()
+            base = _resident(), _descriptors(), _gl_objects()
     gc.collect()
     grown, opened = _resident() - base[0], _descriptors() - base[1]
     if grown > GROWTH:
         tally.faults.append(("memory", f"grew by {grown >> 20} MiB over {count} renders"))
+    if (made := _gl_objects() - base[2]) > GL_OBJECTS:
+        tally.faults.append(("OpenGL objects", f"{made} more than before"))
     if opened > 4:
         tally.faults.append(("descriptors", f"{opened} more than before"))
     tally.peak = _resident()

@@ -12,10 +12,12 @@ deleted and a new node are a correct answer too, and a wrong match would not be.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Mapping
+from collections.abc import Collection, Container, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
-from ...graph import Graph, Group, Item, Port
+from ...graph import Animation, Control, Graph, Group, Item, Port
 from ...graph.notes import move_keys
 from ..writing import dumps
 
@@ -39,8 +41,8 @@ class NodeRename:
 
 def find_renames(before: Graph, after: Graph) -> IdMapping:
     """New ids by old ones, of nodes that were renamed: type, values and links are the same, and only one node fits."""
-    removed = {id: _NodeDescription(before, id) for id in before.nodes if id not in after.nodes}
-    added = {id: _NodeDescription(after, id) for id in after.nodes if id not in before.nodes}
+    removed = _describe_nodes(before, [id for id in before.nodes if id not in after.nodes])
+    added = _describe_nodes(after, [id for id in after.nodes if id not in before.nodes])
     certain: dict[str, str] = {}
     for _ in range(_ROUNDS):
         if not (matches := _match_unique(removed, added, certain)):
@@ -76,7 +78,7 @@ def align_three(base: Graph, ours: Graph, theirs: Graph) -> tuple[Graph, Graph, 
     only_theirs = {old: new for old, new in their_renames.items() if old not in our_renames and new not in ours.nodes}
     both = {old: new for old, new in our_renames.items() if their_renames.get(old) == new}
     new_ids = [*only_ours.values(), *only_theirs.values()]
-    clashing = {new for new in new_ids if new_ids.count(new) > 1}
+    clashing = {new for new, count in Counter(new_ids).items() if count > 1}
     only_ours = {old: new for old, new in only_ours.items() if new not in clashing}
     only_theirs = {old: new for old, new in only_theirs.items() if new not in clashing}
     base, ours = rename_all(base, {**only_ours, **only_theirs, **both}), rename_all(ours, only_theirs)
@@ -108,25 +110,15 @@ def replace_items(graph: Graph, items: Mapping[str, Item]) -> Graph:
 class _NodeDescription:
     """Everything that a graph says of one of its nodes, apart from its id."""
 
-    def __init__(self, graph: Graph, id: str) -> None:
-        self.links_in = {(end.socket, start) for end, start in graph.links.items() if end.node == id}
-        self.links_out = {(start.socket, end) for end, start in graph.links.items() if start.node == id}
-        alone = Graph(
-            {_ANY: graph.nodes[id]},
-            controls={
-                name: replace(item, target=Port(_ANY, item.target.socket))
-                for name, item in graph.controls.items()
-                if item.target.node == id
-            },
-            animation={Port(_ANY, port.socket): item for port, item in graph.animation.items() if port.node == id},
-            muted=frozenset({_ANY} if id in graph.muted else ()),
-            extra=move_keys(
-                {path: keys for path, keys in graph.extra.items() if _is_part_of(path, id)},
-                f"nodes.{id}",
-                f"nodes.{_ANY}",
-            ),
-        )
-        self.text = dumps(alone)
+    def __init__(self, item: Item) -> None:
+        self.links_in: set[tuple[str, Port]] = set()
+        self.links_out: set[tuple[str, Port]] = set()
+        self.alone = Graph({_ANY: item})
+
+    @cached_property
+    def text(self) -> str:
+        """The document of the node alone."""
+        return dumps(self.alone)
 
     def same(self, other: _NodeDescription, ids: IdMapping) -> bool:
         """True if both describe the same node; `ids` are new ids by old ones."""
@@ -139,6 +131,37 @@ class _NodeDescription:
             return tuple(sorted((socket, _rename_port(port, ids, open)) for socket, port in links))
 
         return self.text, ports(self.links_in), ports(self.links_out)
+
+
+def _describe_nodes(graph: Graph, ids: Collection[str]) -> dict[str, _NodeDescription]:
+    """Descriptions of nodes by id, in one walk over the graph: a node for itself would look at all links."""
+    descriptions = {id: _NodeDescription(graph.nodes[id]) for id in ids}
+    controls: dict[str, dict[str, Control]] = {}
+    animations: dict[str, dict[Port, Animation]] = {}
+    extras: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for end, start in graph.links.items():
+        if end.node in descriptions:
+            descriptions[end.node].links_in.add((end.socket, start))
+        if start.node in descriptions:
+            descriptions[start.node].links_out.add((start.socket, end))
+    for name, control in graph.controls.items():
+        target = Port(_ANY, control.target.socket)
+        controls.setdefault(control.target.node, {})[name] = replace(control, target=target)
+    for port, animation in graph.animation.items():
+        animations.setdefault(port.node, {})[Port(_ANY, port.socket)] = animation
+    for path, keys in graph.extra.items():
+        section, _, rest = path.partition(".")
+        if section == "nodes":
+            extras.setdefault(rest.partition(".")[0], {})[path] = keys
+    for id, description in descriptions.items():
+        description.alone = replace(
+            description.alone,
+            controls=controls.get(id, {}),
+            animation=animations.get(id, {}),
+            muted=frozenset({_ANY} if id in graph.muted else ()),
+            extra=move_keys(extras.get(id, {}), f"nodes.{id}", f"nodes.{_ANY}"),
+        )
+    return descriptions
 
 
 def _match_unique(
@@ -155,7 +178,3 @@ def _match_unique(
 
 def _rename_port(port: Port, ids: IdMapping, open: Container[str]) -> Port:
     return Port("" if port.node in open else ids.get(port.node, port.node), port.socket)
-
-
-def _is_part_of(path: str, id: str) -> bool:
-    return path == f"nodes.{id}" or path.startswith(f"nodes.{id}.")
