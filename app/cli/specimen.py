@@ -147,9 +147,9 @@ def sample_graph(sample: Path) -> Graph:
 
 def _is_needed(node: type[Node], socket: Socket) -> bool:
     """True if the node has no visible effect without a link to this input."""
-    does_nothing = socket.default in (0.0, (0.0, 0.0, 0.0, 0.0)) and all(
-        input.optional for input in node.inputs.values()
-    )
+    images = [name for name, input in node.inputs.items() if input.kind is Kind.IMAGE]
+    is_black = socket.default == 0.0 or (socket.default == (0.0, 0.0, 0.0, 0.0) and images == [socket.name])
+    does_nothing = is_black and all(input.optional for input in node.inputs.values())
     is_absent = socket.kind is Kind.VECTOR and socket.name != "material"  # the sample has no such layer
     return not socket.optional or does_nothing or is_absent or (socket.name == "mask" and not socket.default)
 
