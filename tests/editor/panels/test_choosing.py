@@ -28,8 +28,8 @@ class Desk:
     """As much of an editor as these need."""
 
     store: PreferenceStore
-    session: Session = field(default_factory=Session)
-    exports: RenderQueue = field(default_factory=RenderQueue)
+    session: Session = field(default_factory=lambda: Session(sandbox=UNRESTRICTED))
+    exports: RenderQueue = field(default_factory=lambda: RenderQueue(sandbox=UNRESTRICTED))
     timeline: TimelineState = field(default_factory=TimelineState)
 
 

@@ -15,6 +15,7 @@ from halation.editor.renders.wording import aim_text, exist_text, time_text
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
 from halation.presets import paths
+from halation.resources.sandbox import UNRESTRICTED
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -24,8 +25,8 @@ class Desk:
     """As much of an editor as the form needs."""
 
     store: PreferenceStore
-    session: Session = field(default_factory=Session)
-    exports: RenderQueue = field(default_factory=RenderQueue)
+    session: Session = field(default_factory=lambda: Session(sandbox=UNRESTRICTED))
+    exports: RenderQueue = field(default_factory=lambda: RenderQueue(sandbox=UNRESTRICTED))
     timeline: TimelineState = field(default_factory=TimelineState)
 
 
