@@ -96,6 +96,7 @@ def render_frames(
     Whatever the order, a frame is always the same: nodes with a memory are led up to it from the first frame of the
     graph, or by its pre-roll.
     """
+    from .graph import find_node_output
     from .graph.custom_code import has_code
     from .scripting import arguments
     from .scripting.threads import choose_thread
@@ -104,7 +105,6 @@ def render_frames(
     thread = choose_thread()
     if has_code(graph):
         thread.trial_process.start()  # while the renderer is loaded
-    from .graph import find_node_output
     from .renderer import RenderRequest
     from .resources.sandbox import read_process_sandbox
     from .scripting.rendering import ScriptedRendering

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from halation.nodes import Node, catalogue, plugins
@@ -248,7 +248,7 @@ def _default_fault(name: str, end: Input) -> str | None:
     return f"input '{name}': the default {end.default!r} does not fit: {end.kind} takes {expected_form}"
 
 
-def _suggest_key(key: str, keys: Iterable[str]) -> str:
+def _suggest_key(key: str, keys: Collection[str]) -> str:
     """The key of the format that the user may mean, as the end of a sentence; "" if none is similar."""
     hint = did_you_mean(key, keys)
     return hint if "did you mean" in hint else ""
