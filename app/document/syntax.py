@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, cast
 
 from ..errors import DocumentError
 from .limits import MAX_KEY, MAX_NESTING, MAX_PARTS, size_fault
+from .syntax_faults import explain_syntax
 
 _STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _NO_BRACKET = re.compile(r"[^{}\[\]]++")
@@ -46,9 +47,10 @@ def parse(text: str, file: str) -> dict[str, Any]:
     try:
         tree: Any = json.loads(text, object_pairs_hook=lambda pairs: _make_object(pairs, odd_objects))
     except json.JSONDecodeError as error:
-        said = error.msg[:1].lower() + error.msg[1:].removesuffix(" at")
-        fault = f"not valid JSON: {said} (line {error.lineno}, column {error.colno})"
-        raise DocumentError(file, "", fault, rule="syntax", line=error.lineno) from None
+        clause, offset = explain_syntax(text, error)
+        line, column = text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
+        fault = f"not valid JSON: {clause} (line {line}, column {column})"
+        raise DocumentError(file, "", fault, rule="syntax", line=line) from None
     except ValueError:
         raise DocumentError(file, "", "it holds a whole number with too many digits") from None
     if isinstance(tree, dict | list) and (odd_objects or _SUSPECT.search(text)):
