@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from ..errors import HalationError
+from ..errors import HalationError, InputError
 
 USAGE = 2
 INTERRUPTED = 130
@@ -67,7 +67,7 @@ def report_failure(fault: BaseException, as_json: bool) -> int:
 def _describe(fault: BaseException) -> tuple[str, int, str]:
     """Kind, exit code and sentence."""
     if isinstance(fault, HalationError):
-        return type(fault).__name__, fault.exit_code, str(fault)
+        return type(fault).__name__, fault.exit_code, _name_reader(fault)
     if isinstance(fault, KeyboardInterrupt):
         return "Interrupted", INTERRUPTED, "interrupted; no unfinished file is left"
     if isinstance(fault, OSError) and fault.filename is None and fault.errno == errno.EBADF:
@@ -95,6 +95,19 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
         if isinstance(fault, NodeImportError):
             return "NodeImportError", 1, text
     return "Bug", BUG, f"this is a bug in Halation ({type(fault).__name__}: {text}); HALATION_DEBUG=1 shows where"
+
+
+def _name_reader(fault: HalationError) -> str:
+    """The sentence of an error; of a picture that cannot be read, also who reads it and how to give another file."""
+    sentence = str(fault)
+    if not isinstance(fault, InputError) or not fault.node or f"'{fault.node}'" in sentence:
+        return sentence
+    from ..graph import INPUTS
+
+    name = fault.node.removeprefix(f"{INPUTS}.")
+    if name == fault.node:
+        return f"node '{name}': {sentence}"
+    return f"input '{name}': {sentence}; -i {name}=FILE gives another file"
 
 
 def flush_output(code: int) -> int:

@@ -13,7 +13,7 @@ from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import PictureProbe, ResourceProvider
+from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ..areas import Neighborhood, scale_size
 from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
@@ -50,11 +50,7 @@ class PictureBuilder:
 
     def _find_first_size(self, picture: Picture, owner: str) -> Size:
         """The size of a picture; of a sequence, whether or not this frame has a file."""
-        path = (
-            self._provider.find_frame_file(picture.path, self._request.frame, "nearest").path
-            if not picture.in_memory
-            else ""
-        )
+        path = "" if picture.in_memory else self._find_file(picture, owner, self._request.frame, "nearest").path
         return self._probe(replace(picture, path=path) if path else picture, owner).size
 
     def _probe(self, picture: Picture, owner: str) -> PictureProbe:
@@ -64,11 +60,18 @@ class PictureBuilder:
             error.node = owner
             raise
 
+    def _find_file(self, picture: Picture, owner: str, frame: int, missing: Missing) -> FrameFile:
+        try:
+            return self._provider.find_frame_file(picture.path, frame, missing)
+        except HalationError as error:
+            error.node = error.node or owner
+            raise
+
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
         """Upload a picture, or that frame of a sequence, at the size of the request."""
         picture, is_black = replace(picture, color=self._color), False
         if not picture.in_memory:
-            frame_file = self._provider.find_frame_file(picture.path, frame, missing)
+            frame_file = self._find_file(picture, owner, frame, missing)
             picture, is_black = replace(picture, path=frame_file.path, frame=frame_file.number), frame_file.black
         probed = self._probe(picture, owner)
         shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
