@@ -91,7 +91,7 @@ BASE = chain("blur:gaussian_blur", "light:exposure")
             BASE.rename_input("beauty", "plate"),
             ["~ link blur.image: inputs.beauty -> inputs.plate", "- input beauty: Image", "+ input plate: Image"],
         ),
-        (dataclasses.replace(BASE, settings=Settings((64, 32))), ["~ settings.size: none -> (64, 32)"]),
+        (dataclasses.replace(BASE, settings=Settings((64, 32))), ["~ settings.size: not set -> (64, 32)"]),
         (BASE.add("odd", Unknown("later", {"x": [1]})), ["+ node odd: later"]),
         (dataclasses.replace(BASE, ui={"nodes": {"blur": {"x": 1}}}), []),
     ],

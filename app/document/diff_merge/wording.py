@@ -70,7 +70,7 @@ def change_text(before: Any, after: Any, value: Value | None = None, exact: bool
 def value_text(part: Any, value: Value | None = None, exact: bool = False) -> str:
     """A value with its unit; one that is absent is the default."""
     if part is ABSENT:
-        return "none" if value is None else f"{value_text(value.default, value, exact)} (default)"
+        return "not set" if value is None else f"{value_text(value.default, value, exact)} (default)"
     unit = f" {value.unit}" if value and value.unit and value.unit not in _PLAIN else ""
     if isinstance(part, bool) or part is None:
         return json.dumps(part)
