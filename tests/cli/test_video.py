@@ -139,7 +139,7 @@ def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie
                 "a.####.mp4",
             ),
             2,
-            "leave the place for their number out",
+            "remove the frame number",
         ),
         (("-o", "a.mp4", "--resume"), 2, "leave out --resume"),
         (

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from halation.authoring.commands import SetColorSettings, SetInput
 from halation.authoring.edits.element_id import ElementId
+from halation.color.management import get_color_manager
 from halation.media import read_layer
 from halation.nodes import ColorSettings, Kind
 from halation.resources.sandbox import UNRESTRICTED
@@ -56,11 +57,11 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         ui.session.apply(SetColorSettings(working="scene_linear"))
         ui.settled()
         color = ColorSettings(str(tmp_path / "house.ocio"), "scene_linear")
-        expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color, sandbox=UNRESTRICTED).array[
-            18, 32, :3
-        ]
+        manager = get_color_manager(color, UNRESTRICTED)
+        plate = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, manager=manager, sandbox=UNRESTRICTED)
+        expected = plate.array[18, 32, :3]
         assert np.allclose(middle(ui), expected, rtol=2e-3) and not np.allclose(before, expected, rtol=0.1)
-        assert ui.editor.coloring.settings == color and not ui.editor.coloring.fault
+        assert ui.editor.coloring.manager is manager and not ui.editor.coloring.fault
         ui.editor.viewer.view, ui.editor.viewer.display = "Warm", "Screen"
         ui.wait(4)
         ui.click("button view")

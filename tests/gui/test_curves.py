@@ -152,13 +152,16 @@ def test_a_key_is_dragged_in_both_axes(gui) -> None:
         assert "key one.tint 1 0" not in ui.editor.places
         ui.drag("key one.gain 11 0", beside(ui, "key one.gain 11 0", 3.2, -0.5))
         assert frames(ui) == (1.0, 14.0, 21.0)
-        assert ui.session.graph.animation[GAIN].at(14) == pytest.approx(1.5, abs=2.0 / per_unit(ui))
+        assert ui.session.graph.animation[GAIN].evaluate(14) == pytest.approx(1.5, abs=2.0 / per_unit(ui))
         assert len(ui.session.history.steps) == steps + 1
         before = ui.session.graph.animation[GAIN]
         ui.drag("key one.gain 14 0", beside(ui, "key one.gain 14 0", 3.0, 0.3), keys="Shift")
-        assert frames(ui) == (1.0, 17.0, 21.0) and ui.session.graph.animation[GAIN].at(17) == before.at(14)
+        assert frames(ui) == (1.0, 17.0, 21.0) and ui.session.graph.animation[GAIN].evaluate(17) == before.evaluate(14)
         ui.drag("key one.gain 17 0", beside(ui, "key one.gain 17 0", 3.0, 0.3), keys="Ctrl")
-        assert frames(ui) == (1.0, 17.0, 21.0) and ui.session.graph.animation[GAIN].at(17) > before.at(14) + 0.2
+        assert (
+            frames(ui) == (1.0, 17.0, 21.0)
+            and ui.session.graph.animation[GAIN].evaluate(17) > before.evaluate(14) + 0.2
+        )
         assert ui.editor.curves.spots == {(GAIN, 17.0, 0)}
 
         ui.click("field keys frame")
@@ -192,7 +195,7 @@ def test_a_handle_bends_the_curve_as_the_cubic_says(gui) -> None:
             weights = ((1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t * t * (1 - t), t**3)
             frame = sum(w * at for w, at in zip(weights, (1.0, 1.0 + across, 11.0 + back[0], 11.0), strict=True))
             value = sum(w * at for w, at in zip(weights, (0.5, 0.5 + up, 2.0 + back[1], 2.0), strict=True))
-            assert keys.at(frame) == pytest.approx(value, abs=1e-9)
+            assert keys.evaluate(frame) == pytest.approx(value, abs=1e-9)
         ui.keys("Ctrl+Z")
         assert ui.session.graph.animation[GAIN].key(1).right == ()
 
@@ -240,10 +243,10 @@ def test_a_double_click_puts_a_key_on_the_curve(gui) -> None:
         keys = ui.session.graph.animation[GAIN]
         ui.move((3.0, 3.0))
         x = ui.at("key one.gain 1 0")[0] + 5 * per_frame(ui)
-        y = ui.at("key one.gain 1 0")[1] - (keys.at(6) - 0.5) * per_unit(ui)
+        y = ui.at("key one.gain 1 0")[1] - (keys.evaluate(6) - 0.5) * per_unit(ui)
         ui.double_click((x, y))
         assert frames(ui) == (1.0, 6.0, 11.0, 21.0)
-        assert ui.session.graph.animation[GAIN].at(6) == pytest.approx(keys.at(6))
+        assert ui.session.graph.animation[GAIN].evaluate(6) == pytest.approx(keys.evaluate(6))
         ui.click("keys channel one.tint b")
         assert ui.editor.curves.hidden == {(TINT, 2)}
 
