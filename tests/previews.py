@@ -60,7 +60,7 @@ def settle(preview: Preview) -> int:
 
 
 def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
-    shown = preview.shown(name)
+    shown = preview.find_whole_image(name)
     assert shown is not None
     return read_texture(engine.device, shown.texture)[..., : shown.channels]
 

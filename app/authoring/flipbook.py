@@ -49,9 +49,9 @@ class FlipbookStrip:
         """What a render has written so far, or will have."""
         output, path = export.destinations[0]
         outputs = export.job.graph.outputs
-        found = outputs.get(output or next(iter(outputs), ""))
+        graph_output = outputs.get(output or next(iter(outputs), ""))
         frames = export.job.order.frames or _list_disk_frames(path, export.job.order.sandbox) or (1,)
-        return FlipbookStrip(path, (min(frames), max(frames)), found.view if found else "", export)
+        return FlipbookStrip(path, (min(frames), max(frames)), graph_output.view if graph_output else "", export)
 
     @staticmethod
     def from_file(path: Path, sandbox: Sandbox) -> FlipbookStrip:
@@ -75,12 +75,12 @@ class Flipbook:
 
     def follow(self, cached: Iterable[int]) -> bool:
         """To be asked again and again: True if pictures must be read anew, for some that are `cached` have changed."""
-        now = self._state
-        if now == self._seen:
+        states = self._state
+        if states == self._seen:
             return False
-        ended = any(one[1] != other[1] for one, other in zip(now, self._seen, strict=True))
-        written = {frame for one, other in zip(now, self._seen, strict=True) for frame in one[0] - other[0]}
-        self._seen = now
+        ended = any(new[1] != old[1] for new, old in zip(states, self._seen, strict=True))
+        written = {frame for new, old in zip(states, self._seen, strict=True) for frame in new[0] - old[0]}
+        self._seen = states
         return ended or not written.isdisjoint({self.session.frame, *cached})
 
     @property

@@ -29,8 +29,8 @@ Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"
 
 def state_folder() -> Path:
     """Where the editor keeps what is no document: HALATION_STATE, else where the system wants it."""
-    given = os.environ.get("HALATION_STATE")
-    return Path(given).absolute() if given else platformdirs.user_state_path("halation", appauthor=False)
+    folder = os.environ.get("HALATION_STATE")
+    return Path(folder).absolute() if folder else platformdirs.user_state_path("halation", appauthor=False)
 
 
 def _scale(number: float) -> float:
@@ -80,7 +80,7 @@ class Preferences:
 TYPES = get_type_hints(Preferences, include_extras=True)
 FAULTS = (msgspec.ValidationError, ValueError, TypeError)
 CHECKS = {"ui_scale": _scale}
-NAMES = tuple(one.name for one in fields(Preferences) if one.name != "extra")
+NAMES = tuple(field.name for field in fields(Preferences) if field.name != "extra")
 
 
 class PreferenceStore:
@@ -117,7 +117,9 @@ class PreferenceStore:
     def forget(self, path: str | Path) -> None:
         """Take a file off the list of recent files."""
         self._forgotten.add(str(path))
-        self.current = replace(self.current, recent=tuple(one for one in self.current.recent if one.path != str(path)))
+        self.current = replace(
+            self.current, recent=tuple(recent for recent in self.current.recent if recent.path != str(path))
+        )
 
     def folder(self, purpose: Purpose) -> str:
         """The folder that was used last for this, "" if there is none any more."""
@@ -153,7 +155,7 @@ class PreferenceStore:
         """What is in the file, with what changed here put over it."""
         there = self._read(self._written)
         changed = _list_differences(self.current, self._written)
-        recent = tuple(one for one in there.recent if one.path not in self._forgotten)
+        recent = tuple(entry for entry in there.recent if entry.path not in self._forgotten)
         return replace(there, **changed | {"recent": _merge_recent(self.current.recent, recent)})
 
     def _read(self, fallback: Preferences) -> Preferences:
@@ -184,9 +186,9 @@ class PreferenceStore:
     def _sound_entries(self, name: str, raw: Any) -> Any:
         """A list or object without the entries that are broken: one of them is no reason to lose the others."""
         if isinstance(raw, list):
-            return [one for one in raw if self._is_sound(name, [one])]
+            return [entry for entry in raw if self._is_sound(name, [entry])]
         if isinstance(raw, dict):
-            return {key: one for key, one in raw.items() if self._is_sound(name, {key: one})}
+            return {key: entry for key, entry in raw.items() if self._is_sound(name, {key: entry})}
         return raw
 
     def _is_sound(self, name: str, raw: Any) -> bool:
@@ -217,14 +219,14 @@ def _check_value(name: str, value: Any) -> Any:
 def _merge_recent(first: tuple[Recent, ...], second: tuple[Recent, ...]) -> tuple[Recent, ...]:
     """Both lists as one, newest first, every path once."""
     newest: dict[str, Recent] = {}
-    for one in sorted((*first, *second), key=lambda one: one.time, reverse=True):
-        newest.setdefault(one.path, one)
+    for recent in sorted((*first, *second), key=lambda recent: recent.time, reverse=True):
+        newest.setdefault(recent.path, recent)
     return tuple(newest.values())[:MAX_RECENT]
 
 
-def _list_differences(preferences: Preferences, other: Preferences) -> dict[str, Any]:
+def _list_differences(preferences: Preferences, before: Preferences) -> dict[str, Any]:
     """The fields in which they differ, as `preferences` has them."""
-    return {name: getattr(preferences, name) for name in NAMES if getattr(preferences, name) != getattr(other, name)}
+    return {name: getattr(preferences, name) for name in NAMES if getattr(preferences, name) != getattr(before, name)}
 
 
 def _tree(preferences: Preferences) -> dict[str, Any]:

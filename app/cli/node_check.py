@@ -60,8 +60,8 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
 
 def _find_file_faults(plugin: Plugin) -> Iterator[tuple[str, list[str]]]:
     """What is wrong in each shader file of a plug-in."""
-    from ..compiler import installed_library
+    from ..compiler import load_library
     from ..regression.node_promises import find_file_faults
 
-    names = [name for name in installed_library().texts if name.startswith(f"{plugin.namespace}/")]
+    names = [name for name in load_library().texts if name.startswith(f"{plugin.namespace}/")]
     yield from ((name, list(find_file_faults(name, names))) for name in names)

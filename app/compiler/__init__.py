@@ -14,7 +14,7 @@ from __future__ import annotations
 from .areas import Region, scale_size
 from .explain import explain, plan_as_json, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
-from .library import Library, installed_library
+from .library import Library, load_library
 from .lowering.references import find_named_files
 from .lowering.upstream import UpstreamHashes
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
@@ -51,7 +51,7 @@ __all__ = [
     "explain",
     "find_named_files",
     "graph_library",
-    "installed_library",
+    "load_library",
     "plan_as_json",
     "plan_tile",
     "scale_size",

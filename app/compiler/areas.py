@@ -49,9 +49,9 @@ class Region(Struct, frozen=True):
     def down(self) -> Span:
         return (self.y, self.y + self.height)
 
-    def union(self, other: Region) -> Region:
+    def union(self, region: Region) -> Region:
         """The smallest region that holds both."""
-        spans = zip((self.across, self.down), (other.across, other.down), strict=True)
+        spans = zip((self.across, self.down), (region.across, region.down), strict=True)
         across, down = ((min(own[0], their[0]), max(own[1], their[1])) for own, their in spans)
         return Region.of(across, down)
 

@@ -32,7 +32,7 @@ def explain(plan: Plan) -> str:
     for name, number in plan.outputs.items():
         lines.append(f"output    #{number}  {name}")
     lines.append(f"frames    {describe_frames(plan)}")
-    shaders = len({one.shader for one in plan.passes})
+    shaders = len({pass_.shader for pass_ in plan.passes})
     lines.append(
         f"total     {len(plan.passes)} passes, {shaders} programs, {len(plan.surfaces)} surfaces in "
         f"{len(plan.slots)} textures, peak {format_bytes(plan.peak_bytes)}"

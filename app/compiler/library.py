@@ -168,10 +168,10 @@ class Library(Record, frozen=True):
 
     def _find_text(self, name: str, asker: str) -> Text:
         if name not in self.texts:
-            raise self._missing_file(name, asker)
+            raise self._describe_missing_file(name, asker)
         return self.texts[name]
 
-    def _missing_file(self, name: str, asker: str) -> ShaderError:
+    def _describe_missing_file(self, name: str, asker: str) -> ShaderError:
         """The error about a file that is not there; of a plug-in most often because its wheel was made without it."""
         namespace, _, inner = name.partition("/")
         if not any(plugin.namespace == namespace for plugin in plugins()):
@@ -293,12 +293,12 @@ def _find_files(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
 
 
 @cache
-def installed_library() -> Library:
+def load_library() -> Library:
     """The library that ships with Halation, with the shaders of plug-ins."""
     return Library(InstalledTexts())
 
 
-def reload_installed_library() -> Library:
+def reload_library() -> Library:
     """The same with the texts of shaders as they are now."""
-    installed_library.cache_clear()
-    return installed_library()
+    load_library.cache_clear()
+    return load_library()

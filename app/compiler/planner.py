@@ -23,7 +23,7 @@ from .areas import Region
 from .fusion.fuse import fuse
 from .fusion.rewrites import rewrite_passes
 from .ir import LoweredProgram
-from .library import Library, installed_library
+from .library import Library, load_library
 from .lowering.expand import find_custom_texts
 from .lowering.incremental import lower_again
 from .lowering.lower import lower
@@ -214,7 +214,7 @@ def examine(graph: Graph, request: Request, provider: ResourceProvider, target: 
 def graph_library(graph: Graph, provider: ResourceProvider, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and those of its custom nodes."""
     working = provider.find_working_space(color_settings(graph)) if graph.settings.color.working else None
-    return (library or installed_library()).with_working_space(working).with_texts(find_custom_texts(graph))
+    return (library or load_library()).with_working_space(working).with_texts(find_custom_texts(graph))
 
 
 def _fill_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:

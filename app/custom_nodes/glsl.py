@@ -62,11 +62,11 @@ def make_glsl_class(code: Code) -> type[CustomNode]:
         if not parameter.out and not parameter.note.default
     }
     values = {
-        one.name: make_value(one.glsl, one.name, one.note, one.line)
-        for one in parameters
-        if not one.out and one.note.default
+        parameter.name: make_value(parameter.glsl, parameter.name, parameter.note, parameter.line)
+        for parameter in parameters
+        if not parameter.out and parameter.note.default
     }
-    outputs = {one.name: OutputSocket(_make_socket(one)) for one in parameters if one.out}
+    outputs = {parameter.name: OutputSocket(_make_socket(parameter)) for parameter in parameters if parameter.out}
     if not outputs:
         outputs = {"out": OutputSocket(_make_picture_socket(entry.result, ParameterNote(), entry.line, "the result"))}
     types = _list_types(inputs, values)
@@ -197,7 +197,7 @@ def _check_parameters(entry: GlslFunction, parameters: tuple[_Parameter, ...]) -
             why = "is there twice" if parameter.name in names else "means something else here"
             raise CodeFault(parameter.line, f"the name '{parameter.name}' {why}: choose another")
         names.add(parameter.name)
-    outputs = [one for one in parameters if one.out]
+    outputs = [parameter for parameter in parameters if parameter.out]
     if outputs and entry.result != "void":
         raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
     if outputs and parameters[-len(outputs) :] != tuple(outputs):
@@ -261,15 +261,17 @@ def _write_entry_functions(
         if parameter.name in values
     )
     argument_list = [
-        f"{one.name}_at(pixel)" if one.name in inputs else f"{PARAMETER}{one.name}" for one in parameters if not one.out
+        f"{parameter.name}_at(pixel)" if parameter.name in inputs else f"{PARAMETER}{parameter.name}"
+        for parameter in parameters
+        if not parameter.out
     ]
     if "out" in outputs:
         glsl = outputs["out"].socket.glsl
         return f"\n{glsl} {function}_out({value_list}) {{ return {function}({', '.join(argument_list)}); }}\n"
-    results = [one for one in parameters if one.out]
-    locals = " ".join(f"{one.glsl} {one.name};" for one in results)
-    call = f"{function}({', '.join([*argument_list, *(one.name for one in results)])});"
+    results = [parameter for parameter in parameters if parameter.out]
+    locals = " ".join(f"{output.glsl} {output.name};" for output in results)
+    call = f"{function}({', '.join([*argument_list, *(output.name for output in results)])});"
     return "".join(
-        f"\n{one.glsl} {function}_{one.name}({value_list}) {{ {locals} {call} return {one.name}; }}\n"
-        for one in results
+        f"\n{output.glsl} {function}_{output.name}({value_list}) {{ {locals} {call} return {output.name}; }}\n"
+        for output in results
     )

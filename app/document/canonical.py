@@ -37,12 +37,12 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
         )
     inner, texts = indent + 2, list[str]()
     if not isinstance(item, list | tuple):
-        known = cast("Mapping[str, Any]", item)
-        if odd := next((key for key in known if type(key) is not str), None):
+        mapping = cast("Mapping[str, Any]", item)
+        if odd := next((key for key in mapping if type(key) is not str), None):
             raise GraphError(f"{spell_path(trail)}: the key {odd!r} cannot be saved; JSON has only text as keys")
         opening, closing = "{", "}"
-        for key in sorted(known):
-            start, part = f"{encode_basestring(key)}: ", known[key]
+        for key in sorted(mapping):
+            start, part = f"{encode_basestring(key)}: ", mapping[key]
             texts.append(start + _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
     else:
         opening, closing = "[", "]"

@@ -282,14 +282,14 @@ class _BodyReader(Struct):
     def read_values(self, path: str, raw: dict[str, Any], declared: Mapping[str, Value], at: str) -> dict[str, Plain]:
         """The declared values, converted to their types; others are kept. `problems` checks ranges and choices."""
         values: dict[str, Plain] = {}
-        for name, given in raw.items():
+        for name, setting in raw.items():
             if name in declared:
-                plain = coerce(declared[name], given)
+                plain = coerce(declared[name], setting)
                 if plain is None:
-                    fault = f"expected {describe_type(declared[name])}, got {word(given)}"
+                    fault = f"expected {describe_type(declared[name])}, got {word(setting)}"
                     raise DocumentError(self.file, member(member(at, "values"), name), fault)
                 values[name] = plain
-        if unknown := {name: given for name, given in raw.items() if name not in declared}:
+        if unknown := {name: setting for name, setting in raw.items() if name not in declared}:
             self.extra[f"{path}.values"] = unknown
         return values
 
@@ -320,7 +320,7 @@ class _BodyReader(Struct):
             fault = f"the group file '{inner}' does not exist{near}"
             raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
-            loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real) :], real))
+            loop = " -> ".join(file.name for file in (*self.outer[self.outer.index(real) :], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
         return self.loading.load_file(inner, sandbox, self.outer)
 

@@ -150,8 +150,8 @@ def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
     try:
         return msgspec.convert(raw, kind)
     except msgspec.ValidationError as error:
-        said, _, where = str(error).partition(" - at `$")
-        fault = re.sub("`([^`]*)`", lambda found: _plain(found[1]), said[:1].lower() + said[1:])
+        message, _, where = str(error).partition(" - at `$")
+        fault = re.sub("`([^`]*)`", lambda match: _plain(match[1]), message[:1].lower() + message[1:])
         raise DocumentError(file, (path + where.rstrip("`")).removeprefix("."), fault) from None
 
 
@@ -167,16 +167,18 @@ def type_name(kind: Kind, width: int) -> str:
 
 def type_names() -> dict[str, tuple[Kind, int]]:
     """Kind and channels by all that a file may call a type."""
-    known = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
-    return {**known, "Vector3": (Kind.VECTOR, 3)}
+    kinds_by_name = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
+    return {**kinds_by_name, "Vector3": (Kind.VECTOR, 3)}
 
 
 def read_type(name: str, file: str, path: str) -> tuple[Kind, int]:
     """Kind and channels of a type name."""
-    known = type_names()
-    if name not in known:
-        raise DocumentError(file, member(path, "type"), f"'{name}' is no type: write {', '.join(sorted(known))}")
-    return known[name]
+    kinds_by_name = type_names()
+    if name not in kinds_by_name:
+        raise DocumentError(
+            file, member(path, "type"), f"'{name}' is no type: write {', '.join(sorted(kinds_by_name))}"
+        )
+    return kinds_by_name[name]
 
 
 def _plain(words: str) -> str:

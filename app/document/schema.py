@@ -66,7 +66,7 @@ _DOCS = {
 
 def schema(types: Mapping[str, type[Node]]) -> Schema:
     """The schema of a graph file, for these node types by id."""
-    found = {f"node {id}": _node(kind) for id, kind in sorted(types.items())}
+    node_schemas = {f"node {id}": _node(kind) for id, kind in sorted(types.items())}
     languages = sorted(get_args(Language))
     code = _either(_record(records.CodeRecord), code="array", file="name")
     homes = {**{id: f"node {id}" for id in sorted(types)}, "group": "group", **dict.fromkeys(languages, "code")}
@@ -107,7 +107,7 @@ def schema(types: Mapping[str, type[Node]]) -> Schema:
             "curve": _points(2, range(2, MAX_POINTS + 1)),
             "ramp": _points(5, range(2, MAX_POINTS + 1)),
             "lights": _points(LIGHT_NUMBERS, range(MAX_LIGHTS + 1)),
-            **found,
+            **node_schemas,
         },
     }
 
@@ -130,23 +130,23 @@ def _graph() -> Schema:
     )
 
 
-def _record(kind: records.RecordType, **known: Schema) -> Schema:
-    """A record; `known` says more about fields of it than their types do. Other keys are kept, so they may be there.
+def _record(kind: records.RecordType, **field_schemas: Schema) -> Schema:
+    """A record; `field_schemas` say more of fields than their types do. Other keys are kept, so they may be there.
 
     What every node has is said once, of any node.
     """
     _, parts = msgspec.json.schema_components([kind])
-    made: Schema = parts[kind.__name__]
-    fields: dict[str, Schema] = made["properties"]
+    record_schema: Schema = parts[kind.__name__]
+    fields: dict[str, Schema] = record_schema["properties"]
     homes = [base for base in kind.__mro__ if issubclass(base, msgspec.Struct)]
 
     def field(name: str) -> Schema:
-        doc = next((found for home in homes if (found := _DOCS.get(f"{home.__name__}.{name}"))), "")
-        return {**(known.get(name) or fields[name]), **({"description": doc} if doc else {})}
+        doc = next((description for home in homes if (description := _DOCS.get(f"{home.__name__}.{name}"))), "")
+        return {**(field_schemas.get(name) or fields[name]), **({"description": doc} if doc else {})}
 
     shared = () if kind is records.TypeRecord else records.TypeRecord.__struct_fields__
     own = [name for name in fields if name not in shared or not issubclass(kind, records.TypeRecord)]
-    needed = [name for name in made["required"] if name in own]
+    needed = [name for name in record_schema["required"] if name in own]
     return {
         "type": "object",
         "properties": {name: field(name) for name in own},
@@ -161,11 +161,11 @@ def _node(kind: type[Node]) -> Schema:
         "properties": {name: _value(value) for name, value in kind.values.items()},
     }
     version = {"type": "integer", "minimum": 1, "maximum": kind.version, "default": 1}
-    made = _record(records.NodeRecord, version=version, **({"values": values} if kind.version == 1 else {}))
+    node_schema = _record(records.NodeRecord, version=version, **({"values": values} if kind.version == 1 else {}))
     if kind.version > 1:
         present: Schema = {"properties": {"version": {"const": kind.version}}, "required": ["version"]}
-        made |= {"if": present, "then": {"properties": {"values": values}}}
-    return {"description": inspect.getdoc(kind) or "", **made}
+        node_schema |= {"if": present, "then": {"properties": {"values": values}}}
+    return {"description": inspect.getdoc(kind) or "", **node_schema}
 
 
 def _value(value: Value) -> Schema:
@@ -175,23 +175,23 @@ def _value(value: Value) -> Schema:
     number: Schema = {"type": "number", **bounds}
     match value.type:
         case "float":
-            made = number
+            type_schema = number
         case "int":
-            made = {"type": "integer", **bounds}
+            type_schema = {"type": "integer", **bounds}
         case "bool":
-            made: Schema = {"type": "boolean"}
+            type_schema: Schema = {"type": "boolean"}
         case "choice":
-            made = {"enum": list(value.choices)}
+            type_schema = {"enum": list(value.choices)}
         case "path" | "text":
-            made = {"type": "string"}
+            type_schema = {"type": "string"}
         case "color" | "vector" | "matrix":
             length = 4 if value.type == "color" else value.length
-            made = {"type": "array", "items": number, "minItems": length, "maxItems": length}
+            type_schema = {"type": "array", "items": number, "minItems": length, "maxItems": length}
         case "curve" | "ramp" | "lights":
-            made = {"$ref": f"#/$defs/{value.type}"}
+            type_schema = {"$ref": f"#/$defs/{value.type}"}
     unit = f"Unit: {value.unit}." if value.unit else ""
     doc = " ".join(part for part in (value.doc, unit) if part)
-    return {**made, "default": value.default, **({"description": doc} if doc else {})}
+    return {**type_schema, "default": value.default, **({"description": doc} if doc else {})}
 
 
 def _points(width: int, counts: range) -> Schema:
@@ -211,8 +211,8 @@ def _nullable(definition: str) -> Schema:
 def _either(record: Schema, **kinds: str) -> Schema:
     """The record with just one of these keys, of these types; an empty name is none."""
     filled = {"name": {"type": "string", "minLength": 1}}
-    given = {name: filled.get(kind, {"type": kind}) for name, kind in kinds.items()}
-    return {**record, "oneOf": [{"required": [name], "properties": {name: kind}} for name, kind in given.items()]}
+    key_schemas = {name: filled.get(kind, {"type": kind}) for name, kind in kinds.items()}
+    return {**record, "oneOf": [{"required": [name], "properties": {name: kind}} for name, kind in key_schemas.items()]}
 
 
 def _case(type: str, definition: str) -> Schema:

@@ -64,8 +64,8 @@ def member(path: str, key: str | int) -> str:
     """The JSON path of a part of what is at `path`."""
     if isinstance(key, int):
         return f"{path}[{key}]"
-    shown = key if key.isprintable() else ascii(key)[1:-1]
-    return f"{path}.{shown}" if path else shown
+    printable = key if key.isprintable() else ascii(key)[1:-1]
+    return f"{path}.{printable}" if path else printable
 
 
 def word(item: object) -> str:

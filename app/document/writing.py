@@ -56,8 +56,8 @@ def _graph(graph: Graph) -> Section:
     """A body, without empty sections."""
     extra = graph.extra
 
-    def entries(section: str, known: Mapping[str, Section]) -> Section:
-        return {name: {**extra.get(f"{section}.{name}", {}), **entry} for name, entry in known.items()}
+    def entries(section: str, sections: Mapping[str, Section]) -> Section:
+        return {name: {**extra.get(f"{section}.{name}", {}), **entry} for name, entry in sections.items()}
 
     _check_names(graph)
     sections: dict[str, Mapping[str, Any]] = {
@@ -75,16 +75,16 @@ def _graph(graph: Graph) -> Section:
     return {**extra.get("", {}), **{name: section for name, section in sections.items() if section}}
 
 
-def _settings(settings: Settings, kept: Mapping[str, Any]) -> Section:
-    """What differs from the default; `kept` are keys of `color` that mean nothing."""
+def _settings(settings: Settings, unknown_color: Mapping[str, Any]) -> Section:
+    """What differs from the default; `unknown_color` are keys of `color` that mean nothing."""
     plain = Settings()
-    found = {
-        field.name: now
+    changed = {
+        field.name: current
         for field in fields(Settings)
-        if (now := getattr(settings, field.name)) != getattr(plain, field.name)
+        if (current := getattr(settings, field.name)) != getattr(plain, field.name)
     }
-    color = {**kept, **_fill({"config": settings.color.config, "working": settings.color.working})}
-    return {**found, "color": color} if color else found
+    color = {**unknown_color, **_fill({"config": settings.color.config, "working": settings.color.working})}
+    return {**changed, "color": color} if color else changed
 
 
 def _input(name: str, end: Input) -> Section:
@@ -95,14 +95,14 @@ def _input(name: str, end: Input) -> Section:
         default = tuple(float(part) for part in default)
     elif default is not None:
         default = float(default)
-    found = {
+    facts = {
         "file": end.file,
         "layer": end.layer,
         "doc": end.doc,
         "missing": end.missing if end.missing != "error" else "",
         "color_space": end.color_space,
     }
-    return {"type": type_name(end.kind, end.width)} | _fill(found) | ({} if default is None else {"default": default})
+    return {"type": type_name(end.kind, end.width)} | _fill(facts) | ({} if default is None else {"default": default})
 
 
 def _output(end: Output) -> Section:
@@ -119,35 +119,35 @@ def _fill(texts: Mapping[str, str]) -> Section:
 
 def _item(id: str, item: Item, graph: Graph) -> Section:
     muted = {"muted": True} if id in graph.muted else {}
-    kept = graph.extra.get(f"nodes.{id}.values", {})
+    unknown_values = graph.extra.get(f"nodes.{id}.values", {})
     if isinstance(item, Unknown):
         return {**item.raw, **muted, "type": item.type}
     if isinstance(item, Group):
         body = {"path": item.path} if item.path else {"graph": _graph(item.graph)}
-        known = signature(item).values
-        found = {name: _value(id, known[name], plain) for name, plain in item.values.items() if name in known}
-        values = {**kept, **item.values, **found}
+        declared = signature(item).values
+        converted = {name: _value(id, declared[name], plain) for name, plain in item.values.items() if name in declared}
+        values = {**unknown_values, **item.values, **converted}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
     set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
-    values = {**kept, **changed}
-    what = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
+    values = {**unknown_values, **changed}
+    type_facts = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.required_package:
-        what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
-    return {"type": item.id} | what | muted | ({"values": values} if values else {})
+        type_facts["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
+    return {"type": item.id} | type_facts | muted | ({"values": values} if values else {})
 
 
-def _value(id: str, value: Value, given: object) -> Plain:
-    plain = coerce(value, given)
+def _value(id: str, value: Value, setting: object) -> Plain:
+    plain = coerce(value, setting)
     if plain is None:
-        raise GraphError(f"nodes.{id}.values.{value.name}: {given!r} cannot be saved; set {describe_type(value)}")
+        raise GraphError(f"nodes.{id}.values.{value.name}: {setting!r} cannot be saved; set {describe_type(value)}")
     return plain
 
 
 def _check_names(graph: Graph) -> None:
     """Refuse what could not be read again."""
     sections = {"input": graph.inputs, "output": graph.outputs, "control": graph.controls, "node": graph.nodes}
-    for what, section in sections.items():
+    for end_kind, section in sections.items():
         for name in section:
-            if fault := name_fault(name, what):
+            if fault := name_fault(name, end_kind):
                 raise GraphError(fault)

@@ -135,11 +135,11 @@ class _Bounds:
     def _measure_declaration(self, at: int, lengths: set[int]) -> int:
         """The floats of all that is declared after a type; the brackets of its lengths are added to `lengths`."""
         glsl = self.tokens[at].text
-        one = self.sizes.get(glsl, 0) or _count_floats(glsl)
+        floats = self.sizes.get(glsl, 0) or _count_floats(glsl)
         place = skip_lengths(self.tokens, self.partners, at + 1)
         following = self.tokens[place].text if place < len(self.tokens) else ""
         own = self._multiply(at + 1, place, lengths, self._count_items(place) if following == "(" else 0)
-        total = one * own if following == "(" and place > at + 1 else 0
+        total = floats * own if following == "(" and place > at + 1 else 0
         while place < len(self.tokens) and self.tokens[place].is_word:
             after = skip_lengths(self.tokens, self.partners, place + 1)
             following = self.tokens[after].text if after < len(self.tokens) else ""
@@ -148,7 +148,7 @@ class _Bounds:
             if length == 0:
                 raise self.fault(place, f"the array '{self.tokens[place].text}' needs a length")
             self.lengths[self.tokens[place].text] = length
-            total += one * length
+            total += floats * length
             if following != ",":
                 break
             place = after + 1
@@ -244,11 +244,13 @@ class _Bounds:
             name = self.tokens[at].text
             if name not in by_name or self.tokens[at + 1].text != "(":
                 continue
-            others = [one for one in by_name[name] if one < number or (name in prototypes and one != number)]
+            callees = [
+                callee for callee in by_name[name] if callee < number or (name in prototypes and callee != number)
+            ]
             called = [
-                self._write_out(one, bodies, by_name, prototypes, costs, callers | {number})
-                for one in others
-                if one not in callers
+                self._write_out(callee, bodies, by_name, prototypes, costs, callers | {number})
+                for callee in callees
+                if callee not in callers
             ]
             cost += max((length for length, _ in called), default=0)
             depth = max([depth, *(1 + deep for _, deep in called)])
@@ -300,7 +302,7 @@ class _Counts(Struct):
 
     def excess(self) -> str:
         """What there is too much of, if anything."""
-        for count, most, what in (
+        for count, most, description in (
             (self.terms, MOST_TERMS, "terms in an expression"),
             (self.signs, LONGEST_PATH, "signs in a row"),
             (self.members, LONGEST_PATH, "members in a row"),
@@ -310,7 +312,7 @@ class _Counts(Struct):
             (self.cases, MOST_CASES, "cases in a switch"),
         ):
             if count > most:
-                return f"{most} {what}"
+                return f"{most} {description}"
         return ""
 
 

@@ -88,10 +88,10 @@ def guard_loops(source: str, most: int = MOST_ROUNDS) -> str:
 def _loops(code: str, constants: Mapping[str, float], start: int, end: int, outer: float) -> Iterator[_Loop]:
     """The loops between two places, those inside of others after them. `outer` rounds are made around them."""
     at = start
-    while found := _LOOP.search(code, at, end):
+    while match := _LOOP.search(code, at, end):
         header = ""
-        after = found.end()
-        if found[1] != "do":
+        after = match.end()
+        if match[1] != "do":
             opened = code.find("(", after)
             if opened < 0 or code[after:opened].strip():
                 raise _Broken
@@ -101,12 +101,12 @@ def _loops(code: str, constants: Mapping[str, float], start: int, end: int, oute
         braced = code[first : first + 1] == "{"
         last = _statement(code, first)
         inner = (first + 1, last - 1) if braced else (first, last)
-        rounds = _rounds(header, code[first:last], constants, code) if found[1] == "for" else None
+        rounds = _rounds(header, code[first:last], constants, code) if match[1] == "for" else None
         rounds = None if rounds is None or max(rounds / MOST_ROUNDS, rounds * outer / MOST_STATED) > 1 else rounds
         yield _Loop(*inner, braced, rounds)
         yield from _loops(code, constants, *inner, outer * (rounds or 1.0))
         at = last
-        if found[1] == "do":
+        if match[1] == "do":
             ended = re.compile(r"\s*while\s*\(").match(code, last)
             if not ended:
                 raise _Broken
@@ -128,7 +128,7 @@ def _rounds(header: str, body: str, constants: Mapping[str, float], code: str) -
     if begin[1] == "uint" and by < 0:
         return None  # less than nothing is the largest of all
     tests = (test for part in parts[1].split("&&") if (test := _TEST.fullmatch(part)) and test[1] == name)
-    return next((found for test in tests if (found := _until(low, test[2], _value(test[3], constants), by))), None)
+    return next((rounds for test in tests if (rounds := _until(low, test[2], _value(test[3], constants), by))), None)
 
 
 def _until(low: float, way: str, high: float | None, by: float) -> float | None:
@@ -152,12 +152,12 @@ def _changes(name: str, body: str, code: str) -> bool:
 def _constants(code: str) -> dict[str, float]:
     """What the text gives a name to: constants and macros that are numbers, unless the name is used for more."""
     constants: dict[str, float] = {}
-    seen: set[str] = set()
+    defined: set[str] = set()
     variables = frozenset(_VARIABLE.findall(code))
     for match in _NAMED.finditer(code):
         name, value = match[1] or match[3], _value(match[2] or match[4], constants)
-        again = name in seen or name in variables
-        seen.add(name)
+        again = name in defined or name in variables
+        defined.add(name)
         if value is None or again:
             constants.pop(name, None)
         else:
@@ -214,10 +214,10 @@ def _statement(code: str, at: int) -> int:
 
 def _find_closing(code: str, opened: int) -> int:
     """The place after the bracket that closes the one at a place."""
-    one, depth = code[opened], 0
-    other = {"(": ")", "{": "}"}[one]
+    opening, depth = code[opened], 0
+    closing = {"(": ")", "{": "}"}[opening]
     for at in range(opened, len(code)):
-        depth += (code[at] == one) - (code[at] == other)
+        depth += (code[at] == opening) - (code[at] == closing)
         if not depth:
             return at + 1
     raise _Broken

@@ -127,10 +127,10 @@ class _Expander:
             case "elif" | "else" | "endif":
                 if not self.conditions:
                     raise GlslFault(line, f"#{name} belongs to no #if")
-                _, done, begun = self.conditions.pop()
+                _, is_settled, begun = self.conditions.pop()
                 if name != "endif":
-                    used = not done and self._is_used() and (name == "else" or self._holds("if", rest, line))
-                    self.conditions.append((used, done or used, begun))
+                    used = not is_settled and self._is_used() and (name == "else" or self._holds("if", rest, line))
+                    self.conditions.append((used, is_settled or used, begun))
             case _ if not self._is_used():
                 pass
             case "define":

@@ -126,7 +126,7 @@ class Names(Struct, frozen=True):
     def is_struct(self, name: str) -> bool:
         """True for a variable or member that has members wherever it is declared."""
         types = self.types.get(name)
-        return bool(types) and not any(TYPE.fullmatch(one) for one in types or ())
+        return bool(types) and not any(TYPE.fullmatch(glsl) for glsl in types or ())
 
     def returns_float(self, name: str) -> bool:
         """True for a function or constructor that surely returns floats."""
@@ -136,7 +136,7 @@ class Names(Struct, frozen=True):
 
 
 def _are_floats(types: frozenset[str] | None) -> bool:
-    return bool(types) and all(_FLOAT.fullmatch(one) for one in types or ())
+    return bool(types) and all(_FLOAT.fullmatch(glsl) for glsl in types or ())
 
 
 def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], outside_types: Mapping[str, str]) -> Names:
@@ -301,9 +301,12 @@ class OperandReader:
         opened, closed = self._at, self._partners[self._at]
         self._at = closed + 1
         arguments = [self.read(start, end) for start, end in self._split_arguments(opened, closed)]
-        floats = self._names.returns_float(name) or (name in _MIXED and any(one.is_float for one in arguments))
+        floats = self._names.returns_float(name) or (
+            name in _MIXED and any(argument.is_float for argument in arguments)
+        )
         return Operand(
-            floats, None if name in self._names.returns else construct(name, [one.number for one in arguments])
+            floats,
+            None if name in self._names.returns else construct(name, [argument.number for argument in arguments]),
         )
 
     def _split_arguments(self, opened: int, closed: int) -> list[tuple[int, int]]:

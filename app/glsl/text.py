@@ -73,22 +73,22 @@ class Text(Struct, frozen=True, dict=True):
             name = todo.pop()
             if name not in needed:
                 needed.add(name)
-                for one in self.all_functions:
-                    if one.name == name:
-                        todo.extend(word for word in one.words if word in self.functions)
+                for function in self.all_functions:
+                    if function.name == name:
+                        todo.extend(word for word in function.words if word in self.functions)
         text = self.body
-        for one in self.all_functions:
-            if one.name not in needed:
-                blank = _BLANK.sub(" ", text[one.start : one.end])
-                text = text[: one.start] + blank + text[one.end :]
+        for function in self.all_functions:
+            if function.name not in needed:
+                blank = _BLANK.sub(" ", text[function.start : function.end])
+                text = text[: function.start] + blank + text[function.end :]
         return replace(self, body=text, words=words(text))
 
     @property
     def outside(self) -> frozenset[str]:
         """The words that stand in no function: those of constants and macros."""
         text = self.body
-        for one in reversed(self.all_functions):
-            text = text[: one.start] + text[one.end :]
+        for function in reversed(self.all_functions):
+            text = text[: function.start] + text[function.end :]
         return words(text)
 
 
@@ -104,9 +104,9 @@ def _function(match: re.Match[str], code: str) -> GlslFunction:
     parameters: list[tuple[str, str]] = []
     outputs: list[tuple[str, str]] = []
     for part in _QUALIFIER.sub("", inside).split(","):
-        found = _PARAMETER.match(part.strip())
-        if found is not None and found[2] != "void":
-            way, glsl, called, array = found.groups(default="")
+        declaration = _PARAMETER.match(part.strip())
+        if declaration is not None and declaration[2] != "void":
+            way, glsl, called, array = declaration.groups(default="")
             (outputs if way else parameters).append((glsl + array, called))
     line = code.count("\n", 0, match.start(2)) + 1
     return GlslFunction(name, result, tuple(parameters), tuple(outputs), match.start(), end, line, used)
@@ -129,7 +129,7 @@ def parse(name: str, source: str, file: str = "") -> Text:
     """Read a shader file's functions and includes. `file` is what messages call it."""
     code = blank_comments(source)
     functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
-    by_name = MappingProxyType({one.name: one for one in functions})
+    by_name = MappingProxyType({function.name: function for function in functions})
     includes = {
         match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in INCLUDE.finditer(code)
     }

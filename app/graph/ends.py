@@ -31,11 +31,11 @@ def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> di
     """
     ends: Mapping[str, Any] = getattr(graph, section)
     pick(ends, old, f"the graph has no {section[:-1]}")
-    others, port = without(ends, old), Port(section, old)
+    other_ends, port = without(ends, old), Port(section, old)
     if new is None:
-        ends, links = others, {end: start for end, start in graph.links.items() if port not in (end, start)}
+        ends, links = other_ends, {end: start for end, start in graph.links.items() if port not in (end, start)}
     else:
-        check_name(new, section[:-1], others)
+        check_name(new, section[:-1], other_ends)
         ends, links = rename_key(ends, old, new), move_links(graph.links, {port: Port(section, new)})
     place, new_place = f"{section}.{old}", f"{section}.{new}" if new else ""
     ui, extra = move_layout(graph.ui, place, new_place), move_keys(graph.extra, place, new_place)

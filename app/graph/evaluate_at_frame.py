@@ -160,7 +160,7 @@ class _ValueEvaluation:
                 todo.pop()
             elif port not in begun:
                 begun.add(port)
-                todo += [other for other in reversed(self._find_reads(port)) if other not in begun]
+                todo += [read_port for read_port in reversed(self._find_reads(port)) if read_port not in begun]
             else:
                 try:
                     self._results[port] = self._evaluate_animation(port, self._graph.animation[port])
@@ -172,7 +172,7 @@ class _ValueEvaluation:
         animation = self._graph.animation[port]
         names = animation.names if isinstance(animation, Expression) else ()
         ports = (find_named_value(self._graph, name)[0] for name in names if _names_a_value(self._graph, name))
-        return [other for other in ports if other in self._graph.animation]
+        return [read_port for read_port in ports if read_port in self._graph.animation]
 
     def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
         value = find_value(self._graph.node(port.node), port.socket, port.node)

@@ -137,7 +137,7 @@ class Pattern(Struct, frozen=True, dict=True):
             return None
         edges = [0, *chain.from_iterable(place.span() for place in places), len(name)]
         pieces = tuple(name[start:stop] for start, stop in zip(edges[::2], edges[1::2], strict=True))
-        widths = tuple(_padding(place, text) for place in places)
+        widths = tuple(_count_padding_digits(place, text) for place in places)
         return Pattern(text, text[: len(text) - len(name)], pieces, widths)
 
     def name(self, frame: int) -> str:
@@ -259,7 +259,7 @@ def _format_run(frames: Sequence[int], start: int, stop: int) -> str:
     return f"{first}-{last}" if step == 1 else f"{first}-{last}x{step}"
 
 
-def _padding(place: re.Match[str], text: str) -> int:
+def _count_padding_digits(place: re.Match[str], text: str) -> int:
     if place["hashes"]:
         width = len(place["hashes"])
     else:

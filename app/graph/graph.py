@@ -116,8 +116,8 @@ class Graph(Wired[Item]):
         face = signature(item)
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
-        known = face.values if port.socket in face.values else {**face.inputs, **face.values}
-        value = pick(known, port.socket, f"node '{port.node}' has no input")
+        declared = face.values if port.socket in face.values else {**face.inputs, **face.values}
+        value = pick(declared, port.socket, f"node '{port.node}' has no input")
         if not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value

@@ -27,7 +27,7 @@ T = TypeVar("T")
 
 
 @contextmanager
-def limited_suggestions() -> Generator[None]:
+def limit_suggestions() -> Generator[None]:
     """Inside this context only the first of many faults get suggestions, because each suggestion takes time."""
     token = None if _COMPARISONS_LEFT.get() else _COMPARISONS_LEFT.set([_MAX_COMPARISONS])
     try:

@@ -14,7 +14,7 @@ from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, signature
 from .model import Input, Port, Unknown
-from .names import INPUTS, OUTPUTS, did_you_mean, limited_suggestions, name_fault, pick
+from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault, pick
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
 from .values import coerce_numbers, sequence_fault, value_fault
@@ -54,32 +54,35 @@ class Problem:
         return self.rule.severity
 
 
-def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tuple[Problem, ...]:
+def problems(graph: Graph, node_types: Mapping[str, type[Node]] | None = None) -> tuple[Problem, ...]:
     """Everything that is wrong, groups included, in a stable order.
 
-    `known` holds the installed node types, for suggestions. An input without file or default is none: it may be bound.
+    `node_types` are the installed ones, for suggestions. An input without file or default is none: it may be bound.
     """
-    with limited_suggestions():
-        problems_ = list(_inside(graph, catalogue() if known is None else known, 0))
+    with limit_suggestions():
+        problems_ = list(_inside(graph, catalogue() if node_types is None else node_types, 0))
     return tuple(sorted(problems_, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
 
 
 def recheck(
-    graph: Graph, before: Graph, found: tuple[Problem, ...], known: Mapping[str, type[Node]] | None = None
+    graph: Graph,
+    before: Graph,
+    earlier_problems: tuple[Problem, ...],
+    node_types: Mapping[str, type[Node]] | None = None,
 ) -> tuple[Problem, ...]:
-    """The same as `problems(graph, known)`, given what that `found` in a graph of `before`.
+    """The same as `problems(graph, node_types)`; `earlier_problems` are those of the graph `before`.
 
     It costs nothing where only values of nodes differ that had no problem and have none now, as while one is dragged.
     """
     if not differ_in_nodes(graph, before):
-        return problems(graph, known)
+        return problems(graph, node_types)
     changed = {id: item for id, item in graph.nodes.items() if item is not before.nodes[id]}
-    faulty = {problem.node for problem in found}
+    faulty = {problem.node for problem in earlier_problems}
     for id, item in changed.items():
         like = isinstance(item, Node) and type(item) is type(before.nodes[id])
         if not like or id in faulty or any(_values(id, item)):
-            return problems(graph, known)
-    return found
+            return problems(graph, node_types)
+    return earlier_problems
 
 
 def differ_in_nodes(graph: Graph, before: Graph) -> bool:
@@ -88,7 +91,7 @@ def differ_in_nodes(graph: Graph, before: Graph) -> bool:
     return all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
 
 
-def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
     yield from _ends(graph)
     yield from _links(graph)
     needed = graph.upstream(OUTPUTS)
@@ -96,12 +99,12 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
         if fault := name_fault(id, "node"):
             yield Problem(id, "", fault, rules.BAD_NAME)
         if isinstance(item, Unknown):
-            yield _unknown(id, item, known)
+            yield _unknown(id, item, node_types)
             continue
         yield from _values(id, item)
-        yield from _missing(graph, id, item, id in needed)
+        yield from _check_inputs(graph, id, item, id in needed)
         if isinstance(item, Group):
-            yield from _group(id, item, known, depth)
+            yield from _group(id, item, node_types, depth)
     for loop in find_loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
         yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
@@ -110,21 +113,21 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
 
 
-def _unknown(id: str, item: Unknown, known: Mapping[str, type[Node]]) -> Problem:
+def _unknown(id: str, item: Unknown, node_types: Mapping[str, type[Node]]) -> Problem:
     if item.fault:
         return Problem(id, "", f"node '{id}': {item.fault}", rules.BROKEN_CODE)
     if fault := _plugin_fault(item):
         return Problem(id, "", f"node '{id}' has the type '{item.type}' {fault}", rules.MISSING_PLUGIN)
-    hint = did_you_mean(item.type, known)
+    hint = did_you_mean(item.type, node_types)
     return Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{hint}", rules.UNKNOWN_TYPE)
 
 
 def _plugin_fault(item: Unknown) -> str:
     """Why the plug-in that a node comes from does not give it, and what to install; "" for a node of none."""
     package = item.raw.get("package")
-    wanted = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
+    requirement = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
     namespace = item.type.partition(".")[0]
-    name = _normalize(wanted.partition("==")[0])
+    name = _normalize(requirement.partition("==")[0])
     installed = [
         plugin
         for plugin in (plugins() if "." in item.type else ())
@@ -133,10 +136,10 @@ def _plugin_fault(item: Unknown) -> str:
     for plugin in installed:
         if plugin.fault:
             return f"of the plug-in {plugin}, which cannot be loaded: {plugin.fault}"
-    if not wanted:
+    if not requirement:
         return ""
     lack = f"the installed {installed[0]} does not have it" if installed else "which is not installed"
-    return f"of the plug-in {wanted.replace('==', ' ')}, {lack}: pip install {wanted}"
+    return f"of the plug-in {requirement.replace('==', ' ')}, {lack}: pip install {requirement}"
 
 
 def _normalize(package: str) -> str:
@@ -161,12 +164,12 @@ def _animations(graph: Graph) -> Iterator[Problem]:
         yield Problem("", "", sentence, rules.BACKWARD_FRAMES, "settings.frames")
 
 
-def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
     if depth == MAX_DEPTH:
         sentence = f"group '{id}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
         yield Problem(id, "", sentence, rules.DEEP_GROUPS)
         return
-    for problem in _inside(item.graph, known, depth + 1):
+    for problem in _inside(item.graph, node_types, depth + 1):
         where = f"{id}/{problem.node}" if problem.node else id
         at = f"nodes.{id}.{f'graph.{problem.at}' if not item.path else 'path'}" if problem.at else ""
         yield replace(problem, node=where, sentence=f"in group '{id}': {problem.sentence}", at=at)
@@ -181,7 +184,7 @@ def _links(graph: Graph) -> Iterator[Problem]:
         yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
 
 
-def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:
+def _check_inputs(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:
     for name, socket in signature(item).inputs.items():
         if not socket.optional and Port(id, name) not in graph.links:
             # A node that nothing uses yet is unfinished, not wrong.

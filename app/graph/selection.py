@@ -61,10 +61,10 @@ def _make_input(graph: Graph, source: Port) -> Input:
     return Input(socket.kind, socket.channels)
 
 
-def _choose_name(source: Port, taken: dict[str, Input]) -> str:
+def _choose_name(source: Port, inputs: dict[str, Input]) -> str:
     name = source.socket if source.node == INPUTS else source.node
-    found, again = name, 1
-    while found in taken:
+    free_name, again = name, 1
+    while free_name in inputs:
         again += 1
-        found = f"{name}{again}"
-    return found
+        free_name = f"{name}{again}"
+    return free_name

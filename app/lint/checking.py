@@ -15,7 +15,7 @@ from ..document.disk import read_text
 from ..document.positions import Positions
 from ..errors import DocumentError, GraphError
 from ..graph import Graph, Group, Problem
-from ..graph.names import limited_suggestions
+from ..graph.names import limit_suggestions
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
 from ..resources.sandbox import Sandbox
@@ -102,7 +102,7 @@ class GraphChecker:
 
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
         """The text of a graph. Relative paths in it start at `folder`."""
-        with limited_suggestions():
+        with limit_suggestions():
             try:
                 whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
             except DocumentError as fault:

@@ -10,7 +10,7 @@ from typing import NamedTuple, TypeGuard
 
 from halation.nodes import Node, Reader, Trait, Value
 
-from ..compiler import Library, installed_library
+from ..compiler import Library, load_library
 from ..graph import Graph, Group, Item, Port, Problem, signature
 from ..graph.rules import Rule
 
@@ -31,7 +31,7 @@ class GraphFacts:
     @cached_property
     def library(self) -> Library:
         """What the shaders of nodes are."""
-        return installed_library()
+        return load_library()
 
     @cached_property
     def moving(self) -> frozenset[str]:

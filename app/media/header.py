@@ -90,14 +90,14 @@ def _read_part(index: int, spec: oiio.ImageSpec) -> PartHeader:
 
 
 def _read_attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
-    found: dict[str, Value] = {}
+    attributes: dict[str, Value] = {}
     for item in spec.extra_attribs:
         try:
             name, value = make_printable(item.name), item.value
         except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
             continue
         if isinstance(value, str):
-            found[name] = make_printable(value)
+            attributes[name] = make_printable(value)
         elif isinstance(value, int | float | tuple):
-            found[name] = value
-    return found
+            attributes[name] = value
+    return attributes

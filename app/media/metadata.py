@@ -62,7 +62,7 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
 
         return {**find_kept_tags(read_video_info(str(path), sandbox=sandbox))}
     with open_picture(path, sandbox=sandbox) as handle:
-        found: dict[str, int | float | str | TypedAttribute] = {}
+        attributes: dict[str, int | float | str | TypedAttribute] = {}
         for item in handle.spec().extra_attribs:
             try:
                 if is_structural(item.name):
@@ -72,8 +72,8 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
                 continue
             if value is not None:
                 is_plain = isinstance(value, int | float | str)
-                found[item.name] = value if is_plain else TypedAttribute(str(item.type), value)
-        return _unpack(found, _PACKED.get(handle.format_name(), ""))
+                attributes[item.name] = value if is_plain else TypedAttribute(str(item.type), value)
+        return _unpack(attributes, _PACKED.get(handle.format_name(), ""))
 
 
 def is_structural(name: str) -> bool:
@@ -138,15 +138,15 @@ def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
 
 
 def _unpack(
-    found: dict[str, int | float | str | TypedAttribute], name: str
+    attributes: dict[str, int | float | str | TypedAttribute], name: str
 ) -> dict[str, int | float | str | TypedAttribute]:
     """What was meant by it."""
-    text = found.get(name, "")
+    text = attributes.get(name, "")
     if not isinstance(text, str) or not text.startswith(f'{{"{_OURS}'):
-        return found
+        return attributes
     try:
         ours: Any = json.loads(text)
     except (ValueError, RecursionError):
-        return found
-    rest = {key: value for key, value in found.items() if key != name}
+        return attributes
+    rest = {key: value for key, value in attributes.items() if key != name}
     return {**rest, **{key: value for key, value in ours.items() if isinstance(value, str)}}

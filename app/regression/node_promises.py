@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from halation.nodes import Kind, Node, Pointwise, Source, Trait, Value, look_at
 
-from ..compiler import installed_library
+from ..compiler import load_library
 from ..errors import HalationError, ShaderError
 from ..glsl.taken_names import TAKEN_NAMES
 from ..graph import Graph, Input, Output, Port
@@ -69,7 +69,7 @@ def find_shader_faults(node: type[Node]) -> Iterator[str]:
     if not issubclass(node, Pointwise):
         return
     try:
-        function = installed_library().function(node.shader, node.function, node.id)
+        function = load_library().function(node.shader, node.function, node.id)
     except ShaderError as fault:
         yield str(fault).partition(": ")[2]
         return
@@ -96,7 +96,7 @@ def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
 
     `names` are the files whose functions may come into one program with its own.
     """
-    library = installed_library()
+    library = load_library()
     try:
         text = library.texts[name]
         library.closure((name,), name)

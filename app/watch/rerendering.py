@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from ..compiler.library import reload_installed_library
+from ..compiler.library import reload_library
 from ..errors import GraphError, HalationError, InputError
 from ..graph import Graph
 from ..renderer.jobs.job import FrameReport, JobProgress, JobReport
@@ -125,7 +125,7 @@ class ContinuousRenderer:
             self._has_news()
         news, self._news = self._news, {}
         if any(change.kind == "shader" for change in news.values()):
-            reload_installed_library()
+            reload_library()
         if any(change.kind == "node" for change in news.values()) and (fault := self._nodes.reload()):
             self._refuse(fault)
         return tuple(news)

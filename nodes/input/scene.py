@@ -95,11 +95,11 @@ class Scene(Source):
         scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)
         width, height = draw.size
         times = (draw.frame, draw.frame - 1, draw.frame + 1)
-        now, before, after = (self._camera(time, width / height) for time in times)
+        camera, before, after = (self._camera(time, width / height) for time in times)
         first, second, third = (self._motion(time) for time in times)
         x, y = (self.jitter * part for part in _halton(draw.frame))
         at = (x / width, y / height)
-        cameras = (now.shift(*at), before.shift(*at), after.shift(*at))
+        cameras = (camera.shift(*at), before.shift(*at), after.shift(*at))
         surfaces = draw.raster(scene, (first, second, third), cameras, _NEAR * self.distance)
         place, surface = surfaces["place"], surfaces["surface"]
         return {
@@ -108,7 +108,7 @@ class Scene(Source):
                 albedo=surfaces["albedo"],
                 normal=surfaces["normal"],
                 emission=surfaces["emission"],
-                eye=now.forward,
+                eye=camera.forward,
             ),
             "albedo": surfaces["albedo"],
             "normal": surfaces["normal"],
@@ -120,7 +120,7 @@ class Scene(Source):
             "uv": draw.point("scene_uv", result=Vector(width=2), surface=surface),
             "object_id": draw.point("scene_object", result=Field(), surface=surface),
             "material_id": draw.point("scene_material", result=Field(), surface=surface),
-            "camera": now,
+            "camera": camera,
             "camera_before": before,
         }
 

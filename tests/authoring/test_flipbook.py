@@ -51,8 +51,8 @@ def test_it_is_a_document_of_its_own(folder: Path) -> None:
     )
     session = Flipbook((one, other), 12.0, 40).session
     assert (session.frames, session.settings.rate, session.frame) == ((1, 8), 12.0, 8)
-    assert session.viewed("A") == Port(OUTPUTS, "shot_v1")
-    assert session.viewed("B") == Port(OUTPUTS, "shot_v12")
+    assert session.find_viewed_port("A") == Port(OUTPUTS, "shot_v1")
+    assert session.find_viewed_port("B") == Port(OUTPUTS, "shot_v12")
     assert session.value(Port("flipbook: shot_v1", "path")) == str(one.path)
     assert {session.value(Port(name, "missing")) for name in session.graph.nodes} == {"hold"}
     assert [output.view for output in session.root.outputs.values()] == ["", "none"]
@@ -65,7 +65,7 @@ def test_it_is_a_document_of_its_own(folder: Path) -> None:
 )
 def test_any_name_will_do(tmp_path: Path, name: str, called: str) -> None:
     session = Flipbook((FlipbookStrip(tmp_path / name, (1, 2)),), 24.0, 1).session
-    assert session.viewed("A") == Port(OUTPUTS, called) and session.viewed("B") is None
+    assert session.find_viewed_port("A") == Port(OUTPUTS, called) and session.find_viewed_port("B") is None
 
 
 def test_a_render_is_shown_as_its_output_asks(tmp_path: Path) -> None:

@@ -134,7 +134,7 @@ def measure_drag(folder: Path) -> dict[str, float]:
             ui.ctx.inputs.mouse_pos_value = ImVec2(left + 8 + steps % 60, y)  # moved once a frame, as by a hand
             ui.wait(1)
             values.add(ui.session.value(Port("n9", "stops")))
-            shown = ui.editor.preview.shown("A")
+            shown = ui.editor.preview.find_whole_image("A")
             assert shown is not None and shown.scale == 1.0
             seen.add(shown.revision)
         spent, used = time.perf_counter() - started, sum(os.times()[:2]) - before
@@ -166,7 +166,7 @@ def measure_zoomed(folder: Path) -> dict[str, Any]:
                     value += 0.003
                     graph = graph.set(Port.parse(word), value)
                     taken = _time_until_seen(preview, graph)
-                    seen = preview.seen("A")
+                    seen = preview.find_visible_image("A")
                     assert seen is not None and seen.partial == part
                     if turn > 1 and step:  # before, programs are compiled and caches filled
                         steps[part].append(taken)
@@ -217,7 +217,7 @@ def measure_start(folder: Path) -> float:
     code = (
         "import sys,time,os;sys.path.append(sys.argv[1])\n"
         "from gui_driver import drive\nfrom pathlib import Path\n"
-        "def body(ui):\n ui.until(lambda: ui.editor.preview.shown('A') is not None)\n print('shown')\n"
+        "def body(ui):\n ui.until(lambda: ui.editor.preview.find_whole_image('A') is not None)\n print('shown')\n"
         "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))"
     )
     preset = next(iter(sorted((Path(__file__).parents[2] / "presets").glob("agx_look.json"))))

@@ -184,8 +184,8 @@ def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
     from halation.compiler.library import parse
 
     code = "vec4 exposure(vec4 image, float stops) {\n    return image * stosp;\n}\n"
-    library = compiler.Library({**compiler.installed_library().texts, "color/exposure": parse("color/exposure", code)})
-    monkeypatch.setattr(compiler.planner, "installed_library", lambda: library)
+    library = compiler.Library({**compiler.load_library().texts, "color/exposure": parse("color/exposure", code)})
+    monkeypatch.setattr(compiler.planner, "load_library", lambda: library)
     said = fails(5, "render", graphs())
     assert said.startswith("node 'light': shaders/color/exposure.glsl, line 2: ") and "stosp" in said
 

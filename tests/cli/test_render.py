@@ -183,8 +183,8 @@ def test_frame_reaches_the_shaders(cli, graphs, out, monkeypatch):
     from halation.compiler.library import parse
 
     code = "vec4 exposure(vec4 image, float stops) { return vec4(vec3(float(frame)), stops); }\n"
-    library = compiler.Library({**compiler.installed_library().texts, "color/exposure": parse("color/exposure", code)})
-    monkeypatch.setattr(compiler.planner, "installed_library", lambda: library)
+    library = compiler.Library({**compiler.load_library().texts, "color/exposure": parse("color/exposure", code)})
+    monkeypatch.setattr(compiler.planner, "load_library", lambda: library)
     for words, expected in (((), 1.0), (("--frame", "37"), 37.0)):
         assert cli("render", graphs(), *words, "-o", out).code == 0
         assert read(out)[3, 3, 0] == expected

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 from edited_graphs import edit_randomly
-from halation.compiler import NULL, Library, Request, installed_library
+from halation.compiler import NULL, Library, Request, load_library
 from halation.compiler.codegen.emit import emit
 from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewrite_passes
@@ -32,7 +32,7 @@ FORMS = (NULL, replace(NULL, form="fragment"), replace(NULL, software=False))
 
 def told(graph: Graph, target=NULL, library: Library | None = None, frame: int = 1, scale: float = 1.0) -> dict:
     """By mark, the programs of all that passes make, each as if it were alone, and what they are set to."""
-    library, found = library or installed_library(), dict[str, set]()
+    library, found = library or load_library(), dict[str, set]()
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items()
@@ -91,7 +91,7 @@ def test_a_shader_that_is_written_again_changes_what_it_makes_and_nothing_else()
     for name, node in (("exposure", Exposure(stops=1.0)), ("vignette", Vignette())):
         graph = graph.add(name, node).connect(Port("inputs", "image"), Port(name, "image"))
         graph = graph.add_output(name, Output(Kind.IMAGE)).connect(Port(name, "out"), Port("outputs", name))
-    library, name = installed_library(), Exposure().shader
+    library, name = load_library(), Exposure().shader
     source = f"{library.texts[name].body}\n".replace("exp2(", "exp(")
     other = library.with_replacement(parse(name, source), "another")
     before, after = told(graph), told(graph, library=other)

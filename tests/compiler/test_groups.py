@@ -219,7 +219,7 @@ def test_a_pass_keeps_within_the_uniforms_that_every_device_has(plan):
 
 
 def test_too_many_or_an_even_number_of_weights_is_an_error(plan):
-    from halation.compiler import Library, installed_library
+    from halation.compiler import Library, load_library
     from halation.compiler.library import parse
     from halation.errors import ShaderError
     from halation.nodes import Draw, Drawn, Filter, Image
@@ -235,7 +235,7 @@ def test_too_many_or_an_even_number_of_weights_is_an_error(plan):
 
         return graph({"w": Wide()}, {"w.image": "inputs.image", "outputs.image": "w.out"})
 
-    texts = Library({**installed_library().texts, "compiler/wide": parse("compiler/wide", "")})
+    texts = Library({**load_library().texts, "compiler/wide": parse("compiler/wide", "")})
     assert len(plan(weighted(4081), library=texts).passes[0].weights) <= 4096
     for count in (2, 4083, 100_001):
         with pytest.raises(ShaderError, match="an odd number of weights up to 4081"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.compiler import Library, installed_library
+from halation.compiler import Library, load_library
 from halation.compiler.library import parse
 from halation.errors import ShaderError
 from halation.graph import Graph, Input, Output, Port
@@ -15,7 +15,7 @@ GOOD = "vec4 exposure(vec4 image, float stops) { return image * exp2(stops); }\n
 def library(**texts: str) -> Library:
     """The installed files with others in their place: `color__exposure` stands for `color/exposure`."""
     named = {name.replace("__", "/"): text for name, text in texts.items()}
-    return Library({**installed_library().texts, **{name: parse(name, text) for name, text in named.items()}})
+    return Library({**load_library().texts, **{name: parse(name, text) for name, text in named.items()}})
 
 
 def exposed() -> Graph:

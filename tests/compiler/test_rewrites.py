@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from halation.compiler import Plan, Target, installed_library
+from halation.compiler import Plan, Target, load_library
 from halation.errors import ShaderError
 from halation.glsl import parse
 from halation.graph import Graph, Input, Output, Port
@@ -166,10 +166,10 @@ def test_what_a_function_makes_at_once_is_one_pass(plan) -> None:
 
 
 def test_a_function_must_make_what_it_is_drawn_for(plan) -> None:
-    text = installed_library().texts["lens/depth_of_field"]
+    text = load_library().texts["lens/depth_of_field"]
     other = parse(text.name, text.body.replace("out float covers", "out vec2 covers"), text.file)
     with pytest.raises(ShaderError, match=r"makes \(vec4, vec2\) but is drawn for \(vec4, float\)"):
-        plan(focused(), library=installed_library().with_replacement(other, "other"))
+        plan(focused(), library=load_library().with_replacement(other, "other"))
 
 
 def test_random_graphs_have_merged_passes(plan) -> None:

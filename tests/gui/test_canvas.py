@@ -199,7 +199,7 @@ def test_double_click_views_a_node(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
         ui.double_click("title exposure", (0.3, 0.5))
-        assert ui.session.viewed("A") == Port("exposure", "out")
+        assert ui.session.find_viewed_port("A") == Port("exposure", "out")
 
     gui(body)
 

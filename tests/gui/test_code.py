@@ -32,7 +32,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def red(ui) -> float:
-    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
+    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.find_whole_image("A").texture, 3, 3)[0]))
 
 
 def begin(ui, text: str = GAIN) -> None:
@@ -105,11 +105,11 @@ def test_a_broken_line_is_marked_and_the_picture_stays(gui, path) -> None:
         ui.settled()
         links = ui.session.graph.links
         for line, sentence in (("uniform int x;", "'uniform' has no place here"), ("int y = wrong(1);", "wrong")):
-            shown = ui.editor.preview.shown("A").key
+            shown = ui.editor.preview.find_whole_image("A").key
             write(ui, f"{line}\n")
             ui.until(lambda: "code fault" in ui.editor.places)
             ui.until(lambda: any(sentence in one for one in ui.editor.preview.faults.values()))  # noqa: B023
-            assert ui.editor.preview.shown("A").key == shown and ui.session.graph.links == links
+            assert ui.editor.preview.find_whole_image("A").key == shown and ui.session.graph.links == links
             fault = page(ui).fault
             assert fault.line == 1 and sentence in fault.sentence
             assert isinstance(ui.session.graph.nodes["code"], Unknown) == ("uniform" in line)

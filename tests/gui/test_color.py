@@ -41,7 +41,7 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def middle(ui) -> np.ndarray:
     """The pixel in the middle of the picture that is seen."""
-    shown = ui.editor.preview.shown("A")
+    shown = ui.editor.preview.find_whole_image("A")
     assert shown is not None
     return ui.ask(lambda: np.array(ui.editor.probe.read_pixel(shown.texture, 32, 18)))[:3]
 

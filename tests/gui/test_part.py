@@ -65,17 +65,20 @@ def test_what_is_seen_is_the_same_before_and_after_the_rest_is_there(gui, tmp_pa
         before = picture(ui, "before.png")
         resting(1000.0)
         held(ui)
-        preview, seen = ui.editor.preview, ui.editor.preview.seen("A")
+        preview, seen = ui.editor.preview, ui.editor.preview.find_visible_image("A")
         width, height = seen.texture.size
         assert seen.partial and width * height < 0.5 * SIZE[0] * SIZE[1]
-        assert not preview.shown("A").partial and preview.shown("A").key != seen.key
+        assert not preview.find_whole_image("A").partial and preview.find_whole_image("A").key != seen.key
         assert _figures(ui.editor).startswith(f"region {width}\u00d7{height} ")
         dragged = picture(ui, "part.png")
         assert (dragged != before).any(axis=2).mean() > 0.9
         ui.ctx.mouse_up(0)
         resting(0.0)
         ui.settled()
-        assert preview.seen("A") is preview.shown("A") and preview.shown("A").size == SIZE
+        assert (
+            preview.find_visible_image("A") is preview.find_whole_image("A")
+            and preview.find_whole_image("A").size == SIZE
+        )
         assert "region" not in _figures(ui.editor)
         np.testing.assert_array_equal(picture(ui, "whole.png"), dragged)
         ui.keys("Ctrl+Z")
@@ -93,11 +96,11 @@ def test_the_mouse_pans_and_zooms_while_a_part_is_shown(gui, tmp_path, resting):
         held(ui)
         ui.ctx.mouse_up(0)
         ui.until(lambda: ui.editor.preview.completing)
-        first = ui.editor.preview.seen("A")
+        first = ui.editor.preview.find_visible_image("A")
         x, y = ui.at("viewer panel")
         ui.drag((x, y), (x + 180.0, y + 90.0), button=2)
         ui.until(lambda: ui.editor.preview.completing)
-        second = ui.editor.preview.seen("A")
+        second = ui.editor.preview.find_visible_image("A")
         assert second.partial and second.start != first.start
         ui.move((5.0, 5.0))
         panned, look = picture(ui, "panned.png"), (ui.editor.viewer.zoom, ui.editor.viewer.pan)
@@ -118,7 +121,7 @@ def test_the_mouse_pans_and_zooms_while_a_part_is_shown(gui, tmp_path, resting):
         ui.editor.viewer.fit()
         resting(0.0)
         ui.settled()
-        assert ui.editor.preview.seen("A").texture.size == SIZE
+        assert ui.editor.preview.find_visible_image("A").texture.size == SIZE
 
     gui(body, made(tmp_path), likes={"proxy_while_dragging": False})
 
@@ -134,11 +137,11 @@ def test_both_sides_are_compared_in_part(gui, tmp_path, resting, compare):
         ui.session.apply(SetValue(STOPS, 1.5))
         ui.wait(2)
         ui.until(lambda: ui.editor.preview.completing)
-        assert ui.editor.preview.seen("A").partial and ui.editor.preview.seen("B").partial
+        assert ui.editor.preview.find_visible_image("A").partial and ui.editor.preview.find_visible_image("B").partial
         parts = picture(ui, "parts.png")
         resting(0.0)
         ui.settled()
-        assert not ui.editor.preview.seen("B").partial
+        assert not ui.editor.preview.find_visible_image("B").partial
         np.testing.assert_array_equal(picture(ui, "wholes.png"), parts)
 
     gui(body, made(tmp_path))
@@ -164,13 +167,13 @@ def test_numbers_of_the_whole_picture_wait_for_it(gui, tmp_path, resting):
         ui.until(lambda: ui.editor.dialogs.browse is not None)
         ui.editor.dialogs.close()
         ui.settled()
-        numbers = ui.ask(lambda: ui.editor.probe.read_pixel(preview.shown("A").texture, *pixel))
+        numbers = ui.ask(lambda: ui.editor.probe.read_pixel(preview.find_whole_image("A").texture, *pixel))
         assert [float(part) for part in copied.split(": ")[1].split()] == pytest.approx(numbers, abs=0.0)
         # How data is shown depends on all of it.
         ui.editor.viewer.meaning = "field"
         ui.session.apply(SetValue(STOPS, 2.5))
         while ui.editor.preview.busy:
             ui.wait(1)
-            assert not ui.editor.preview.seen("A").partial
+            assert not ui.editor.preview.find_visible_image("A").partial
 
     gui(body, made(tmp_path))

@@ -37,7 +37,7 @@ graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
 document.save(graph, path, sandbox=UNRESTRICTED)
 
 def brightness(ui):
-    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.shown("A").texture, 3, 3)[0]))
+    return ui.ask(lambda: float(ui.editor.probe.read_pixel(ui.editor.preview.find_whole_image("A").texture, 3, 3)[0]))
 
 def problems(ui):
     return [one.sentence for one in list_problems(ui.window._contexts.problems)]
@@ -84,12 +84,12 @@ def body(ui):
     first, good = brightness(ui), shader.read_text()
     shader.write_text(good.replace("exp2(", "3.0 * exp2("))
     ui.until(lambda: abs(brightness(ui) - 3.0 * first) < 1e-4)
-    shown = ui.editor.preview.shown("A")
+    shown = ui.editor.preview.find_whole_image("A")
     shader.write_text(good + "\\nvec4 broken( { nonsense }\\n")
     ui.until(lambda: any("color/exposure.glsl, line" in one for one in problems(ui)))
     assert "light" in ui.editor.preview.faults
     ui.wait(5)
-    assert ui.editor.preview.shown("A").key == shown.key and abs(brightness(ui) - 3.0 * first) < 1e-4
+    assert ui.editor.preview.find_whole_image("A").key == shown.key and abs(brightness(ui) - 3.0 * first) < 1e-4
     shader.write_text(good.replace("exp2(", "5.0 * exp2("))
     ui.until(lambda: abs(brightness(ui) - 5.0 * first) < 1e-4)
     assert not problems(ui)

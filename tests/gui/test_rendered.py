@@ -60,7 +60,7 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
         assert not ui.editor.preview.faults and not ui.editor.faults
         ui.session.view(Port("outputs", "image"))
         ui.settled()
-        shown = ui.editor.preview.shown("A")
+        shown = ui.editor.preview.find_whole_image("A")
         size = shown.texture.size
         seen = ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, *size)))[..., :3]
         expected = to_display(seen, "none")

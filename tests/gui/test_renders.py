@@ -46,7 +46,7 @@ def press(ui, place: str) -> None:
 
 def pixels(ui) -> np.ndarray:
     """What the viewer shows, from the graphics card."""
-    shown = ui.editor.preview.shown("A")
+    shown = ui.editor.preview.find_whole_image("A")
     width, height = shown.texture.size
     return ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, width, height)))
 
@@ -59,7 +59,7 @@ def test_a_render_that_is_dropped_works_at_once(gui) -> None:
         for name in ("color", "albedo", "depth", "normal", "position", "velocity", "object_id"):
             ui.session.view(Port(node, name))
             ui.settled()
-            assert ui.editor.preview.shown("A").port.socket == name and not ui.editor.preview.faults
+            assert ui.editor.preview.find_whole_image("A").port.socket == name and not ui.editor.preview.faults
             assert np.ptp(np.nan_to_num(pixels(ui), posinf=0.0)) > 0.1
         assert "name neon.depth_layer" in ui.editor.places and "name neon.uv_layer" not in ui.editor.places
 

@@ -104,18 +104,18 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.keys("Shift+RightArrow")
         assert book.session.frame == 8 and ui.session.frame == 1
         ui.settled()
-        assert ui.editor.preview.shown("A").frame == 8
+        assert ui.editor.preview.find_whole_image("A").frame == 8
         ui.shot("flipbook_alone.png")
         ui.click("compare 0")
         ui.shot("queue_compare.png")
         ui.click("compare with 0")
         ui.settled()
         book = ui.editor.stage.flipbook
-        assert book is not None and len(book.strips) == 2 and ui.editor.preview.shown("B") is not None
+        assert book is not None and len(book.strips) == 2 and ui.editor.preview.find_whole_image("B") is not None
         ui.shot("flipbook_of_two_renders.png")
         ui.click("close flipbook")
         ui.settled()
-        assert ui.editor.stage.flipbook is None and ui.editor.preview.shown("A").frame == 1
+        assert ui.editor.stage.flipbook is None and ui.editor.preview.find_whole_image("A").frame == 1
         assert ui.editor.viewer.compare == "off"
 
     gui(body, shot)
@@ -232,7 +232,7 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
         ui.session.view(Port("bloom", "out"))
         ui.settled()
         assert ui.editor.stage.flipbook is None and viewer.compare == "off"
-        assert ui.editor.preview.shown("A").port == Port("bloom", "out")
+        assert ui.editor.preview.find_whole_image("A").port == Port("bloom", "out")
 
     gui(body, shot, likes={"theme": theme})
 
@@ -250,7 +250,7 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
         for frame in (8, 1):
             book.session.seek(frame)
             ui.settled()
-            seen = ui.ask(lambda: ui.editor.probe.read_small(ui.editor.preview.shown("A").texture, 480))
+            seen = ui.ask(lambda: ui.editor.probe.read_small(ui.editor.preview.find_whole_image("A").texture, 480))
             there = read_layer(
                 str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4, sandbox=UNRESTRICTED
             ).array

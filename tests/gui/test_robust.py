@@ -136,7 +136,7 @@ def test_a_fault_in_an_action_or_while_rendering_is_told_and_nothing_else_happen
             ui.session.apply(SetValue(STOPS, 1.5))
             ui.wait(3)
         ui.settled()
-        assert not ui.editor.faults and ui.editor.preview.shown("A") is not None
+        assert not ui.editor.faults and ui.editor.preview.find_whole_image("A") is not None
         ui.session.undo()
         assert ui.session.root == before
 
@@ -159,7 +159,7 @@ def test_opengl_as_on_a_mac_will_do(gui, monkeypatch) -> None:
     def body(ui) -> None:
         ui.settled()
         assert ui.window.device.target.form == "fragment"
-        assert not ui.editor.preview.faults and ui.editor.preview.shown("A") is not None
+        assert not ui.editor.preview.faults and ui.editor.preview.find_whole_image("A") is not None
         ui.session.apply(SetValue(STOPS, 1.5))
         ui.settled()
         left, top, right, bottom = map(int, ui.editor.places["viewer image"])

@@ -11,7 +11,7 @@ def test_opens_a_graph_and_shows_its_picture(gui) -> None:
     def body(ui) -> None:
         ui.settled()
         assert ui.session.path == path
-        shown = ui.editor.preview.shown("A")
+        shown = ui.editor.preview.find_whole_image("A")
         assert shown is not None and shown.full_size[0] > 100
         assert ui.pixels().std() > 5
 

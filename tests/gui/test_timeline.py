@@ -55,7 +55,7 @@ def start(ui, graph: Graph) -> None:
 
 
 def seen(ui) -> np.ndarray:
-    shown = ui.editor.preview.shown("A")
+    shown = ui.editor.preview.find_whole_image("A")
     width, height = shown.texture.size
     return ui.ask(lambda: ui.editor.probe.read_region(shown.texture, (0, 0, width, height)))
 
@@ -95,7 +95,7 @@ def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
 
         def looped() -> bool:
             frames.append(ui.session.frame)
-            shown.add(ui.editor.preview.shown("A").frame)
+            shown.add(ui.editor.preview.find_whole_image("A").frame)
             return any(after < before for before, after in pairwise(frames)) and len(shown) > 3
 
         ui.until(looped)
@@ -311,7 +311,7 @@ def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_pa
         ui.session.seek(10)
         ui.wait(1)
         ui.settled()
-        assert ui.editor.preview.remembers and ui.editor.preview.shown("A").frame == 10
+        assert ui.editor.preview.remembers and ui.editor.preview.find_whole_image("A").frame == 10
         far = seen(ui)
         ui.shot("trails.png")
         for frame in (3, 12, 9, 10):

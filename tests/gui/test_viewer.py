@@ -67,7 +67,7 @@ def test_the_wipe_shows_both_and_is_dragged(gui) -> None:
         hover(ui)
         ui.keys("W")
         ui.settled()
-        assert ui.editor.preview.shown("B").port == Port("inputs", "beauty")
+        assert ui.editor.preview.find_whole_image("B").port == Port("inputs", "beauty")
         b = seen(ui, 0.8, 0.85)
         assert (a != b).any()
         # The line of numbers for B makes the picture a little smaller: A is what both sides show then.

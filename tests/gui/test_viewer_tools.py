@@ -88,7 +88,7 @@ def test_the_table_measures_rectangles_and_markers(gui) -> None:
         ui.drag(inside(ui, 0.2, 0.2), inside(ui, 0.4, 0.6), keys="Ctrl")
         ui.settled()
         assert viewer.measured == pytest.approx((0.2, 0.2, 0.4, 0.6), abs=0.02)
-        assert ui.editor.preview.shown("inputs.beauty") is not None
+        assert ui.editor.preview.find_whole_image("inputs.beauty") is not None
         assert "Viewer" not in ui.editor.faults
 
     gui(body, PRESET)
@@ -200,7 +200,7 @@ def test_keys_keep_and_recall_what_is_viewed(gui) -> None:
         ui.keys("Ctrl+3")
         ui.session.view(Port("outputs", "image"))
         ui.keys("3")
-        assert ui.session.viewed("A") == Port("halo", "glow")
+        assert ui.session.find_viewed_port("A") == Port("halo", "glow")
 
     gui(body, PRESET)
 
@@ -241,10 +241,10 @@ def test_slow_pictures_are_coarser_while_something_is_dragged(gui) -> None:
         ui.wait(3)
         ui.editor.viewer.pace.took(1.0, 0.5)
         ui.drag("handle vignette.center", inside(ui, 0.7, 0.25), release=False)
-        ui.until(lambda: ui.editor.preview.shown("A").scale < 1.0)
-        assert ui.editor.preview.shown("A").full_size == (WIDTH, HEIGHT)
+        ui.until(lambda: ui.editor.preview.find_whole_image("A").scale < 1.0)
+        assert ui.editor.preview.find_whole_image("A").full_size == (WIDTH, HEIGHT)
         ui.ctx.mouse_up(0)
         ui.settled()
-        assert ui.editor.preview.shown("A").scale == 1.0
+        assert ui.editor.preview.find_whole_image("A").scale == 1.0
 
     gui(body, PRESET)

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from halation.compiler import installed_library
+from halation.compiler import load_library
 from halation.nodes import Filter, Kind, Node, Pointwise, built_in_nodes
 from halation.regression.node_promises import (
     TRIALS,
@@ -50,7 +50,7 @@ def test_the_glsl_signature_is_the_declaration(node):
     assert [*find_shader_faults(node)] == []
 
 
-SHADERS = sorted(name for name in installed_library().texts if not name.startswith("viewer/"))
+SHADERS = sorted(name for name in load_library().texts if not name.startswith("viewer/"))
 """What passes are made of. The viewer's are whole programs, which never meet a node's."""
 
 
@@ -58,7 +58,7 @@ SHADERS = sorted(name for name in installed_library().texts if not name.startswi
 def test_shader_names_do_not_clash(name):
     """Nothing is called like a GLSL word, and a node's helpers start with its id, so that any two nodes can fuse."""
     assert [*find_file_faults(name, SHADERS)] == []
-    for function in installed_library().texts[name].all_functions:
+    for function in load_library().texts[name].all_functions:
         if not name.startswith(("lib/", "primitive/")):
             assert re.match(rf"{name.rpartition('/')[2]}(_|$)", function.name), function.name
 

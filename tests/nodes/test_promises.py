@@ -14,7 +14,7 @@ from exr_files import write_exr
 from halation import document, media
 from halation.cli.specimen import drawable_outputs, show_on_sample
 from halation.color.transforms import decode_srgb
-from halation.compiler import installed_library
+from halation.compiler import load_library
 from halation.media.comparison.data_range import find_data_range
 from halation.nodes import Kind, Node, Pointwise, built_in_nodes
 from halation.presets import sample
@@ -45,7 +45,7 @@ def noted(node: type[Node], differs: str) -> frozenset[str]:
 def knows_places(node: type[Node]) -> bool:
     """False where each pixel is computed from the same pixel alone: then a proxy cannot differ."""
     words = frozenset({"pixel", "extent", "proxy"})
-    return not issubclass(node, Pointwise) or installed_library().uses(f"{node.category}/{node.id}", words, node.id)
+    return not issubclass(node, Pointwise) or load_library().uses(f"{node.category}/{node.id}", words, node.id)
 
 
 @pytest.fixture(scope="module")

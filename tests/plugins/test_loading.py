@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
-from halation.compiler import installed_library
+from halation.compiler import load_library
 from halation.errors import ShaderError
 from halation.graph import Graph, Port, Unknown, problems
 from halation.nodes import catalogue, plugins
@@ -52,7 +52,7 @@ class Site:
 
 def forget() -> None:
     """Look for plug-ins anew."""
-    for cached in (plugins, catalogue, installed_library):
+    for cached in (plugins, catalogue, load_library):
         cached.cache_clear()
 
 
@@ -86,7 +86,7 @@ def test_built_in_ids_never_look_for_plugins(site: Site, monkeypatch: pytest.Mon
     forget()
     monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: pytest.fail("they are looked up"))
     assert catalogue()["exposure"].id == "exposure" and "no_such_node" not in catalogue()
-    assert installed_library().function("color/exposure", "exposure", "test").result == "vec4"
+    assert load_library().function("color/exposure", "exposure", "test").result == "vec4"
 
 
 def test_a_fault_costs_only_that_plugin(site: Site) -> None:
@@ -170,23 +170,23 @@ def test_functions_of_shaders_have_its_name_in_front(site: Site) -> None:
     shader = code / "shaders" / "tone" / "dim.glsl"
     shader.write_text("vec4 acme_tone_dim(vec4 image, float factor) { return image * factor; }\n")
     forget()
-    assert installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
+    assert load_library().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
     shader.write_text("\nvec4 dim(vec4 image, float factor) { return image * factor; }\n")
     forget()
     with pytest.raises(ShaderError, match=r"acme_tone/shaders/tone/dim.glsl.*'dim'.*must begin with 'acme_tone_'"):
-        installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "test")
+        load_library().function("acme_tone/tone/dim", "acme_tone_dim", "test")
 
 
 def test_a_wheel_without_shaders_says_what_it_lacks(site: Site) -> None:
     site.install("acme-tone", "1.0")
     with pytest.raises(ShaderError) as caught:
-        installed_library().function("acme_tone/tone/dim", "acme_tone_dim", "node")
+        load_library().function("acme_tone/tone/dim", "acme_tone_dim", "node")
     assert str(caught.value) == (
         "node 'node': acme_tone/shaders/tone/dim.glsl: there is no such file; a package brings its shaders if "
         "[tool.setuptools.package-data] in its pyproject.toml names *.glsl"
     )
     with pytest.raises(ShaderError, match=r"shaders/tone/nowhere\.glsl: there is no such shader file$"):
-        installed_library().function("tone/nowhere", "nowhere", "node")
+        load_library().function("tone/nowhere", "nowhere", "node")
 
 
 # --- graphs ----------------------------------------------------------------------------------------------------------

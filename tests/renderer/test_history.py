@@ -8,7 +8,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from halation.compiler import Library, installed_library
+from halation.compiler import Library, load_library
 from halation.compiler.library import parse
 from halation.errors import GraphError, UsageError
 from halation.graph import Graph, Input, Output, Port, Settings
@@ -36,7 +36,7 @@ class Trail(Temporal):
 def engine():
     source = "vec4 trail(vec4 image, vec4 before, float keep) { return mix(image, before, keep); }\n"
     shader = f"{Trail.category}/{Trail.id}"
-    library = Library({**installed_library().texts, shader: parse(shader, source)})
+    library = Library({**load_library().texts, shader: parse(shader, source)})
     made = Renderer(open_device(sandbox=UNRESTRICTED), budget=0, library=library, sandbox=UNRESTRICTED)
     yield made
     made.close()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from device_textures import upload_texture
-from halation.compiler import Library, installed_library
+from halation.compiler import Library, load_library
 from halation.compiler.library import parse
 from halation.errors import UsageError
 from halation.graph import Graph, Group, Input, Output, Port
@@ -110,7 +110,7 @@ def test_a_broken_picture_is_found_where_it_comes_in(renderer):
 def test_the_node_that_breaks_it_is_found_inside_a_group():
     large = np.full((9, 12, 4), 1e38, np.float32)
     careless = "vec4 exposure(vec4 image, float stops) { return vec4(image.rgb * exp2(stops), image.a); }"
-    library = Library({**installed_library().texts, "color/exposure": parse("color/exposure", careless)})
+    library = Library({**load_library().texts, "color/exposure": parse("color/exposure", careless)})
     engine = Renderer(open_device(sandbox=UNRESTRICTED), library=library, sandbox=UNRESTRICTED)
     _, found = search(engine, divided().override("group.light.stops", 9.0), pictures(a=large))
     engine.close()

@@ -7,7 +7,7 @@ import signal
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.compiler import Library, Region, installed_library
+from halation.compiler import Library, Region, load_library
 from halation.compiler.library import parse
 from halation.errors import DeviceError, ShaderError, UsageError
 from halation.graph import Graph, Input, Output, Port
@@ -112,7 +112,7 @@ def test_half_floats_saturate_instead_of_overflowing(run):
 
 
 def test_a_broken_shader_names_node_file_and_line():
-    texts = dict(installed_library().texts)
+    texts = dict(load_library().texts)
     broken = "vec4 exposure(vec4 image, float stops) {\n    float unused = 1.0;\n    return image * stosp;\n}\n"
     texts["color/exposure"] = parse("color/exposure", broken)
     engine = Renderer(open_device(sandbox=UNRESTRICTED), library=Library(texts), sandbox=UNRESTRICTED)

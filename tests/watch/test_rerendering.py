@@ -10,7 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from halation.compiler import installed_library
+from halation.compiler import load_library
 from halation.errors import GraphError, RenderError
 from halation.graph import Graph, Input
 from halation.renderer.jobs.job import JobReport
@@ -72,10 +72,10 @@ def test_a_shader_that_changes_is_read_again(turning, folder: Path) -> None:
     shader.write_text("before")
     turns = turning()
     assert next(turns).changed == ()
-    known = installed_library()
+    known = load_library()
     with written_on(shader):
         turn = next(turns)
-    assert turn.changed == (shader,) and turn.report is DONE and installed_library() is not known
+    assert turn.changed == (shader,) and turn.report is DONE and load_library() is not known
 
 
 def test_a_file_of_a_node_that_is_broken_is_a_turn(turning, folder: Path) -> None:

@@ -71,9 +71,9 @@ def _scan_folders(key: _Key) -> tuple[ShaderFile, ...]:
             except (DocumentError, CodeFault):
                 continue
             inside = path.parent.name if path.parent != Path(folder) else Path(folder).name
-            takes = any(one.type == "image" for one in head.inputs)
+            takes = any(header_input.type == "image" for header_input in head.inputs)
             shaders[path] = ShaderFile(path, (head.categories or (inside,))[0], head.doc.partition("\n")[0], takes)
-    return tuple(sorted(shaders.values(), key=lambda one: (one.category.lower(), one.path.stem.lower())))
+    return tuple(sorted(shaders.values(), key=lambda shader: (shader.category.lower(), shader.path.stem.lower())))
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -96,7 +96,7 @@ class SetInput(EditCommand[None]):
         graph = document.graph
         if self.name not in graph.inputs:
             raise GraphError(f"the graph has no input '{self.name}'")
-        facts = _given_texts(
+        facts = _clean_set_texts(
             file=self.file, layer=self.layer, doc=self.doc, missing=self.missing, color_space=self.color_space
         )
         if not isinstance(self.default, Keep):
@@ -120,7 +120,7 @@ class SetOutput(EditCommand[None]):
         graph = document.graph
         if self.name not in graph.outputs:
             raise GraphError(f"the graph has no output '{self.name}'")
-        changed = replace(graph.outputs[self.name], **_given_texts(layer=self.layer, view=self.view))
+        changed = replace(graph.outputs[self.name], **_clean_set_texts(layer=self.layer, view=self.view))
         graph = replace(graph, outputs={**graph.outputs, self.name: changed})
         return Edited(f"Set outputs.{self.name}", None, graph, merge=self.merge)
 
@@ -137,7 +137,7 @@ def _find_port(graph: Graph, end: ElementId) -> Port:
     return port
 
 
-def _given_texts(**facts: str | None) -> dict[str, Any]:
+def _clean_set_texts(**facts: str | None) -> dict[str, Any]:
     return {name: clean_text(text) for name, text in facts.items() if text is not None}
 
 

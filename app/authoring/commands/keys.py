@@ -143,7 +143,7 @@ def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
 
 def check_not_animated_outside(document: OpenDocument, port: Port) -> None:
     """Raise GraphError for a value that is animated as a control of the group around it."""
-    if outer := document.animated_outside(port):
+    if outer := document.find_outer_animation(port):
         where = "/".join(outer[0]) or "the graph outside"
         raise GraphError(f"{port} is animated as '{outer[1]}' in {where}: change it there")
 

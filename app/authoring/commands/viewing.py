@@ -25,7 +25,7 @@ class AssignViewer(EditCommand[None]):
         if self.number not in VIEWER_NUMBERS:
             raise GraphError(f"there is no viewer {self.number}: choose 1 to 9")
         graph = document.graph
-        port = self.port or _find_active_port(document) or document.viewed()
+        port = self.port or _find_active_port(document) or document.find_viewed_port()
         if port is None or not is_viewable(graph, port):
             raise GraphError("there is nothing to show: select a node first")
         section = graph.ui.get("viewers")

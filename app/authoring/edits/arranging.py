@@ -27,11 +27,11 @@ def arrange(graph: Graph, chosen: Collection[ElementId] | None, places: Places, 
     for frame in list_decor(graph, "frame"):
         members = [key for key in find_frame_members(graph, frame, places, sizes) if can_be_linked(key, graph)]
         if members and set(members) <= set(elements):
-            before, now = (bounds(graph, members, where, sizes) for where in (places, {**places, **new_places}))
+            before, new_bounds = (bounds(graph, members, where, sizes) for where in (places, {**places, **new_places}))
             box = bounds(graph, [frame], places, sizes)
             low, high = [box[side] - before[side] for side in (0, 1)], [box[side] - before[side] for side in (2, 3)]
-            x, y = now[0] + low[0], now[1] + low[1]
-            after = set_box(after, frame, x, y, now[2] + high[0] - x, now[3] + high[1] - y)
+            x, y = new_bounds[0] + low[0], new_bounds[1] + low[1]
+            after = set_box(after, frame, x, y, new_bounds[2] + high[0] - x, new_bounds[3] + high[1] - y)
     return after
 
 

@@ -67,7 +67,7 @@ def read_part(text: str, folder: str, types: Types, sandbox: Sandbox) -> Graph:
     graph = loads(
         text, "clipboard", stated_folder if isinstance(stated_folder, str) else folder, types, sandbox=sandbox
     )
-    return rebase_paths(replace(graph, extra={path: kept for path, kept in graph.extra.items() if path}), folder)
+    return rebase_paths(replace(graph, extra={path: facts for path, facts in graph.extra.items() if path}), folder)
 
 
 def paste_part(
@@ -84,10 +84,10 @@ def paste_part(
     of a loose one. With `keep_links`, links from what is not in `part` stay where that exists. Raises GraphError.
     """
     ends = _name_ends(graph, part)
-    known = set(list_elements(graph))
+    existing = set(list_elements(graph))
     combined = merge_part(_add_ends(graph, part, ends), part, {})
     names = {**combined.names, **ends}
-    put = {key: name for key, name in names.items() if name not in known}
+    put = {key: name for key, name in names.items() if name not in existing}
     if not put:
         raise GraphError("there is nothing in it to paste")
     spots = _place_part({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)

@@ -92,7 +92,7 @@ def make_file_node(file: str, folder: str, sandbox: Sandbox) -> Item:
 
 def set_code(graph: Graph, id: str, code: Code) -> Graph:
     """A graph where a node has that code. Links, values and what animates them stay where names and types agree."""
-    return _replace_node(graph, id, make_code_node(code, _changed_values(graph.node(id))))
+    return _replace_node(graph, id, make_code_node(code, _list_changed_values(graph.node(id))))
 
 
 def file_texts(graph: Graph) -> dict[Path, str]:
@@ -127,7 +127,7 @@ def reread_file_code(graph: Graph, file: Path, sandbox: Sandbox) -> Graph:
         try:
             disk_code = read_code_file(code.language, code.file, body.folder, sandbox=sandbox)
         except CodeFault as fault:
-            return _replace_node(body, id, _make_broken(code, fault, _changed_values(item)))
+            return _replace_node(body, id, _make_broken(code, fault, _list_changed_values(item)))
         return (
             body
             if disk_code == code and isinstance(item, CustomNode | BrokenCodeNode)
@@ -170,7 +170,7 @@ def _map_code_nodes(
     return after
 
 
-def _changed_values(item: Item) -> Mapping[str, Any]:
+def _list_changed_values(item: Item) -> Mapping[str, Any]:
     """What is set of a node: the values that are not at their default."""
     if isinstance(item, Unknown):
         raw = item.raw.get("values")
@@ -198,6 +198,6 @@ def _make_broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Bro
 
 def _replace_node(graph: Graph, id: str, item: Item) -> Graph:
     """The graph with another node in that place; keys of the document that mean nothing here stay with it."""
-    extra = {key: kept for key, kept in graph.extra.items() if key == f"nodes.{id}"}
+    extra = {key: facts for key, facts in graph.extra.items() if key == f"nodes.{id}"}
     after = graph.replace(id, item)
     return replace(after, extra={**after.extra, **extra}) if extra and extra.keys() - after.extra.keys() else after

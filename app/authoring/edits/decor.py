@@ -87,9 +87,9 @@ def find_frame_members(
         return frozenset()
     left, top, right, bottom = bounds(graph, [frame], places, sizes)
     members = set[ElementId]()
-    for other in list_elements(graph):
-        if other != frame and other in places:
-            (x, y), (width, height) = places[other], element_size(graph, other, sizes)
+    for element in list_elements(graph):
+        if element != frame and element in places:
+            (x, y), (width, height) = places[element], element_size(graph, element, sizes)
             if left <= x and top <= y and x + width <= right and y + height <= bottom:
-                members.add(other)
+                members.add(element)
     return frozenset(members)

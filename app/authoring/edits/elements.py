@@ -92,8 +92,8 @@ def with_sections(graph: Graph, sections: Mapping[str, Mapping[str, Any]]) -> Gr
 
 def fresh_decor(graph: Graph, kind: DecorKind) -> ElementId:
     """A free id for a frame, comment or dot: `f1`, `f2`, ..."""
-    taken, number = list_decor(graph, kind), 1
-    while (element := ElementId.of(kind, f"{kind[0]}{number}")) in taken:
+    existing, number = list_decor(graph, kind), 1
+    while (element := ElementId.of(kind, f"{kind[0]}{number}")) in existing:
         number += 1
     return element
 

@@ -44,10 +44,10 @@ def layer_numbers(
     rank = {name: place for place, name in enumerate(order)}
     number: dict[str, int] = {}
     for name in order:
-        number[name] = max((number[one] + 1 for one in fed[name] if rank[one] < rank[name]), default=0)
+        number[name] = max((number[source] + 1 for source in fed[name] if rank[source] < rank[name]), default=0)
     fixed, ends = set(first), set(last)
     for name in reversed(order):
-        readers = [number[one] for one in feeds[name] if rank[one] > rank[name] and one not in ends]
+        readers = [number[reader] for reader in feeds[name] if rank[reader] > rank[name] and reader not in ends]
         if name not in fixed and not fed[name] and readers:
             number[name] = max(min(readers) - 1, number[name])
     bottom = max((number[name] + (name not in ends) for name in names), default=0)
@@ -93,7 +93,7 @@ def _order_by_links(names: Sequence[str], fed: Mapping[str, Sequence[str]]) -> l
             elif name not in state:
                 state[name] = True
                 todo.append((name, True))
-                todo += [(one, False) for one in reversed(fed[name]) if one not in state]
+                todo += [(source, False) for source in reversed(fed[name]) if source not in state]
     return order
 
 
@@ -131,7 +131,7 @@ def _uncross(layering: BoxLayers) -> None:
             place = {name: number for number, name in enumerate(beside)}
             neighbors = layering.before if down else layering.after
             own = {name: number for number, name in enumerate(layering.layers[index])}
-            mean_places = {name: _mean([place[one] for one in neighbors[name]], own[name]) for name in own}
+            mean_places = {name: _mean([place[neighbor] for neighbor in neighbors[name]], own[name]) for name in own}
             layering.layers[index].sort(key=lambda name: (mean_places[name], own[name]))
         if (count := _count_crossings(layering)) < fewest:
             best, fewest = [list(layer) for layer in layering.layers], count
@@ -143,7 +143,7 @@ def _count_crossings(layering: BoxLayers) -> int:
     total = 0
     for upper, lower in pairwise(layering.layers):
         place = {name: number for number, name in enumerate(lower)}
-        ends = [number for name in upper for number in sorted(place[one] for one in layering.after[name])]
+        ends = [number for name in upper for number in sorted(place[neighbor] for neighbor in layering.after[name])]
         passed: list[int] = []
         for end in ends:
             low, high = 0, len(passed)
@@ -162,20 +162,24 @@ def _find_tops(layering: BoxLayers, heights: Mapping[str, float], gap: float) ->
     below: dict[str, dict[str, float]] = {root: {} for root in line.values()}
     for layer in layering.layers:
         for upper, lower in pairwise(layer):
-            one, lower_line, need = line[upper], line[lower], heights[upper] + gap
-            below[one][lower_line] = above[lower_line][one] = max(need, below[one].get(lower_line, 0.0))
+            upper_line, lower_line, need = line[upper], line[lower], heights[upper] + gap
+            below[upper_line][lower_line] = above[lower_line][upper_line] = max(
+                need, below[upper_line].get(lower_line, 0.0)
+            )
     order = sort_topologically({root: sorted(above[root]) for root in sorted(above)})
     tops: dict[str, float] = {}
     for root in order:
-        tops[root] = max((tops[one] + need for one, need in above[root].items()), default=0.0)
+        tops[root] = max((tops[upper_line] + need for upper_line, need in above[root].items()), default=0.0)
     beside: dict[str, list[str]] = {root: [] for root in above}
     for name, root in line.items():
-        beside[root] += [line[one] for one in (*layering.before[name], *layering.after[name]) if line[one] != root]
+        beside[root] += [
+            line[neighbor] for neighbor in (*layering.before[name], *layering.after[name]) if line[neighbor] != root
+        ]
     for sweep in range(_SWEEPS):
         for root in order[::-1] if sweep % 2 == 0 else order:
-            low = max((tops[one] + need for one, need in above[root].items()), default=-math.inf)
-            high = min((tops[one] - need for one, need in below[root].items()), default=math.inf)
-            target_top = _median([tops[one] for one in beside[root]], tops[root])
+            low = max((tops[upper_line] + need for upper_line, need in above[root].items()), default=-math.inf)
+            high = min((tops[lower_line] - need for lower_line, need in below[root].items()), default=math.inf)
+            target_top = _median([tops[neighbor] for neighbor in beside[root]], tops[root])
             tops[root] = max(low, min(target_top, high))
     return {name: tops[root] for name, root in line.items()}
 
@@ -189,18 +193,20 @@ def _find_straight_lines(layering: BoxLayers) -> dict[str, str]:
     for upper, lower in pairwise(layering.layers):
         place = {name: number for number, name in enumerate(upper)}
         long = [
-            (place[one], number)
+            (place[feeder], number)
             for number, name in enumerate(lower)
             if name in layering.virtual
-            for one in layering.before[name]
-            if one in layering.virtual
+            for feeder in layering.before[name]
+            if feeder in layering.virtual
         ]
         reached = -1
         for number, name in enumerate(lower):
-            sources = sorted(place[one] for one in layering.before[name])
+            sources = sorted(place[feeder] for feeder in layering.before[name])
             middle = len(sources) // 2
             for source in sources[(len(sources) - 1) // 2 : middle + 1]:
-                crosses = any((one < source) != (end < number) and one != source for one, end in long if end != number)
+                crosses = any(
+                    (start < source) != (end < number) and start != source for start, end in long if end != number
+                )
                 if source > reached and not crosses:
                     line[name] = line[upper[source]]
                     reached = source

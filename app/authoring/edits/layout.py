@@ -55,7 +55,7 @@ def lay_out(graph: Graph, elements: Collection[ElementId], sizes: Sizes | None =
     links = [pair for pair in element_links(graph) if pair[0] in rest and pair[1] in rest]
     places: dict[ElementId, Place] = {}
     top, unlinked = 0.0, list[ElementId]()
-    for part in _connected_parts(list(rest), links):
+    for part in _find_connected_parts(list(rest), links):
         if len(part) == 1:
             unlinked += part
             continue
@@ -95,15 +95,15 @@ def bounds(
     )
 
 
-def shift_off(places: Places, others: Collection[Place]) -> dict[ElementId, Place]:
-    """`places` moved together until none is exactly where one of the `others` is."""
-    step, occupied = 0, set(others)
+def shift_off(places: Places, occupied_places: Collection[Place]) -> dict[ElementId, Place]:
+    """`places` moved together until none is exactly where one of `occupied_places` is."""
+    step, occupied = 0, set(occupied_places)
     while any((x + step * OFFSET, y + step * OFFSET) in occupied for x, y in places.values()):
         step += 1
     return {key: (x + step * OFFSET, y + step * OFFSET) for key, (x, y) in places.items()}
 
 
-def _connected_parts(names: list[ElementId], links: list[tuple[ElementId, ElementId]]) -> list[list[ElementId]]:
+def _find_connected_parts(names: list[ElementId], links: list[tuple[ElementId, ElementId]]) -> list[list[ElementId]]:
     """The names that links hold together, in the order of `names`."""
     beside: dict[ElementId, list[ElementId]] = {name: [] for name in names}
     for start, end in links:
@@ -137,10 +137,10 @@ def _place_beside(graph: Graph, key: ElementId, places: Places, sizes: Sizes | N
     readers = [end for start, end in links if start == key and end in places]
     width = element_size(graph, key, sizes)[0]
     if feeders:
-        nearest = max(feeders, key=lambda one: places[one][0])
+        nearest = max(feeders, key=lambda element: places[element][0])
         spot = (places[nearest][0] + element_size(graph, nearest, sizes)[0] + GAP[0], places[nearest][1])
     elif readers:
-        nearest = min(readers, key=lambda one: places[one][0])
+        nearest = min(readers, key=lambda element: places[element][0])
         spot = (places[nearest][0] - width - GAP[0], places[nearest][1])
     else:
         left, _, right, _ = bounds(graph, places, places, sizes)
@@ -152,7 +152,9 @@ def _place_beside(graph: Graph, key: ElementId, places: Places, sizes: Sizes | N
 def _find_free_place(graph: Graph, key: ElementId, spot: Place, places: Places, sizes: Sizes | None) -> Place:
     """The nearest place below `spot` where an element covers no other node or end."""
     width, height = element_size(graph, key, sizes)
-    boxes = [(*at, *element_size(graph, one, sizes)) for one, at in places.items() if can_be_linked(one, graph)]
+    boxes = [
+        (*at, *element_size(graph, element, sizes)) for element, at in places.items() if can_be_linked(element, graph)
+    ]
     x, y = spot
     while True:
         covered_bottoms = [

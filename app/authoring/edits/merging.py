@@ -62,8 +62,8 @@ def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
     new_ids = {ElementId(old): ElementId(new) for old, new in names.items()}
     for kind in DECOR:
         for old, facts in list_decor(part, kind).items():
-            taken = {other.name for other in list_decor(after, kind)}
-            new_ids[old] = ElementId.of(kind, name_copy(old.name, taken))
+            used_names = {decor.name for decor in list_decor(after, kind)}
+            new_ids[old] = ElementId.of(kind, name_copy(old.name, used_names))
             after = with_entries(after, {new_ids[old]: facts})
     nodes = map(ElementId, part.nodes)
     after = with_entries(after, {new_ids[node]: facts for node in nodes if (facts := entry(part, node))})

@@ -16,15 +16,15 @@ def node_stem(path: str | Path) -> str:
     return name if name_fault(name, "node") is None else f"{name}_file"
 
 
-def name_copy(name: str, taken: Container[str], kind: str = "") -> str:
+def name_copy(name: str, used_names: Container[str], kind: str = "") -> str:
     """A free name for a copy: `blur2` for `blur`, `n4` for `n3`; digits that belong to its `kind` are left alone."""
-    if name not in taken:
+    if name not in used_names:
         return name
     head = name.rstrip("0123456789")
     if len(head) < len(kind) and name.startswith(kind):
         head = kind
     number = int(name[len(head) :] or 1) + 1
-    while f"{head}{number}" in taken:
+    while f"{head}{number}" in used_names:
         number += 1
     return f"{head}{number}"
 

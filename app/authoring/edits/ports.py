@@ -47,7 +47,7 @@ def default_view(graph: Graph) -> Port | None:
     return next(ports, None) or next((Port(INPUTS, name) for name in graph.inputs), None)
 
 
-def numbered_ports(graph: Graph) -> Mapping[int, Port]:
+def list_numbered_ports(graph: Graph) -> Mapping[int, Port]:
     """The ports that the number keys recall, as far as they exist."""
     section, ports = graph.ui.get("viewers"), dict[int, Port]()
     for number in VIEWER_NUMBERS:

@@ -52,8 +52,8 @@ def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[ElementId, ...]]:
 class _OpenedGroup:
     """A group `id` of `graph` whose `body` was merged into it."""
 
-    def __init__(self, graph: Graph, id: str, body: Graph, found: MergedPart) -> None:
-        self.graph, self.id, self.body, self.found = graph, id, body, found
+    def __init__(self, graph: Graph, id: str, body: Graph, merged_part: MergedPart) -> None:
+        self.graph, self.id, self.body, self.merged_part = graph, id, body, merged_part
         input_names, self.hoisted = set(graph.inputs), dict[str, str]()
         for name in body.inputs:
             self.hoisted[name] = fresh_name(name, input_names)
@@ -63,11 +63,11 @@ class _OpenedGroup:
         """Links across the border of the group, joined, and inputs of it that the graph needs now."""
         links: dict[Port, Port | None] = {}
         for target, source in self.body.links.items():
-            if source.node == INPUTS and (end := self.found.port(target)):
+            if source.node == INPUTS and (end := self.merged_part.port(target)):
                 links[end] = self._source(source)
         for target, source in self.graph.links.items():
             if target.node == self.id:
-                if (end := self._control(target.socket)) and end not in self.found.graph.links:
+                if (end := self._control(target.socket)) and end not in self.merged_part.graph.links:
                     links.setdefault(end, None if source.node == self.id else source)
             elif source.node == self.id:
                 links[target] = self._source(self.body.links.get(Port(OUTPUTS, source.socket)))
@@ -88,12 +88,12 @@ class _OpenedGroup:
         """`after` with routes joined, and viewers on what the group showed."""
         outer, inner, passed = routes(self.graph), routes(self.body), routes(after)
         for target, source in self.body.links.items():
-            if source.node == INPUTS and (end := self.found.port(target)):
+            if source.node == INPUTS and (end := self.merged_part.port(target)):
                 dots = outer.get(str(Port(self.id, source.socket)), ())
-                passed[str(end)] = (*dots, *rename_dots(self.found, inner.get(str(target), ())))
+                passed[str(end)] = (*dots, *rename_dots(self.merged_part, inner.get(str(target), ())))
         for target, source in self.graph.links.items():
             if source.node == self.id != target.node:
-                dots = rename_dots(self.found, inner.get(str(Port(OUTPUTS, source.socket)), ()))
+                dots = rename_dots(self.merged_part, inner.get(str(Port(OUTPUTS, source.socket)), ()))
                 passed[str(target)] = (*dots, *outer.get(str(target), ()))
         ends = {str(end) for end in after.links}
         passed = {target: dots for target, dots in passed.items() if dots and target in ends}
@@ -112,7 +112,7 @@ class _OpenedGroup:
     def _source(self, port: Port | None) -> Port | None:
         """What a source inside the group is, seen from the graph; None if there is nothing."""
         if port is None or port.node != INPUTS:
-            return port and self.found.port(port)
+            return port and self.merged_part.port(port)
         outside = self.graph.links.get(Port(self.id, port.socket))
         if outside is not None:
             return outside if outside.node != self.id else None
@@ -122,7 +122,7 @@ class _OpenedGroup:
     def _control(self, name: str) -> Port | None:
         """What a control of the group turns, seen from the graph."""
         is_control = name in self.body.controls and name not in self.body.inputs
-        return self.found.port(self.body.controls[name].target) if is_control else None
+        return self.merged_part.port(self.body.controls[name].target) if is_control else None
 
 
 def _remove_group(graph: Graph, id: str) -> Graph:

@@ -66,7 +66,7 @@ def link_node(graph: Graph, id: str, port: Port, output: bool) -> Graph:
     return graph.connect(first_source(graph, id, port), port)
 
 
-def fitting_types(graph: Graph, port: Port, is_output: bool, types: Types) -> tuple[str, ...]:
+def list_fitting_types(graph: Graph, port: Port, is_output: bool, types: Types) -> tuple[str, ...]:
     """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
     if is_output:
         start = graph.source(port)
@@ -142,7 +142,7 @@ def _put_chain_between(graph: Graph, first: str, last: str, target: Port) -> Gra
 def remove_node(graph: Graph, id: str, heal: bool = True) -> Graph:
     """A graph without a node. With `heal` its links are joined where they fit, and so are their dots."""
     after = graph.remove(id, heal)
-    into = {graph.links[Port(id, name)]: Port(id, name) for name in reversed(_linked_inputs(graph, id))}
+    into = {graph.links[Port(id, name)]: Port(id, name) for name in reversed(_list_linked_inputs(graph, id))}
     joined: dict[Port, tuple[str, ...]] = {}
     for target, source in graph.links.items():
         if source.node == id and (source := after.links.get(target)) in into:
@@ -211,7 +211,7 @@ def _wireable_ends(kind: type[Node]) -> list[Socket | Value]:
     return [*kind.inputs.values(), *wires]
 
 
-def _linked_inputs(graph: Graph, id: str) -> list[str]:
+def _list_linked_inputs(graph: Graph, id: str) -> list[str]:
     face = signature(graph.node(id))
     names = face.inputs or sorted(port.socket for port in graph.links if port.node == id)
     return [name for name in names if Port(id, name) in graph.links]

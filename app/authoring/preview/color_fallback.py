@@ -18,7 +18,7 @@ class ColorFallback:
     """The last answer: a config that cannot be read is not tried again before it changes."""
 
     sandbox: Sandbox
-    asked: ColorManager | None = None
+    requested_manager: ColorManager | None = None
     manager: ColorManager | None = None
     fault: str = ""
     """Why the built-in config stands in."""
@@ -26,8 +26,8 @@ class ColorFallback:
     def resolve(self, color: ColorSettings) -> ColorManager:
         """How colors are managed by these settings, or by those that stand in for them."""
         manager = get_color_manager(color, self.sandbox)
-        if self.manager is None or manager is not self.asked:
-            self.asked, self.manager, self.fault = manager, manager, ""
+        if self.manager is None or manager is not self.requested_manager:
+            self.requested_manager, self.manager, self.fault = manager, manager, ""
             try:
                 if not manager.is_plain:
                     _ = manager.config, manager.working

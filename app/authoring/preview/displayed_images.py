@@ -52,7 +52,7 @@ class DisplayedImage:
 class _LeasedImage:
     """What a panel shows, and the lease that keeps it."""
 
-    shown: DisplayedImage
+    image: DisplayedImage
     lease: TextureLease
 
 
@@ -70,12 +70,12 @@ class DisplayedImages:
     def find(self, name: str) -> DisplayedImage | None:
         """What a panel shows."""
         picture = self._pictures.get(name)
-        return picture and picture.shown
+        return picture and picture.image
 
     def find_part(self, name: str) -> DisplayedImage | None:
         """The part of a newer picture, where no more is there of it."""
         picture = self._parts.get(name)
-        return picture and picture.shown
+        return picture and picture.image
 
     def show(self, name: str, port: Port, wish: PreviewRequest, face: FrameImage) -> None:
         """Let a panel show something else."""
@@ -96,7 +96,7 @@ class DisplayedImages:
         self, before: _LeasedImage | None, port: Port, wish: PreviewRequest, face: FrameImage, size: Size
     ) -> _LeasedImage:
         surface = face.surface
-        same = before is not None and before.shown.key == surface.key
+        same = before is not None and before.image.key == surface.key
         lease = self._runner.create_lease()
         lease.add(surface.key)
         texture = self._runner.find_texture(surface.key)
@@ -112,7 +112,7 @@ class DisplayedImages:
                 pixel_kind(wish.graph, port, surface.channels),
                 surface.channels,
                 surface.key,
-                before.shown.revision if before is not None and same else self._revision,
+                before.image.revision if before is not None and same else self._revision,
                 wish.frame,
                 surface.window.start if surface.window else (0, 0),
             ),

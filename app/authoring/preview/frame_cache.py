@@ -77,13 +77,13 @@ class FrameCache:
 
     def list_frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
         """The frames that are on the device, in order; what had to make room is noticed a moment later."""
-        now = time.monotonic()
+        time_now = time.monotonic()
         asked_names, looked_up_at, frames = self._last_lookup
-        if asked_names != tuple(names) or now - looked_up_at > LOOK_AGAIN:
+        if asked_names != tuple(names) or time_now - looked_up_at > LOOK_AGAIN:
             frames = tuple(
                 sorted(frame for frame, faces in self._images_by_frame.items() if is_on_device(faces, names, renderer))
             )
-            self._last_lookup = tuple(names), now, frames
+            self._last_lookup = tuple(names), time_now, frames
         return frames
 
     @property

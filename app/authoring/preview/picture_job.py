@@ -73,8 +73,8 @@ class PictureJob:
         if self.run is None and self.planned_frames[0] < self.planned_frames[1]:
             planned, total = self.planned_frames
             return "plan", planned, total
-        done, total = self.preroll
-        return ("pre-roll", done, total) if total and done < total else None
+        finished, total = self.preroll
+        return ("pre-roll", finished, total) if total and finished < total else None
 
     def step(self) -> bool:
         """Do a little; True when all is done."""

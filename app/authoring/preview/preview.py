@@ -142,11 +142,11 @@ class Preview:
 
     # --- what the editor asks ----------------------------------------------------------------------------------------
 
-    def shown(self, name: str) -> DisplayedImage | None:
+    def find_whole_image(self, name: str) -> DisplayedImage | None:
         """The last good picture for a panel, until the new one is ready. It is whole."""
         return self._shelf.find(name)
 
-    def seen(self, name: str) -> DisplayedImage | None:
+    def find_visible_image(self, name: str) -> DisplayedImage | None:
         """The same, or the part of a newer one that can be seen."""
         return self._shelf.find_part(name) or self._shelf.find(name)
 
@@ -176,8 +176,8 @@ class Preview:
     @property
     def completing(self) -> bool:
         """True while all that can be seen is ready, but not the rest."""
-        now, peeks = self._round, self._job is not None and self._job.part is not None
-        return now is not None and now.part is not None and self.busy and not (peeks or self._is_behind())
+        work, peeks = self._round, self._job is not None and self._job.part is not None
+        return work is not None and work.part is not None and self.busy and not (peeks or self._is_behind())
 
     @property
     def remembers(self) -> bool:
@@ -256,11 +256,11 @@ class Preview:
     @property
     def _looks_ahead(self) -> bool:
         """True if there is a frame to be computed for later."""
-        now, frame = self._round, self.ahead
-        if frame is None or now is None or self._job is not None or now.queue or now.broken or not now.wish.ports:
+        work, frame = self._round, self.ahead
+        if frame is None or work is None or self._job is not None or work.queue or work.broken or not work.wish.ports:
             return False
-        take = now.wish.frame_cache
-        return frame not in take.failed_frames and take.find(frame, now.wish.ports, self.renderer) is None
+        take = work.wish.frame_cache
+        return frame not in take.failed_frames and take.find(frame, work.wish.ports, self.renderer) is None
 
     def _advance(self) -> bool:
         """Do the next thing; False if there is nothing to do now."""
@@ -302,99 +302,99 @@ class Preview:
 
     def _may_restart(self, wish: PreviewRequest) -> bool:
         """Let a run that was begun for the same panels come to its end if that is soon."""
-        now, job = self._round, self._job
-        if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
+        work, job = self._round, self._job
+        if work is None or job is None or work.wish.ports != wish.ports or work.wish.scale != wish.scale or job.ahead:
             return True
-        if now.part and not job.part:
+        if work.part and not job.part:
             return True
-        return self.clock() - now.started_at > self.patience
+        return self.clock() - work.started_at > self.patience
 
-    def _peek(self, now: PreviewWork) -> bool:
+    def _peek(self, work: PreviewWork) -> bool:
         """Begin with what can be seen, where that is a part of what is still to be done."""
         job, glimpse = self._job, self.glimpse
-        if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or now.queue):
+        if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or work.queue):
             return False
-        now.tried_region, found = glimpse, begin_visible_part(self.renderer, now.wish, glimpse)
-        if found is None or found.plan is None:
+        work.tried_region, glimpse_job = glimpse, begin_visible_part(self.renderer, work.wish, glimpse)
+        if glimpse_job is None or glimpse_job.plan is None:
             return False
         if job is not None:
             job.close()
-            now.queue.insert(0, job.ports)
-        self._job, self._cameras = found, {**self._cameras, **found.plan.cameras}
+            work.queue.insert(0, job.ports)
+        self._job, self._cameras = glimpse_job, {**self._cameras, **glimpse_job.plan.cameras}
         return True
 
-    def _compile(self, now: PreviewWork) -> bool:
+    def _compile(self, work: PreviewWork) -> bool:
         """Begin with the next ports; False if there are none."""
         if self._looks_ahead and self.ahead is not None:
-            ports, frame, ahead = now.wish.ports, self.ahead, True
-        elif not now.queue or now.must_wait(self.clock()):
+            ports, frame, ahead = work.wish.ports, self.ahead, True
+        elif not work.queue or work.must_wait(self.clock()):
             return False
         else:
-            ports, frame, ahead = now.queue.pop(0), now.wish.frame, False
-        now.pending = None
+            ports, frame, ahead = work.queue.pop(0), work.wish.frame, False
+        work.pending = None
         try:
-            self._job = PictureJob(self.renderer, now.wish, ports, frame, self.timed, ahead)
+            self._job = PictureJob(self.renderer, work.wish, ports, frame, self.timed, ahead)
         except HalationError as error:
-            return self._ended(now, ports, frame if ahead else None, error)
+            return self._add_fault(work, ports, frame if ahead else None, error)
         if self._job.plan is not None and not ahead:
             self._cameras |= self._job.plan.cameras
         return True
 
-    def _step(self, now: PreviewWork, job: PictureJob) -> None:
+    def _step(self, work: PreviewWork, job: PictureJob) -> None:
         try:
-            done = job.step()
+            is_complete = job.step()
             if job.run is not None:
                 with self.renderer.device.make_current():
                     self.renderer.device.finish()
         except HalationError as error:
             job.close()
             self._job = None
-            self._ended(now, job.ports, job.frame if job.ahead else None, error)
+            self._add_fault(work, job.ports, job.frame if job.ahead else None, error)
             return
-        if done and job.plan is not None:
+        if is_complete and job.plan is not None:
             self._job = None
-            now.passes += 0 if job.ahead else job.finished_passes
+            work.passes += 0 if job.ahead else job.finished_passes
             if job.part is not None:
                 self._shelf.show_part(job.wish, job.ports, job.plan, job.part)
-                now.part = job.part
+                work.part = job.part
                 job.lease.close()
                 return
             self.seconds = time.perf_counter() - job.started_at
-            self._finished(now, job, job.plan)
-            self._settle(now)
+            self._publish_images(work, job, job.plan)
+            self._settle(work)
 
-    def _ended(self, now: PreviewWork, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
+    def _add_fault(self, work: PreviewWork, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
         """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
         if ahead is not None:
-            now.wish.frame_cache.failed_frames.add(ahead)
+            work.wish.frame_cache.failed_frames.add(ahead)
         elif isinstance(error, OverviewPending):
-            now.queue.insert(0, ports)
-            now.pending = error
+            work.queue.insert(0, ports)
+            work.pending = error
             return False
         else:
-            now.note_failure(ports, error)
-            self._settle(now)
+            work.note_failure(ports, error)
+            self._settle(work)
         return True
 
-    def _settle(self, now: PreviewWork) -> None:
+    def _settle(self, work: PreviewWork) -> None:
         """What was wrong before is known to be over only when all has been tried."""
-        self.errors = MappingProxyType({**(self.errors if now.queue else {}), **now.faults})
+        self.errors = MappingProxyType({**(self.errors if work.queue else {}), **work.faults})
         self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
 
-    def _finished(self, now: PreviewWork, job: PictureJob, plan: Plan) -> None:
+    def _publish_images(self, work: PreviewWork, job: PictureJob, plan: Plan) -> None:
         wish, faces = job.wish, dict[str, FrameImage]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
             faces[name] = FrameImage(surface, self._shelf.full_size(port, wish, plan, surface.size))
             if not job.ahead:
                 self._shelf.show(name, port, wish, faces[name])
-        wish.frame_cache.add_frame(job.frame, faces, self.renderer, now.wish.frame)
+        wish.frame_cache.add_frame(job.frame, faces, self.renderer, work.wish.frame)
         job.lease.close()
         if job.ahead:
             return
         self._cameras |= plan.cameras
         if job.timings is not None:
-            now.timings |= self._stopwatch.note(plan, job.timings)
-            self._timings = now.timings
-        subjects = list_thumbnail_sources(now.wish, plan) if self.thumbnailing and not self.skims else {}
-        self._thumbnails.offer(subjects, color_settings(now.wish.graph))
+            work.timings |= self._stopwatch.note(plan, job.timings)
+            self._timings = work.timings
+        subjects = list_thumbnail_sources(work.wish, plan) if self.thumbnailing and not self.skims else {}
+        self._thumbnails.offer(subjects, color_settings(work.wish.graph))

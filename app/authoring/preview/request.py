@@ -43,21 +43,21 @@ class PreviewRequest:
         """True where nothing but the frame differs."""
         return replace(self, frame=before.frame).wants_same_pixels(before)
 
-    def wants_same_pixels(self, other: PreviewRequest) -> bool:
+    def wants_same_pixels(self, request: PreviewRequest) -> bool:
         """True where the same pixels are wanted; layout does not matter."""
         return (
-            self.ports == other.ports
-            and self.scale == other.scale
-            and self.has_same_outside(other)
-            and (self.graph is other.graph or _pixel_facts(self.graph) == _pixel_facts(other.graph))
+            self.ports == request.ports
+            and self.scale == request.scale
+            and self.has_same_outside(request)
+            and (self.graph is request.graph or _pixel_facts(self.graph) == _pixel_facts(request.graph))
         )
 
-    def has_same_outside(self, other: PreviewRequest) -> bool:
+    def has_same_outside(self, request: PreviewRequest) -> bool:
         """True where all that comes from outside of the graph is the same."""
         return (
-            (self.frame, self.size) == (other.frame, other.size)
-            and self.bindings.keys() == other.bindings.keys()
-            and all(_is_same_binding(item, other.bindings[name]) for name, item in self.bindings.items())
+            (self.frame, self.size) == (request.frame, request.size)
+            and self.bindings.keys() == request.bindings.keys()
+            and all(_is_same_binding(item, request.bindings[name]) for name, item in self.bindings.items())
         )
 
     def node_mark(self, path: str) -> object:
@@ -82,10 +82,10 @@ def _pixel_facts(graph: Graph) -> tuple[Any, ...]:
     )
 
 
-def _is_same_binding(one: Binding, other: Binding) -> bool:
+def _is_same_binding(first: Binding, second: Binding) -> bool:
     """Arrays are the same where they are one object: comparing all pixels in every frame would be slow."""
     plain = (str, PurePath, float, int, tuple)
-    return one is other or (isinstance(one, plain) and isinstance(other, plain) and one == other)
+    return first is second or (isinstance(first, plain) and isinstance(second, plain) and first == second)
 
 
 def canvas_path(port: Port) -> str:

@@ -20,9 +20,9 @@ class NodeTiming:
     shared: tuple[str, ...]
 
 
-def pass_key(plan: Plan, one: Pass) -> str:
+def pass_key(plan: Plan, pass_: Pass) -> str:
     """What stands for a pass: equal keys took equal work."""
-    return plan.surfaces[one.targets[0]].key
+    return plan.surfaces[pass_.targets[0]].key
 
 
 class PassTimes:
@@ -33,7 +33,7 @@ class PassTimes:
 
     def note(self, plan: Plan, timings: Iterable[tuple[Pass, float]]) -> dict[str, NodeTiming]:
         """Passes of a plan have been timed: what is known of all its nodes."""
-        self._seconds |= {pass_key(plan, one): seconds for one, seconds in timings}
+        self._seconds |= {pass_key(plan, pass_): seconds for pass_, seconds in timings}
         while len(self._seconds) > MOST_SECONDS:
             self._seconds.pop(next(iter(self._seconds)))
         return sum_node_timings(plan, self._seconds)
@@ -46,14 +46,16 @@ class PassTimes:
 def sum_node_timings(plan: Plan, seconds: Mapping[str, float]) -> dict[str, NodeTiming]:
     """Times of all nodes of a plan whose passes have been timed."""
     timings: dict[str, NodeTiming] = {}
-    for one in plan.passes:
-        if pass_key(plan, one) not in seconds:
+    for pass_ in plan.passes:
+        if pass_key(plan, pass_) not in seconds:
             continue
-        wrote = sum(plan.surfaces[number].nbytes for number in one.targets)
-        for node in one.nodes:
+        wrote = sum(plan.surfaces[number].nbytes for number in pass_.targets)
+        for node in pass_.nodes:
             before = timings.get(node, NodeTiming(0.0, 0, ()))
-            others = dict.fromkeys((*before.shared, *(other for other in one.nodes if other != node)))
+            shared_nodes = dict.fromkeys(
+                (*before.shared, *(shared_node for shared_node in pass_.nodes if shared_node != node))
+            )
             timings[node] = NodeTiming(
-                before.seconds + seconds[pass_key(plan, one)], before.bytes + wrote, tuple(others)
+                before.seconds + seconds[pass_key(plan, pass_)], before.bytes + wrote, tuple(shared_nodes)
             )
     return timings

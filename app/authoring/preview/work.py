@@ -43,9 +43,9 @@ class PreviewWork:
             return False
         return glimpse.names <= self.wish.ports.keys() and not (self.part and self.part.shows(glimpse))
 
-    def must_wait(self, now: float) -> bool:
-        """True while the first of the queue must not be begun; `now` is of the clock of `started_at`."""
-        if self.part is not None and now - self.started_at < REST:
+    def must_wait(self, clock_time: float) -> bool:
+        """True while the first of the queue must not be begun; `clock_time` is of the clock of `started_at`."""
+        if self.part is not None and clock_time - self.started_at < REST:
             return True
         return self.pending is not None and not self.pending.ready()
 

@@ -118,13 +118,13 @@ class RecoveryFile:
         """What editors that no longer run left behind, newest first. What is the same in its own file is removed."""
         abandoned_files = [file for file in _files(self.folder, "*.json") if not is_held(file.with_suffix(".lock"))]
         abandoned: list[RecoveredWork] = []
-        for one in map(_read, abandoned_files):
-            if _is_saved(one):
+        for recovered in map(_read, abandoned_files):
+            if _is_saved(recovered):
                 with contextlib.suppress(OutputError):
-                    one.discard()
-            elif one.file.exists():  # if not, another editor was faster
-                abandoned.append(one)
-        return tuple(sorted(abandoned, key=lambda one: one.time, reverse=True))
+                    recovered.discard()
+            elif recovered.file.exists():  # if not, another editor was faster
+                abandoned.append(recovered)
+        return tuple(sorted(abandoned, key=lambda recovered: recovered.time, reverse=True))
 
     def adopt(self, recovered: RecoveredWork, sandbox: Sandbox) -> Graph:
         """Its graph; its file goes once ours holds the work, or nothing is dirty any more. Raises DocumentError."""
@@ -185,8 +185,8 @@ class RecoveryFile:
                 _remove(self._file)
             else:
                 write_text_atomically(self._file, _text(*noted), sandbox=UNRESTRICTED)
-            for one in adopted:
-                one.discard()
+            for recovered in adopted:
+                recovered.discard()
         except HalationError as fault:
             return f"unsaved work is not kept: {fault}"
         except Exception as fault:
@@ -225,12 +225,12 @@ def _read(file: Path) -> RecoveredWork:
     )
 
 
-def _is_saved(one: RecoveredWork) -> bool:
+def _is_saved(recovered: RecoveredWork) -> bool:
     """True if the file that it belongs to holds the same: the editor ended just after saving."""
-    if one.path is None or one.fault:
+    if recovered.path is None or recovered.fault:
         return False
     try:
-        return read_text(one.path, sandbox=UNRESTRICTED).strip() == one.text.strip()
+        return read_text(recovered.path, sandbox=UNRESTRICTED).strip() == recovered.text.strip()
     except DocumentError:
         return False
 

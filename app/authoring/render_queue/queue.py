@@ -32,17 +32,17 @@ class RenderQueue:
     @property
     def running(self) -> tuple[QueuedRender, ...]:
         """Those that are computed now."""
-        return tuple(one for one in self.all if one.state == "running")
+        return tuple(render for render in self.all if render.state == "running")
 
     @property
     def waiting(self) -> tuple[QueuedRender, ...]:
         """Those whose turn is still to come, the next one first."""
-        return tuple(one for one in self.all if one.state == "waiting")
+        return tuple(render for render in self.all if render.state == "waiting")
 
     @property
     def unfinished(self) -> tuple[QueuedRender, ...]:
         """Those that run or wait."""
-        return tuple(one for one in self.all if one.state in ("running", "waiting"))
+        return tuple(render for render in self.all if render.state in ("running", "waiting"))
 
     def start(
         self,
@@ -88,7 +88,7 @@ class RenderQueue:
             place = line.index(export)
             line.insert(min(max(place + by, 0), len(line) - 1), line.pop(place))
             turns = iter(line)
-            self.all = tuple(next(turns) if one.state == "waiting" else one for one in self.all)
+            self.all = tuple(next(turns) if render.state == "waiting" else render for render in self.all)
 
     def clear(self) -> None:
         """Forget those that have ended."""
@@ -99,10 +99,10 @@ class RenderQueue:
         """Cancel what runs and waits, or wait for it."""
         if not wait:
             self._closed = True
-            for one in reversed(self.unfinished):
-                one.cancel()
-        for one in self.all:
-            one.wait()
+            for render in reversed(self.unfinished):
+                render.cancel()
+        for render in self.all:
+            render.wait()
 
     def _queue(self, job: QueuedJob, instead: QueuedRender | None = None) -> QueuedRender:
         queued = QueuedRender(job, self._start_next)
@@ -110,7 +110,7 @@ class RenderQueue:
             if instead is None:
                 self.all = (*self.all, queued)
             else:
-                self.all = tuple(queued if one is instead else one for one in self.all)
+                self.all = tuple(queued if render is instead else render for render in self.all)
         self._start_next()
         return queued
 

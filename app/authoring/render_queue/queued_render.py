@@ -214,5 +214,5 @@ class QueuedRender:
     @property
     def _partial_frame(self) -> float:
         """How much of the frame under way is done."""
-        done, total = self.passes
-        return done / total if total else 0.0
+        finished, total = self.passes
+        return finished / total if total else 0.0

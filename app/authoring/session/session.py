@@ -138,7 +138,7 @@ class Session(OpenDocument):
         ports = output_ports(self.graph, element)
         if not ports:
             raise GraphError(f"node '{element}' has no output to show")
-        viewed = self.viewed(side) if (self.place, side) in self._views else None
+        viewed = self.find_viewed_port(side) if (self.place, side) in self._views else None
         self.view(ports[(ports.index(viewed) + 1) % len(ports)] if viewed in ports else ports[0], side)
 
     def view_nothing(self, side: Side = "B") -> None:

@@ -42,7 +42,7 @@ from ..edits.element_id import ElementId
 from ..edits.elements import Place, Places, Sizes
 from ..edits.folding import GroupPath
 from ..edits.key_frames import list_key_frames, whole_key_frames
-from ..edits.ports import default_view, is_viewable, numbered_ports
+from ..edits.ports import default_view, is_viewable, list_numbered_ports
 from ..edits.values import reset_value
 from .history import History, Snapshot
 from .memo import Memo
@@ -201,7 +201,7 @@ class OpenDocument:
 
     # --- links -------------------------------------------------------------------------------------------------------
 
-    def linked(self, port: Port) -> Port | None:
+    def find_source(self, port: Port) -> Port | None:
         """The port that feeds an input or value, if any."""
         return self.graph.links.get(port)
 
@@ -209,15 +209,15 @@ class OpenDocument:
         """Why a link is impossible, or None."""
         return wiring.why_not_linkable(self.graph, source, target)
 
-    def fitting(self, port: Port, is_output: bool) -> tuple[str, ...]:
+    def list_fitting_types(self, port: Port, is_output: bool) -> tuple[str, ...]:
         """Ids of the node types that could be linked with `port`, a source if `is_output`."""
-        return wiring.fitting_types(self.graph, port, is_output, coding.with_code_type(self.types))
+        return wiring.list_fitting_types(self.graph, port, is_output, coding.with_code_type(self.types))
 
     def fits_picture(self, port: Port, is_output: bool) -> bool:
         """True if a port could be linked with a picture, as a source if `is_output`."""
         return wiring.fits_picture(self.graph, port, is_output)
 
-    def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
+    def list_fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
         """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""
         groups = self._offered_groups
         groups |= {file: Group(load(file, self.types, sandbox=self.sandbox)) for file in files if file not in groups}
@@ -289,7 +289,7 @@ class OpenDocument:
 
     def value_then(self, port: Port, frame: int) -> Plain:
         """What a value is at a frame. Raises GraphError."""
-        outer = self.animated_outside(port)
+        outer = self.find_outer_animation(port)
         if outer is not None:
             return value_at(self._graph_with_settings(outer[0]), outer[1], frame)
         return value_at(self._graph_with_settings(self.place), port, frame)
@@ -298,12 +298,12 @@ class OpenDocument:
     def graph_now(self) -> Graph:
         """`graph` with every value as it is at the current frame; what has no value then stays as it is."""
         exposed = [control.target for control in self.graph.controls.values()] if self.place else []
-        if not self.graph.animation and not any(map(self.animated_outside, exposed)):
+        if not self.graph.animation and not any(map(self.find_outer_animation, exposed)):
             return self.graph
         source = (self.root, self.graph, self.frame)
         return self._memo.get("graph now", source, lambda: self._evaluate_now(exposed))
 
-    def animated_outside(self, port: Port) -> tuple[GroupPath, Port] | None:
+    def find_outer_animation(self, port: Port) -> tuple[GroupPath, Port] | None:
         """Where a value of a group's body is animated as a control of the group: the place outside, and its port."""
         outermost, place = None, self.place
         graph = self.graph
@@ -342,7 +342,7 @@ class OpenDocument:
 
     # --- the viewer --------------------------------------------------------------------------------------------------
 
-    def viewed(self, side: Side = "A") -> Port | None:
+    def find_viewed_port(self, side: Side = "A") -> Port | None:
         """The port of `graph` that a side of the viewer shows. Every graph, groups too, has its own.
 
         A port that vanished comes back with it. Meanwhile, and where nobody chose one, A shows the first output of
@@ -354,9 +354,9 @@ class OpenDocument:
             return self._memo.get("default view", (self.graph,), lambda: default_view(self.graph))
         return port
 
-    def viewed_in_root(self, side: Side = "A") -> Port | None:
+    def find_viewed_root_port(self, side: Side = "A") -> Port | None:
         """The same port as the document calls it, groups on the way included: `glow/blur.out`."""
-        port, place = self.viewed(side), self.place
+        port, place = self.find_viewed_port(side), self.place
         while port and port.node == INPUTS and place:
             outer = folding.body_at(self.root, place[:-1]).links.get(Port(place[-1], port.socket))
             if outer is None:
@@ -367,7 +367,7 @@ class OpenDocument:
     @property
     def viewers(self) -> Mapping[int, Port]:
         """The ports that keys 1 to 9 recall."""
-        return numbered_ports(self.graph)
+        return list_numbered_ports(self.graph)
 
     # --- inside ------------------------------------------------------------------------------------------------------
 

@@ -100,13 +100,13 @@ def _emit_root(root: Op, request: _PassRequest) -> EmittedProgram:
 
 
 @_emit_root.register
-def _(root: Raster, asked: _PassRequest) -> EmittedProgram:
-    return EmittedProgram(*write_raster(asked.program, root, asked.group, asked.library))
+def _(root: Raster, request: _PassRequest) -> EmittedProgram:
+    return EmittedProgram(*write_raster(request.program, root, request.group, request.library))
 
 
 @_emit_root.register
-def _(root: ExternalProgram, asked: _PassRequest) -> EmittedProgram:
-    return EmittedProgram(*write_external(root, asked.group, _write_half_rounding(asked.target, asked.halves)))
+def _(root: ExternalProgram, request: _PassRequest) -> EmittedProgram:
+    return EmittedProgram(*write_external(root, request.group, _write_half_rounding(request.target, request.halves)))
 
 
 def _name_windows(names: ShaderNames, group: PassGroup) -> None:

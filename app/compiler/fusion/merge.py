@@ -165,5 +165,5 @@ class _PassMerger:
         makers = (self.makers[ref] for ref in late.reads if ref in self.makers)
         if all(number == first or self.groups[number].place < early.place for number in makers):
             return early.place
-        readers = (one for ref in early.writes for one in self.readers.get(ref, ()) if one != last)
-        return late.place if all(self.groups[one].place > late.place for one in readers) else -1
+        readers = (reader for ref in early.writes for reader in self.readers.get(ref, ()) if reader != last)
+        return late.place if all(self.groups[reader].place > late.place for reader in readers) else -1

@@ -144,7 +144,7 @@ def fit_slopes(lower_at: LoweringFunction, base: Anatomy, knob: Knob) -> list[fl
         if sample is None or sample.skeleton != base.skeleton or (sample.sizes != base.sizes and not knob.resizes):
             return None
         columns.append(sample.numbers)
-    slopes = [(one - start) / knob.step for one, start in zip(columns[0], base.numbers, strict=True)]
+    slopes = [(end - start) / knob.step for end, start in zip(columns[0], base.numbers, strict=True)]
     for step, column in enumerate(columns, 1):
         if not are_close(column, [a + step * knob.step * b for a, b in zip(base.numbers, slopes, strict=True)]):
             return None

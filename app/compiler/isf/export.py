@@ -103,12 +103,14 @@ class _IsfExporter:
         model = ModelSearch(self._lower_at, self._make_knobs(), self.size).find_model()
         self._add_notes(model)
         inputs: list[Section] = [{"NAME": name, "TYPE": "image"} for name in self.pictures.values()]
-        inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & model.used_knobs]
+        inputs += [
+            control.entry for control in self.controls if {knob.name for knob in control.knobs} & model.used_knobs
+        ]
         writer = IsfWriter(
             model, self.library, self._find_sources(model.program), tuple(self.pictures.values()), self.size
         )
         text, targets = writer.write(self.first)
-        count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
+        count = len(self.pictures) + len({target["TARGET"] for target in targets if target})
         if count > MAX_PICTURES:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
             return IsfExport("", (), (("", why),))

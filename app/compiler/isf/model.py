@@ -135,7 +135,7 @@ class ModelSearch:
         for at, size in enumerate(base.sizes):
             across, down = (
                 find_length_formula(
-                    [self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in samples]
+                    [self.size[axis] + step for step in steps], [sample.sizes[at][axis] for sample in samples]
                 )
                 for axis in (0, 1)
             )

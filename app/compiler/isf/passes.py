@@ -154,9 +154,9 @@ def _make_portable(body: str) -> str:
     """The text without the bits of floats, and a word, that older GLSL does not know."""
     body = re.sub(r"\bprecise\s+", "", body)
     body = _BITS.sub(
-        lambda found: (
-            f"bool {found[1]}(float {found[2]}) {{ return "
-            f"{'!' if found[1] == 'is_hole' else ''}(abs({found[2]}) <= 3.4e38); }}"
+        lambda match: (
+            f"bool {match[1]}(float {match[2]}) {{ return "
+            f"{'!' if match[1] == 'is_hole' else ''}(abs({match[2]}) <= 3.4e38); }}"
         ),
         body,
     )
@@ -167,12 +167,12 @@ def _make_portable(body: str) -> str:
 
 def _prefix_names(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -> str:
     """Every global name gets the prefix of the pass: two passes may define the same. What is marked with @ stays."""
-    own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
-    own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
-    own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
+    own = {name for match in _DEFINED.finditer(text) for name in match.groups() if name}
+    own |= {name for match in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(match[1])}
+    own |= set(_FUNCTION.findall(text)) | {function.name for file in texts for function in file.all_functions}
     own |= {name for _, name, _ in names.settings} | {"made", *_GLOBALS}
     own_words = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
-    return own_words.sub(lambda found: prefix + found[1], text).replace("@", "")
+    return own_words.sub(lambda match: prefix + match[1], text).replace("@", "")
 
 
 def _write_weight(weights: tuple[float, ...], first: int) -> str:

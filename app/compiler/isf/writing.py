@@ -48,7 +48,7 @@ class IsfWriter:
         targets = self.targets
         lines = ["vec2 halation_canvas;", "", *self._write_display_functions()]
         lines += [line for name in self.pictures for line in _write_reader(name, "from_codes({})")]
-        buffer_names = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
+        buffer_names = dict.fromkeys(str(target["TARGET"]) for target in targets if target)
         lines += [line for name in buffer_names for line in _write_reader(name, "{}")]
         calls = [f"{'else ' if at else ''}if (PASSINDEX == {at}) {{ {call} }}" for at, call in enumerate(self.calls)]
         lines += ["", *self.blocks, "void main() {", *(calls if len(calls) > 1 else self.calls), "}"]
@@ -58,14 +58,14 @@ class IsfWriter:
         ref = fused.writes[output]
         names = IsfNames(
             self.model.program,
-            {one: number for number, one in enumerate(fused.reads)},
+            {read_ref: number for number, read_ref in enumerate(fused.reads)},
             "fragment",
             False,
             seams=False,
             write_constant=self.model.write_constant,
             write_size=self._find_size_text,
             first=first,
-            readers={one: f"read_{self._find_name(one)}" for one in fused.reads},
+            readers={read_ref: f"read_{self._find_name(read_ref)}" for read_ref in fused.reads},
         )
         lines, function_name = write_function(
             self.model.program, fused, output, f"p{len(self.calls)}_", names, self.library
@@ -85,7 +85,8 @@ class IsfWriter:
         pass_number = len(self.targets)
         used_buffers = {name for ref, name in self.buffers.items() if self.last_readers.get(ref, -1) >= pass_number}
         buffer_sizes = {
-            str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets
+            str(target["TARGET"]): {key: target[key] for key in ("WIDTH", "HEIGHT") if key in target}
+            for target in self.targets
         }
         free = (name for name, size in buffer_sizes.items() if size == lengths and name not in used_buffers)
         return next(free, f"buffer{len(buffer_sizes) + 1}")
@@ -104,7 +105,7 @@ class IsfWriter:
         """The size of the whole picture, seen from a pass of this size."""
         if size == self.size:
             return "RENDERSIZE"
-        whole = next((str(one["TARGET"]) for one in self.targets if "WIDTH" not in one), "")
+        whole = next((str(target["TARGET"]) for target in self.targets if "WIDTH" not in target), "")
         if whole or self.pictures:
             return f"IMG_SIZE({whole or self.pictures[0]})"
         return f"vec2({write_literal(self.size[0])}, {write_literal(self.size[1])})"

@@ -55,8 +55,8 @@ def add_convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Re
         )
     )
     across, down = kernel_size[0] // 2, kernel_size[1] // 2
-    made = _transform(builder, product, 1, height, owner, (down, image_size[1]))
-    return _transform(builder, made, 0, width, owner, (across, image_size[0]))
+    convolved = _transform(builder, product, 1, height, owner, (down, image_size[1]))
+    return _transform(builder, convolved, 0, width, owner, (across, image_size[0]))
 
 
 def pad_length(picture: int, kernel: int) -> int:

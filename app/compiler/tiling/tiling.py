@@ -212,8 +212,8 @@ class _StagePlanner:
             return True
         return any(
             op.reads_whole(ref, self.program.shape(ref).size) and self.program.shape(ref).size != (1, 1)
-            for other in self.passes
-            for op in self._find_ops(other)
+            for reader in self.passes
+            for op in self._find_ops(reader)
             for ref in op.reads()
             if ref in fused.writes
         )
@@ -228,8 +228,8 @@ class _StagePlanner:
 
     def _stays_small(self, fused: PassGroup) -> bool:
         """True for a pass that reads small pictures and is read by passes of small pictures: its readers are cut."""
-        readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
-        return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
+        readers = [reader for reader in self.passes if not set(fused.writes).isdisjoint(reader.reads)]
+        return all(map(self._is_small, (*fused.reads, *(reader.writes[0] for reader in readers))))
 
     def _find_ops(self, fused: PassGroup) -> list[Op]:
         return [self.program.ops[index] for index in fused.members]

@@ -212,7 +212,7 @@ def write_program(code: Code, header: Header) -> ShaderText:
 
 def list_samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
     """The names in the header of the pictures that the text reads."""
-    pictures = (one.name for one in header.inputs if one.type in PICTURES)
+    pictures = (header_input.name for header_input in header.inputs if header_input.type in PICTURES)
     return tuple(
         name
         for name in (*pictures, *header.buffers, *header.imported)
@@ -222,7 +222,11 @@ def list_samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
 
 def list_values(header: Header, used: frozenset[str]) -> tuple[str, ...]:
     """The names in the header of the other inputs that the text reads."""
-    return tuple(one.name for one in header.inputs if one.type not in PICTURES and rename_word(one.name) in used)
+    return tuple(
+        header_input.name
+        for header_input in header.inputs
+        if header_input.type not in PICTURES and rename_word(header_input.name) in used
+    )
 
 
 def rename_word(name: str) -> str:
@@ -233,17 +237,17 @@ def rename_word(name: str) -> str:
 def _translate(text: str, varying: str) -> str:
     """Replace words of old GLSL, so that each line stays in its place; macros are expanded already."""
 
-    def word(found: re.Match[str]) -> str:
-        name = found["word"]
+    def word(match: re.Match[str]) -> str:
+        name = match["word"]
         if name is None:
-            return found[0]
+            return match[0]
         if name == "varying":
             return varying
         if name in RENAMED_WORDS:
             return RENAMED_WORDS[name]
-        if name in RENAMED_FUNCTIONS and _CALLED.match(text, found.end()):
+        if name in RENAMED_FUNCTIONS and _CALLED.match(text, match.end()):
             return RENAMED_FUNCTIONS[name]
-        if name in LATER_KEYWORDS or (name in QUALIFIERS and not _QUALIFIED.match(text, found.end())):
+        if name in LATER_KEYWORDS or (name in QUALIFIERS and not _QUALIFIED.match(text, match.end())):
             return f"isf_{name}"
         return name
 
@@ -252,7 +256,14 @@ def _translate(text: str, varying: str) -> str:
 
 def _list_types(header: Header) -> dict[str, str]:
     """The types of what shaders can use without declaring it; those of functions by their names and brackets."""
-    types = {**UNIFORMS, **{one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}}
+    types = {
+        **UNIFORMS,
+        **{
+            header_input.name: _TYPES[header_input.type]
+            for header_input in header.inputs
+            if header_input.type not in PICTURES
+        },
+    }
     types |= {rename_word(name): glsl for name, glsl in types.items()}
     functions = {f"{name}()": "vec4" for name in _READERS}
     return types | functions | {"isf_FragCoord": "vec4", "isf_FragNormCoord": "vec2", "isf_FragColor": "vec4"}
@@ -263,7 +274,11 @@ def _declare_uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:
     for name, glsl in UNIFORMS.items():
         if name in used or name == "RENDERSIZE":
             yield f"uniform {glsl} {name};"
-    types = {one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}
+    types = {
+        header_input.name: _TYPES[header_input.type]
+        for header_input in header.inputs
+        if header_input.type not in PICTURES
+    }
     for name in list_values(header, used):
         yield f"uniform {types[name]} {rename_word(name)};"
 

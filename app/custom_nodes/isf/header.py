@@ -99,14 +99,14 @@ class _HeaderReader:
         passes = self._read_passes(buffers)
         imported = self._read_imported()
         used_names: set[str] = set()
-        for name in (*(one.name for one in inputs), *buffers, *imported):
+        for name in (*(header_input.name for header_input in inputs), *buffers, *imported):
             if name in used_names:
                 self._fail(f"the name '{name}' is there twice", name)
             used_names.add(name)
         size_names = {
             "WIDTH",
             "HEIGHT",
-            *(one.name for one in inputs if one.type in ("float", "long", "bool", "event")),
+            *(header_input.name for header_input in inputs if header_input.type in ("float", "long", "bool", "event")),
         }
         for buffer in buffers.values():
             for formula in filter(None, (buffer.width, buffer.height)):

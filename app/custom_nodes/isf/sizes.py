@@ -116,10 +116,10 @@ class _SizeParser:
             return first
 
         def run(values: Mapping[str, float]) -> float:
-            made = first(values)
-            for call, other in rest:
-                made = call(made, other(values))
-            return made
+            total = first(values)
+            for call, operand in rest:
+                total = call(total, operand(values))
+            return total
 
         return run
 
@@ -169,7 +169,7 @@ class _SizeParser:
         if count not in (0, len(arguments)):
             raise SizeError(f"'{word}' takes {count} numbers, not {len(arguments)}")
         return lambda values: (
-            call(*[one(values) for one in arguments]) if len(arguments) > 1 or count else arguments[0](values)
+            call(*[argument(values) for argument in arguments]) if len(arguments) > 1 or count else arguments[0](values)
         )
 
     def _next_sign(self) -> str:

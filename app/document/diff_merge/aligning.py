@@ -89,9 +89,11 @@ def align_three(base: Graph, ours: Graph, theirs: Graph) -> tuple[Graph, Graph, 
         items = [side.nodes.get(id) for side in sides]
         groups = [item for item in items if isinstance(item, Group)]
         if len(groups) == len(sides):
-            for made, item, graph in zip(inner, groups, align_three(*(item.graph for item in groups)), strict=True):
-                made[id] = replace(item, graph=graph)
-    base, ours, theirs = (replace_items(side, made) for side, made in zip(sides, inner, strict=True))
+            for new_items, item, graph in zip(
+                inner, groups, align_three(*(item.graph for item in groups)), strict=True
+            ):
+                new_items[id] = replace(item, graph=graph)
+    base, ours, theirs = (replace_items(side, new_items) for side, new_items in zip(sides, inner, strict=True))
     return base, ours, theirs
 
 
@@ -120,9 +122,9 @@ class _NodeDescription:
         """The document of the node alone."""
         return dumps(self.alone)
 
-    def same(self, other: _NodeDescription, ids: IdMapping) -> bool:
+    def same(self, description: _NodeDescription, ids: IdMapping) -> bool:
         """True if both describe the same node; `ids` are new ids by old ones."""
-        return self.key(ids, ()) == other.key({}, ())
+        return self.key(ids, ()) == description.key({}, ())
 
     def key(self, ids: IdMapping, open: Container[str]) -> tuple[object, ...]:
         """The text and links of the node, to be compared with those of others; a neighbor in `open` is left blank."""

@@ -81,8 +81,8 @@ def resolve_conflicts(document: Tree, choices: Mapping[str, Side]) -> Tree:
     return rest | ({CONFLICTS: unresolved} if unresolved else {})
 
 
-def _covers(path: str, other: str) -> bool:
-    return not path or other == path or other.startswith(f"{path}.")
+def _covers(path: str, inner: str) -> bool:
+    return not path or inner == path or inner.startswith(f"{path}.")
 
 
 def _is_entry(item: Any) -> bool:
@@ -100,12 +100,12 @@ def _set_in_document(item: Any, at: PartPath, part: Any) -> Any:
         return part
     key, rest = at[0], at[1:]
     if is_list(item) and not isinstance(key, str):
-        keys = {one["frame"]: one for one in item if is_tree(one) and "frame" in one}
+        keys = {key_entry["frame"]: key_entry for key_entry in item if is_tree(key_entry) and "frame" in key_entry}
         keys[key] = _set_in_document(keys.get(key, {}), rest, part)
         return [keys[frame] for frame in sorted(keys) if keys[frame] is not ABSENT]
     inside = dict(_items(item))
     changed = _set_in_document(inside.get(str(key), [] if key == "keys" else {}), rest, part)
-    unchanged = {name: one for name, one in inside.items() if name != key}
+    unchanged = {name: entry for name, entry in inside.items() if name != key}
     return unchanged if changed is ABSENT else {**unchanged, key: changed}
 
 

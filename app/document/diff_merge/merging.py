@@ -135,7 +135,7 @@ class _PartMerger:
         """True for an entry that is a contested element, or builds on one."""
         section, name = str(here[0]), str(here[1])
         built = (references(section, name, part) for part in sides) if section in LINKED else ()
-        return any(self.contested & one for one in built)
+        return any(self.contested & names for names in built)
 
     def merge_whole(self, at: PartPath, sides: ThreeSides) -> Any:
         """The merged version of a part that both changed and that has no entries: code is merged line by line."""

@@ -99,8 +99,8 @@ def put_part(parts: Tree, at: PartPath, part: Any) -> Tree:
     if rest:
         inner = parts.get(key)
         part = put_part(inner if is_tree(inner) else _KeyedList() if key == "keys" else {}, rest, part)
-    others = {name: item for name, item in parts.items() if name != key}
-    return keep_kind(others if part is ABSENT else others | {key: part}, parts)
+    remaining_parts = {name: item for name, item in parts.items() if name != key}
+    return keep_kind(remaining_parts if part is ABSENT else remaining_parts | {key: part}, parts)
 
 
 def local_path(at: PartPath) -> PartPath:

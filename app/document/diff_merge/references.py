@@ -32,11 +32,14 @@ def references(section: str, name: str, entry: Any) -> frozenset[str]:
 def find_contested(base: Tree, ours: Tree, theirs: Tree) -> frozenset[str]:
     """Elements that one side deleted while the other changed or used them, and that both added differently."""
     before, our_elements, their_elements = (frozenset(element_names(body)) for body in (base, ours, theirs))
-    contested = {thing for thing in before & our_elements - their_elements if thing in _find_touched(base, ours)}
-    contested |= {thing for thing in before & their_elements - our_elements if thing in _find_touched(base, theirs)}
+    contested = {element for element in before & our_elements - their_elements if element in _find_touched(base, ours)}
+    contested |= {
+        element for element in before & their_elements - our_elements if element in _find_touched(base, theirs)
+    }
     added_twice = our_elements & their_elements - before
     return frozenset(
-        contested | {thing for thing in added_twice if not equals(_element(ours, thing), _element(theirs, thing))}
+        contested
+        | {element for element in added_twice if not equals(_element(ours, element), _element(theirs, element))}
     )
 
 

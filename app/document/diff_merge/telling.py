@@ -29,8 +29,8 @@ class DifferenceLine:
 def describe_difference(changes: GraphDifference, before: Graph, after: Graph) -> tuple[DifferenceLine, ...]:
     """The lines that describe a difference: renamed nodes first, then by section, node and value."""
     lines = [
-        DifferenceLine("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}")
-        for one in changes.renamed
+        DifferenceLine("~", f"node {'/'.join((*renamed.group, renamed.old))} is now called {renamed.new}")
+        for renamed in changes.renamed
     ]
     removed = {change.at for change in changes.changes if change.after is ABSENT}
     for change in sorted(
@@ -46,7 +46,7 @@ def describe_graph(graph: Graph) -> tuple[str, ...]:
     lines: list[str] = []
     for change in compare_graphs(Graph(), graph).changes:
         for line in _PartDescription(change.at, (graph, graph), exact=True).describe_whole(change.after):
-            lines += [line.words, *(f"    {one}" for one in line.below)]
+            lines += [line.words, *(f"    {detail}" for detail in line.below)]
     return tuple(lines)
 
 

@@ -78,10 +78,10 @@ def value_text(part: Any, value: Value | None = None, exact: bool = False) -> st
         return (repr(part).removesuffix(".0") if exact else f"{part:.6g}") + unit
     if isinstance(part, tuple):
         return value_text(list(part), value, exact)  # pyright: ignore[reportUnknownArgumentType]
-    if is_list(part) and all(isinstance(one, int | float) and not isinstance(one, bool) for one in part):
+    if is_list(part) and all(isinstance(number, int | float) and not isinstance(number, bool) for number in part):
         if len(part) > _LONG and not exact:
             return f"{len(part)} numbers"
-        return f"({', '.join(value_text(one, None, exact) for one in part)}){unit}"
+        return f"({', '.join(value_text(number, None, exact) for number in part)}){unit}"
     return _shorten(json.dumps(to_document(part), ensure_ascii=False), exact)
 
 

@@ -91,7 +91,7 @@ def gather_look_facts(context: CanvasContext, ink: CanvasColors, gesture: Gestur
     session = context.session
     viewed: dict[ElementId, str] = {}
     for side in ("A", "B"):
-        if port := session.viewed(side):
+        if port := session.find_viewed_port(side):
             viewed[ElementId.of_port(port)] = viewed.get(ElementId.of_port(port), "") + side
     badges: dict[ElementId, str] = {}
     for number, port in session.viewers.items():

@@ -81,8 +81,8 @@ class NodeSearch:
             self._link, self._entries = None, (*nodes, *self._fixed)
         else:
             self._link = port, output
-            fits = self.context.log.attempt(lambda: session.fitting(port, output), ()) or ()
-            files = self.context.log.attempt(lambda: session.fitting_files(preset_paths(), port, output), ()) or ()
+            fits = self.context.log.attempt(lambda: session.list_fitting_types(port, output), ()) or ()
+            files = self.context.log.attempt(lambda: session.list_fitting_files(preset_paths(), port, output), ()) or ()
             self._entries = keep_fitting((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 

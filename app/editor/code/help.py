@@ -9,7 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
-from ...compiler import installed_library
+from ...compiler import load_library
 from ...custom_nodes import Code
 from ...custom_nodes.notes import EDGES, UNITS
 from ..theme.style import ui_scale, vec4
@@ -74,7 +74,7 @@ class CodeHelp:
 
 def list_includes() -> Iterator[tuple[str, str]]:
     """The files that code can include, and the signatures of their functions."""
-    for name, text in sorted(installed_library().texts.items()):
+    for name, text in sorted(load_library().texts.items()):
         if name.startswith("lib/"):
             signatures = (
                 f"{function.result} {function.name}({', '.join(map(' '.join, function.parameters))})"

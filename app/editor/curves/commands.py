@@ -233,7 +233,7 @@ def list_animatable(context: CurvesContext) -> tuple[Port, ...]:
         for id in session.graph.nodes
         if id in session.selection
         for port in animatable_values(session.graph, id)
-        if port not in session.graph.animation and session.linked(port) is None
+        if port not in session.graph.animation and session.find_source(port) is None
     )
 
 

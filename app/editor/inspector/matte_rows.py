@@ -53,7 +53,7 @@ class MatteRows:
         pick = str(session.value(port))
         picked = self._of(pick, matte)
         rows.field_note(f"{len(picked)} of {len(matte.ids)} picked. A click in the viewer picks, too.")
-        if session.linked(port) is not None:
+        if session.find_source(port) is not None:
             return
         names = self._find_names(rows, key, matte)
         self._list(

@@ -152,7 +152,7 @@ def _input(rows: Rows, port: Port, socket: Socket) -> None:
     """A socket: what is linked to it, or what it does without a link."""
     doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
     rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
-    source = rows.context.session.linked(port)
+    source = rows.context.session.find_source(port)
     width = rows.field()
     if source is not None:
         link_chip(rows, port, source, width)

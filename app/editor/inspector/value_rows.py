@@ -51,7 +51,7 @@ class ValueRows:
         context, port = rows.context, ports[0]
         session, key = context.session, str(port)
         graph = session.graph
-        source = session.linked(port)
+        source = session.find_source(port)
         moves = source is None and session.can_animate(port)
         value = value_now(session, port)[0] if moves else graph.value(port)
         changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)

@@ -73,7 +73,7 @@ def _toggle(context: ViewerContext) -> None:
 
 def _swap(context: ViewerContext) -> None:
     session = context.session
-    first, second = session.viewed("A"), session.viewed("B")
+    first, second = session.find_viewed_port("A"), session.find_viewed_port("B")
     if first and second:
         session.view(second, "A")
         session.view(first, "B")
@@ -87,7 +87,7 @@ def _region(context: ViewerContext) -> None:
 
 
 def _shown(context: ViewerContext) -> bool:
-    return context.session.viewed("A") is not None
+    return context.session.find_viewed_port("A") is not None
 
 
 def _background(name: Background) -> Action[ViewerContext]:
@@ -203,7 +203,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Viewer/Compare",
         "Shift+X",
         "viewer",
-        lambda context: _shown(context) and context.session.viewed("B") is not None,
+        lambda context: _shown(context) and context.session.find_viewed_port("B") is not None,
     ),
     Action(
         "viewer.brighter",

@@ -26,7 +26,7 @@ def find_focus_port(session: Session) -> Port | None:
     if item is None or not focuses(item):
         return None
     port = Port(session.active, f"{_CHOICE}_{session.value(Port(session.active, _CHOICE))}")
-    return port if session.linked(port) is None else None
+    return port if session.find_source(port) is None else None
 
 
 def is_distance(port: Port) -> bool:

@@ -33,9 +33,9 @@ def depths(context: ViewerContext) -> dict[str, Port]:
         found[SCENE] = Port(context.viewer.scene, "depth")
     item = session.graph.nodes.get(session.active)
     if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
-        linked = {DEPTH: session.linked(Port(session.active, "depth"))}
+        linked = {DEPTH: session.find_source(Port(session.active, "depth"))}
         if not focuses(item):
-            linked[PLACE] = session.linked(Port(session.active, "position"))
+            linked[PLACE] = session.find_source(Port(session.active, "position"))
         found |= {name: port for name, port in linked.items() if port is not None}
     return found
 
@@ -61,7 +61,7 @@ def surface_at(context: ViewerContext, camera: CameraModel, at: Point) -> tuple[
 
 def _read(context: ViewerContext, name: str, at: Point) -> tuple[float, ...] | None:
     """Once it is there: until then, what was read of another node is shown under that name."""
-    port, shown = depths(context).get(name), context.preview.shown(name)
+    port, shown = depths(context).get(name), context.preview.find_whole_image(name)
     inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
     if port is None or shown is None or not inside:
         return None

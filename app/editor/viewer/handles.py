@@ -30,7 +30,7 @@ def handles(session: Session) -> tuple[ViewerHandle, ...]:
     found: list[ViewerHandle] = []
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
-        if value.handle and session.linked(port) is None and not is_idle(session, port):
+        if value.handle and session.find_source(port) is None and not is_idle(session, port):
             x, y = cast("Point", session.graph_now.value(port))
             found.append(ViewerHandle(port, (x, y)))
     return tuple(found)

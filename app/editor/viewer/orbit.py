@@ -105,7 +105,7 @@ def orbited(session: Session) -> str:
 
     One that is selected must be seen too. Values that links or keys set are not for the mouse.
     """
-    graph, seen = session.graph, session.viewed("A")
+    graph, seen = session.graph, session.find_viewed_port("A")
     scenes = [id for id, item in graph.nodes.items() if _goes_around(item)]
     if not scenes or seen is None:
         return ""

@@ -48,7 +48,7 @@ def pick_port(context: ViewerContext, side: str, label: str) -> None:
 def list_ports(context: ViewerContext, side: str) -> None:
     """Everything that a side can show, as entries of the menu that is open."""
     session = context.session
-    chosen = session.viewed("A" if side == "A" else "B")
+    chosen = session.find_viewed_port("A" if side == "A" else "B")
     numbers = {port: number for number, port in session.viewers.items()}
     if side == "B" and imgui.menu_item("Nothing", "", chosen is None)[0]:
         session.view_nothing("B")

@@ -50,7 +50,7 @@ class ScopesPanel:
 
     def draw(self) -> None:
         """Tools, and every scope."""
-        shown = self._context.preview.shown(A)
+        shown = self._context.preview.find_whole_image(A)
         self._draw_tools()
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
@@ -152,7 +152,7 @@ class ScopesPanel:
         if viewer.scopes_of_scene:
             return rgb_of(part)
         meaning = meaning_of(viewer, shown.kind, lambda: whole)
-        port = self._context.session.viewed("A")
+        port = self._context.session.find_viewed_port("A")
         view = requested_view(self._context.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
         span = range_of(viewer, meaning, lambda: whole)

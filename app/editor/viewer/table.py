@@ -44,7 +44,7 @@ def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str,
             if mark and name not in ("A", "B"):
                 continue
             at = _same_place(pixel, viewer.picture, one.full_size)
-            newer = (context.preview.seen(name) if name in ("A", "B") else None) or one
+            newer = (context.preview.find_visible_image(name) if name in ("A", "B") else None) or one
             values = reader.pixel(context.probe, f"table {mark} {name}", newer, at)
             values = values or reader.pixel(context.probe, f"table {mark} {name}", one, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
@@ -100,7 +100,7 @@ def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
     if context.viewer.compares:
         names.append(("B", "B"))
     names += ((name, layer(name)) for name in context.session.graph.inputs)
-    return [(name, shown) for name, key in names if (shown := context.preview.shown(key)) is not None]
+    return [(name, shown) for name, key in names if (shown := context.preview.find_whole_image(key)) is not None]
 
 
 def _same_place(pixel: Pixels, of: Pixels, size: Pixels) -> Pixels:

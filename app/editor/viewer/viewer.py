@@ -86,9 +86,9 @@ class Viewer:
     def draw(self) -> None:
         """Everything, into the current window."""
         viewer, preview = self._context.viewer, self._context.preview
-        port = self._context.session.viewed("A")
-        b = preview.seen(B) if viewer.compares else None
-        now = _Now(preview.seen(A), b, requested_view(self._context.session.graph, port) if port else "")
+        port = self._context.session.find_viewed_port("A")
+        b = preview.find_visible_image(B) if viewer.compares else None
+        now = _Now(preview.find_visible_image(A), b, requested_view(self._context.session.graph, port) if port else "")
         viewer.scene = orbited(self._context.session)
         self._time(now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
@@ -162,7 +162,7 @@ class Viewer:
             name, shown = (B, now.b) if toggled and now.b is not None else (A, now.a)
 
             def samples():
-                return self._reader.small(self._context.probe, self._context.preview.shown(name) or shown)
+                return self._reader.small(self._context.probe, self._context.preview.find_whole_image(name) or shown)
 
             meaning = meaning_of(viewer, shown.kind, samples)
             viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
@@ -202,7 +202,7 @@ class Viewer:
             draw_message(self._context, sight, fault, palette.error, dim=now.a is not None)
         elif now.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
-        elif viewer.compares and self._context.session.viewed("B") is None:
+        elif viewer.compares and self._context.session.find_viewed_port("B") is None:
             draw_badge(self._context, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
         elif viewer.picking:
             draw_badge(self._context, sight, "Click to pick; right click ends", palette.accent)
@@ -269,7 +269,7 @@ class Viewer:
         viewer = self._context.viewer
         assert viewer.pixel is not None
         if viewer.copying:
-            port = self._context.session.viewed("A")
+            port = self._context.session.find_viewed_port("A")
             self._context.clipboard.put(copied(str(port), viewer.pixel, values))
             self._context.log.add(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
         if self._hand.picked is not None and viewer.picking:
@@ -294,7 +294,7 @@ class Viewer:
         return None if depth is None else float(f"{depth:.7g}")
 
     def _hint(self) -> str:
-        port = self._context.session.viewed("A")
+        port = self._context.session.find_viewed_port("A")
         if port is not None and port.node == OUTPUTS:
             return f"Nothing is linked to the output '{port.socket}' yet."
         return _EMPTY

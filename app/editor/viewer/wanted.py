@@ -52,7 +52,7 @@ def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
     viewer = context.viewer
     if viewer.zoom <= 0.0 or context.timeline.playing or context.timeline.scrubbing:
         return None
-    sides = {side: context.preview.seen(side) for side in _sides(context)}
+    sides = {side: context.preview.find_visible_image(side) for side in _sides(context)}
     for shown in sides.values():
         if shown is None or shown.full_size != viewer.picture or measures(viewer, shown.kind):
             return None
@@ -66,4 +66,4 @@ def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
 
 def _sides(context: ViewerContext) -> dict[str, Port]:
     sides = (A, B) if context.viewer.compares else (A,)
-    return {side: port for side in sides if (port := context.session.viewed(side)) is not None}
+    return {side: port for side in sides if (port := context.session.find_viewed_port(side)) is not None}

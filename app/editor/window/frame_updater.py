@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from halation.nodes import plugins
 from imgui_bundle import imgui
 
-from ...compiler.library import reload_installed_library
+from ...compiler.library import reload_library
 from ...graph import Port
 from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrate_graph, shader_folder
@@ -124,7 +124,7 @@ class FrameUpdater:
             case "code":
                 self._contexts.code_files.reread(change.path)
             case "shader":
-                editor.preview.reload(reload_installed_library())
+                editor.preview.reload(reload_library())
                 editor.log.add(f"shader {change.path.name} was loaded again")
             case "node":
                 if fault := self._nodes.reload():

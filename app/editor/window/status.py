@@ -73,7 +73,7 @@ def _figures(editor: Editor) -> str:
         parts.insert(0, f"{icons.ICON_FA_PAUSE} paused")
     elif lead := editor.preview.lead:
         parts.insert(0, f"{'pre-roll' if lead[0] == 'pre-roll' else 'planning'} {lead[1]} of {lead[2]}")
-    elif (picture := editor.preview.seen(A)) and picture.partial:
+    elif (picture := editor.preview.find_visible_image(A)) and picture.partial:
         width, height = picture.texture.size
         parts.insert(0, f"region {width}\u00d7{height}")
     elif editor.preview.busy:

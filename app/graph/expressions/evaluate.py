@@ -62,20 +62,20 @@ def make_name(text: str, position: int, name: str) -> Evaluator:
 
     def run(scope: Scope) -> ExpressionResult:
         try:
-            found = scope.value(name)
+            setting = scope.value(name)
         except GraphError as error:
             if "\n" in str(error):
                 raise
             raise ExpressionError(text, position, str(error)) from None
-        if isinstance(found, str):
+        if isinstance(setting, str):
             raise ExpressionError(text, position, f"'{name}' is a text, not a number")
         try:
-            made = found if isinstance(found, bool) else _to_floats(found)
+            number = setting if isinstance(setting, bool) else _to_floats(setting)
         except OverflowError:
-            made = math.inf
-        if not (math.isfinite(made) if not isinstance(made, tuple) else all(map(math.isfinite, made))):
-            raise ExpressionError(text, position, f"'{name}' is {found!r:.40}, which is not finite")
-        return made
+            number = math.inf
+        if not (math.isfinite(number) if not isinstance(number, tuple) else all(map(math.isfinite, number))):
+            raise ExpressionError(text, position, f"'{name}' is {setting!r:.40}, which is not finite")
+        return number
 
     return run
 
@@ -97,14 +97,14 @@ def make_arithmetic(text: str, first: Evaluator, steps: Sequence[Step]) -> Evalu
     rest = [(name, OPERATORS[name], position, code) for name, position, code in steps]
 
     def run(scope: Scope) -> ExpressionResult:
-        made = first(scope)
+        total = first(scope)
         for name, call, position, code in rest:
-            other = code(scope)
+            operand = code(scope)
             try:
-                made = apply(name, call, (made, other))
+                total = apply(name, call, (total, operand))
             except NoValueError as fault:
                 raise ExpressionError(text, position, str(fault)) from None
-        return made
+        return total
 
     return run
 
@@ -126,12 +126,12 @@ def make_logic(text: str, first: Evaluator, steps: Sequence[Step], *, any_of: bo
     """`or` (`any_of`) or `and`; operands after the one that decides are not evaluated."""
 
     def run(scope: Scope) -> ExpressionResult:
-        made = _to_truth(text, steps[0][1], first(scope))
+        truth = _to_truth(text, steps[0][1], first(scope))
         for _, position, code in steps:
-            if made == any_of:
-                return made
-            made = _to_truth(text, position, code(scope))
-        return made
+            if truth == any_of:
+                return truth
+            truth = _to_truth(text, position, code(scope))
+        return truth
 
     return run
 
@@ -145,10 +145,10 @@ def make_sign(code: Evaluator, *, minus: bool) -> Evaluator:
     """A sign in front."""
 
     def run(scope: Scope) -> ExpressionResult:
-        made = code(scope)
-        if isinstance(made, tuple):
-            return tuple(-part for part in made) if minus else made
-        return -float(made) if minus else float(made)
+        operand = code(scope)
+        if isinstance(operand, tuple):
+            return tuple(-part for part in operand) if minus else operand
+        return -float(operand) if minus else float(operand)
 
     return run
 
@@ -163,12 +163,12 @@ def make_channel(text: str, position: int, code: Evaluator, name: str) -> Evalua
     place = CHANNELS[name]
 
     def run(scope: Scope) -> ExpressionResult:
-        made = code(scope)
-        if not isinstance(made, tuple):
+        channels = code(scope)
+        if not isinstance(channels, tuple):
             raise ExpressionError(text, position, f"a number has no channel '{name}'")
-        if place >= len(made):
-            raise ExpressionError(text, position, f"a list of {len(made)} has no channel '{name}'")
-        return made[place]
+        if place >= len(channels):
+            raise ExpressionError(text, position, f"a list of {len(channels)} has no channel '{name}'")
+        return channels[place]
 
     return run
 

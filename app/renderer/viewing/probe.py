@@ -8,7 +8,7 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ...compiler import installed_library
+from ...compiler import load_library
 from ...errors import UsageError
 from ...graph import INPUTS, Graph, Port
 from ..device import Bindings, Device, DeviceProgram, DeviceTexture, PixelRect
@@ -43,7 +43,7 @@ class PixelProbe:
         height = max(1, round(down * width / across))
         with self._device.save_draw_target():
             if self._decimation is None:
-                text = "".join(part.body for part in installed_library().closure(("viewer/decimate",), "viewer"))
+                text = "".join(part.body for part in load_library().closure(("viewer/decimate",), "viewer"))
                 self._decimation = self._device.create_program(f"#version 410 core\n{text}")
             self._decimation.set("texels", (across / width, down / height))
             target = self._device.create_texture((width, height), texture.components, "f4")

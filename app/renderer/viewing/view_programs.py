@@ -9,7 +9,7 @@ from typing import cast, get_args
 from ...color.gpu_programs import write_view_program
 from ...color.management import ColorManager
 from ...color.primaries import find_working_space
-from ...compiler import Library, installed_library
+from ...compiler import Library, load_library
 from ...errors import DeviceError
 from ...resources.color_program import ColorProgram
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture, PixelRect
@@ -74,7 +74,7 @@ class ViewPrograms:
         key = (view, manager, compare, texels, viewed)
         if key not in self._programs:
             text = write_view_program(view.view, view.display, view.look, manager) if view else None
-            library = installed_library().with_working_space(find_working_space(manager))
+            library = load_library().with_working_space(find_working_space(manager))
             self._programs[key] = self._compile(text, _write_source(text, library, compare, texels, viewed))
         return self._programs[key]
 

@@ -27,7 +27,7 @@ def links(graph: Graph) -> dict[str, str]:
 
 def test_the_types_that_fit_a_source():
     graph = chain(1).add_input("depth", Input(Kind.FIELD)).add("slope", Slope()).add("lens", Unknown("lens"))
-    assert wiring.fitting_types(graph, port("inputs.beauty"), True, TOYS) == (
+    assert wiring.list_fitting_types(graph, port("inputs.beauty"), True, TOYS) == (
         "gain",
         "soften",
         "blend",
@@ -35,18 +35,22 @@ def test_the_types_that_fit_a_source():
         "flow",
         "meter",
     )
-    assert "slope" in wiring.fitting_types(graph, port("inputs.depth"), True, TOYS)
-    assert wiring.fitting_types(graph, port("slope.flow"), True, TOYS) == ("gain", "flow"), (
+    assert "slope" in wiring.list_fitting_types(graph, port("inputs.depth"), True, TOYS)
+    assert wiring.list_fitting_types(graph, port("slope.flow"), True, TOYS) == ("gain", "flow"), (
         "a position is a vector of two"
     )
-    assert wiring.fitting_types(graph, port("lens.out"), True, TOYS) == tuple(name for name in TOYS if name != "photo")
+    assert wiring.list_fitting_types(graph, port("lens.out"), True, TOYS) == tuple(
+        name for name in TOYS if name != "photo"
+    )
 
 
 def test_the_types_that_fit_a_target():
     graph = Graph().add("flow", Flow()).add("blend", Blend())
-    assert wiring.fitting_types(graph, port("flow.by"), False, TOYS) == ("split", "slope", "meter"), "a field fits too"
-    assert wiring.fitting_types(graph, port("blend.mask"), False, TOYS) == ("split", "meter")
-    assert "photo" in wiring.fitting_types(graph, port("blend.first"), False, TOYS)
+    assert wiring.list_fitting_types(graph, port("flow.by"), False, TOYS) == ("split", "slope", "meter"), (
+        "a field fits too"
+    )
+    assert wiring.list_fitting_types(graph, port("blend.mask"), False, TOYS) == ("split", "meter")
+    assert "photo" in wiring.list_fitting_types(graph, port("blend.first"), False, TOYS)
 
 
 def test_a_link_goes_to_the_first_free_socket_that_fits():

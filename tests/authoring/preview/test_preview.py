@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.compiler import Library, installed_library
+from halation.compiler import Library, load_library
 from halation.compiler.library import parse
 from halation.graph import Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
@@ -26,7 +26,7 @@ NODES = catalogue()
 
 def test_a_picture_comes_pass_by_pass(preview, engine):
     request_preview(preview, chain())
-    assert preview.busy and preview.shown("A") is None and count_passes(engine) == 0
+    assert preview.busy and preview.find_whole_image("A") is None and count_passes(engine) == 0
     calls, done = 0, []
     while preview.work(0.0):
         calls += 1
@@ -35,7 +35,7 @@ def test_a_picture_comes_pass_by_pass(preview, engine):
     total = len(engine.compile(chain(), RenderRequest({"image": PICTURE})).passes)
     assert set(range(1, total + 1)) <= set(done), "one pass a call, when there is no time for more"
     assert not preview.busy and preview.progress == (total, total)
-    shown = preview.shown("A")
+    shown = preview.find_whole_image("A")
     assert (shown.port, shown.size, shown.full_size, shown.kind, shown.channels) == (
         OUT["A"],
         (37, 23),
@@ -57,14 +57,14 @@ def test_wanting_the_same_again_costs_nothing(preview, engine):
     graph = chain()
     request_preview(preview, graph)
     settle(preview)
-    before, shown, compiled = count_passes(engine), preview.shown("A"), engine.compile
+    before, shown, compiled = count_passes(engine), preview.find_whole_image("A"), engine.compile
     engine.compile = None  # nobody asks
     moved = replace(graph, ui={"nodes": {"blur": {"x": 1.0, "y": 2.0}}})
     for same in (graph, chain(), moved, moved):
         request_preview(preview, same)
         assert not preview.busy and not preview.work(0.0)
     engine.compile = compiled
-    assert count_passes(engine) == before and preview.shown("A") == shown
+    assert count_passes(engine) == before and preview.find_whole_image("A") == shown
 
 
 def test_only_what_depends_on_a_change_runs_again(preview, engine):
@@ -84,13 +84,13 @@ def test_only_what_depends_on_a_change_runs_again(preview, engine):
 def test_the_last_good_picture_stays_until_the_new_one_is_ready(preview, engine):
     request_preview(preview, chain())
     settle(preview)
-    old, old_pixels = preview.shown("A"), pixels(preview, engine).copy()
+    old, old_pixels = preview.find_whole_image("A"), pixels(preview, engine).copy()
     engine.runner.textures.budget = 0
     request_preview(preview, chain(stops=3.0, sigma=4.0))
-    while preview.work(0.0) and preview.shown("A") is old:
+    while preview.work(0.0) and preview.find_whole_image("A") is old:
         np.testing.assert_array_equal(pixels(preview, engine), old_pixels)
     settle(preview)
-    new = preview.shown("A")
+    new = preview.find_whole_image("A")
     assert new.revision > old.revision and new.key != old.key
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=3.0, sigma=4.0)))
 
@@ -112,7 +112,7 @@ def test_a_long_drag_still_shows_pictures(preview, engine):
     for number in range(40):
         request_preview(preview, chain(stops=1.0 + 0.01 * number))
         preview.work(0.0)
-        revisions.add(preview.shown("A").revision)
+        revisions.add(preview.find_whole_image("A").revision)
     assert len(revisions) > 3
     settle(preview)
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=1.0 + 0.01 * 39)))
@@ -135,7 +135,7 @@ def test_several_panels(preview, engine):
     for name, port in ports.items():
         np.testing.assert_array_equal(pixels(preview, engine, name), render_port(engine, chain(), port))
     request_preview(preview, chain(), OUT)
-    assert preview.shown("B") is None and preview.shown("A") is not None
+    assert preview.find_whole_image("B") is None and preview.find_whole_image("A") is not None
     settle(preview)
     assert len(engine.runner.textures._leases) == 1
 
@@ -163,15 +163,15 @@ def test_kinds_of_data(preview, engine):
     graph = Graph(settings=Settings((16, 9))).add("c", NODES["checker"](size=4.0))
     request_preview(preview, graph, {"A": Port("c", "value"), "B": Port("c", "out")}, bindings={})
     settle(preview)
-    assert (preview.shown("A").kind, preview.shown("A").channels) == (Kind.FIELD, 1)
-    assert (preview.shown("B").kind, preview.shown("B").channels) == (Kind.IMAGE, 4)
+    assert (preview.find_whole_image("A").kind, preview.find_whole_image("A").channels) == (Kind.FIELD, 1)
+    assert (preview.find_whole_image("B").kind, preview.find_whole_image("B").channels) == (Kind.IMAGE, 4)
 
 
 @pytest.mark.parametrize("scale", [0.5, 0.33, 0.1])
 def test_a_proxy_knows_its_full_size(preview, engine, scale):
     request_preview(preview, chain(), scale=scale)
     settle(preview)
-    shown = preview.shown("A")
+    shown = preview.find_whole_image("A")
     assert shown.full_size == (37, 23) and shown.scale == scale
     assert shown.size == (round(37 * scale), round(23 * scale))
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(), scale=scale))
@@ -184,7 +184,7 @@ def test_files_that_change_are_read_again(preview, engine, tmp_path):
     settle(preview)
     write_exr(path, {"beauty": np.full((4, 8, 4), 0.75, np.float32)}, {"beauty": "float"})
     preview.work(0.0)
-    assert preview.shown("A").size == (6, 4)
+    assert preview.find_whole_image("A").size == (6, 4)
     preview.refresh()
     settle(preview)
     np.testing.assert_array_equal(pixels(preview, engine), np.full((4, 8, 4), 0.75, np.float32))
@@ -207,16 +207,16 @@ def test_decoding_does_not_hold_up_the_window(preview, engine):
     assert count_passes(engine) == 0 and preview.busy
     gate.set()
     settle(preview)
-    assert preview.shown("A") is not None
+    assert preview.find_whole_image("A") is not None
 
 
 def test_while_paused_nothing_is_computed(preview, engine):
     request_preview(preview, chain())
     settle(preview)
-    before, shown = count_passes(engine), preview.shown("A")
+    before, shown = count_passes(engine), preview.find_whole_image("A")
     preview.paused = True
     request_preview(preview, chain(stops=3.0))
-    assert not preview.work(60.0) and count_passes(engine) == before and preview.shown("A") is shown
+    assert not preview.work(60.0) and count_passes(engine) == before and preview.find_whole_image("A") is shown
     preview.paused = False
     settle(preview)
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=3.0)))
@@ -233,7 +233,7 @@ def test_a_fault_is_said_where_it_is_and_hides_nothing_else(preview, engine):
     request_preview(preview, broken, {**good, "B": Port("lonely", "out"), "C": Port("blur", "out")})
     settle(preview)
     assert preview.faults == {"lonely": "node 'lonely': input 'image' is not linked: link a picture to it"}
-    assert "not linked" in preview.fault("B") and preview.fault("A") is None and preview.shown("B") is None
+    assert "not linked" in preview.fault("B") and preview.fault("A") is None and preview.find_whole_image("B") is None
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain(stops=2.0)))
     np.testing.assert_array_equal(
         pixels(preview, engine, "C"), render_port(engine, chain(stops=2.0), Port("blur", "out"))
@@ -246,10 +246,10 @@ def test_a_fault_is_said_where_it_is_and_hides_nothing_else(preview, engine):
 def test_a_fault_leaves_the_last_good_picture(preview, engine):
     request_preview(preview, chain())
     settle(preview)
-    shown = preview.shown("A")
+    shown = preview.find_whole_image("A")
     request_preview(preview, chain().disconnect(Port("blur", "image")))
     settle(preview)
-    assert preview.shown("A") is shown and set(preview.faults) == {"blur"}
+    assert preview.find_whole_image("A") is shown and set(preview.faults) == {"blur"}
     assert not preview.busy
 
 
@@ -272,19 +272,19 @@ def test_a_file_that_breaks_while_it_is_read(preview, engine):
     engine.runner._load = load
     preview.refresh()
     settle(preview)
-    assert preview.faults == {} and preview.shown("A") is not None
+    assert preview.faults == {} and preview.find_whole_image("A") is not None
 
 
 def test_shaders_are_loaded_again_while_the_picture_stays(preview, engine):
     def library(text: str) -> Library:
-        return Library({**installed_library().texts, "color/saturation": parse("color/saturation", text)})
+        return Library({**load_library().texts, "color/saturation": parse("color/saturation", text)})
 
     request_preview(preview, chain())
     settle(preview)
-    shown, before = preview.shown("A"), count_passes(engine)
+    shown, before = preview.find_whole_image("A"), count_passes(engine)
     preview.reload(library("vec4 saturation(vec4 image, float saturation) { return image + oops; }\n"))
     settle(preview)
-    assert preview.shown("A") is shown and count_passes(engine) == before
+    assert preview.find_whole_image("A") is shown and count_passes(engine) == before
     assert "shaders/color/saturation.glsl, line 1" in preview.faults["color"]
     preview.reload(library("vec4 saturation(vec4 image, float saturation) { return image * 0.0; }\n"))
     settle(preview)

@@ -49,7 +49,7 @@ def test_no_step_waits_for_a_compiler(preview) -> None:
         longest = max(longest, time.thread_time() - began)
         waits += 1
         time.sleep(0.005)
-    assert preview.shown("A") is not None and not preview.faults
+    assert preview.find_whole_image("A") is not None and not preview.faults
     assert waits > 10 and longest < LONGEST_STEP
 
 
@@ -67,4 +67,4 @@ def test_a_compiler_that_dies_is_a_fault_of_the_node(preview) -> None:
     assert "SIGSEGV" in str(preview.faults["user"])
     preview.want(chain(fresh(2)), {"A": Port("user", "out")})
     finish(preview)
-    assert preview.shown("A") is not None and not preview.faults
+    assert preview.find_whole_image("A") is not None and not preview.faults

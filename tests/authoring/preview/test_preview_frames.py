@@ -27,7 +27,7 @@ def trails(frames: tuple[int, int] = (1, 20)) -> Graph:
 def look(preview, graph: Graph, frame: int) -> np.ndarray:
     preview.want(graph, PORTS, frame=frame)
     settle(preview)
-    assert preview.shown("A").frame == frame
+    assert preview.find_whole_image("A").frame == frame
     return pixels(preview, preview.renderer).copy()
 
 
@@ -115,7 +115,7 @@ def test_a_frame_for_later_is_computed_but_not_shown(preview, engine):
     preview.ahead = 4
     while preview.work(0.0):
         assert not preview.busy
-    assert preview.frames == (3, 4) and preview.shown("A").frame == 3
+    assert preview.frames == (3, 4) and preview.find_whole_image("A").frame == 3
     np.testing.assert_array_equal(pixels(preview, engine), now)
     before = engine.runner.counters.passes
     preview.ahead = None

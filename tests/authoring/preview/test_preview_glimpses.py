@@ -27,7 +27,7 @@ BINDINGS = {"image": PICTURE}
 
 def part(preview: Preview, engine: Renderer, name: str = "A") -> tuple[np.ndarray, Region]:
     """What is seen of a picture, and where that lies in it."""
-    seen = preview.seen(name)
+    seen = preview.find_visible_image(name)
     pixels = read_texture(engine.device, seen.texture)
     return pixels[..., : seen.channels], Region(*seen.start, *seen.texture.size)
 
@@ -73,17 +73,20 @@ def test_while_a_value_is_dragged_only_what_is_seen_is_computed(preview, engine,
     request_preview(preview, chain(), bindings=BINDINGS)
     settle(preview)
     preview.glimpse, made = SEEN, texels(engine, monkeypatch)
-    before = preview.shown("A")
+    before = preview.find_whole_image("A")
     for step in range(1, 6):
         request_preview(preview, chain(stops=1.0 + 0.1 * step), bindings=BINDINGS)
         until_seen(preview)
         got, region = part(preview, engine)
-        assert preview.seen("A").partial and SEEN.region((WIDTH, HEIGHT)) == region
+        assert preview.find_visible_image("A").partial and SEEN.region((WIDTH, HEIGHT)) == region
         np.testing.assert_array_equal(got, of(whole(engine, chain(stops=1.0 + 0.1 * step)), region))
-        assert preview.shown("A") is before, "what needs all of it still has the last one"
+        assert preview.find_whole_image("A") is before, "what needs all of it still has the last one"
     assert max(made) < 0.15 * WIDTH * HEIGHT, "no pass makes more than is seen, and what the blur reads around it"
     settle(preview)
-    assert not preview.seen("A").partial and preview.seen("A") == preview.shown("A") != before
+    assert (
+        not preview.find_visible_image("A").partial
+        and preview.find_visible_image("A") == preview.find_whole_image("A") != before
+    )
     np.testing.assert_array_equal(pixels(preview, engine), whole(engine, chain(stops=1.5)))
 
 
@@ -99,7 +102,7 @@ def test_what_is_there_already_is_not_made_again(preview, engine, monkeypatch):
     request_preview(preview, chain(), bindings=BINDINGS)
     before = len(made)
     settle(preview)
-    assert not preview.seen("A").partial and len(made) == before
+    assert not preview.find_visible_image("A").partial and len(made) == before
 
 
 def test_the_rest_waits_until_the_graph_stays_as_it_is(preview, engine, monkeypatch):
@@ -109,13 +112,17 @@ def test_the_rest_waits_until_the_graph_stays_as_it_is(preview, engine, monkeypa
     preview.clock = lambda: seconds[0]
     request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     until_seen(preview)
-    seen, count = preview.seen("A"), len(made)
+    seen, count = preview.find_visible_image("A"), len(made)
     for second in (7.0, 7.19):
         seconds[0] = second
-        assert preview.work(0.0) and len(made) == count and preview.seen("A") == seen
+        assert preview.work(0.0) and len(made) == count and preview.find_visible_image("A") == seen
     seconds[0] = 7.21
     settle(preview)
-    assert len(made) > count and preview.seen("A").size == (WIDTH, HEIGHT) and not preview.seen("A").partial
+    assert (
+        len(made) > count
+        and preview.find_visible_image("A").size == (WIDTH, HEIGHT)
+        and not preview.find_visible_image("A").partial
+    )
 
 
 def test_panning_computes_what_comes_into_view(preview, engine):
@@ -124,20 +131,22 @@ def test_panning_computes_what_comes_into_view(preview, engine):
     preview.glimpse = SEEN
     request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     until_seen(preview)
-    first = preview.seen("A")
+    first = preview.find_visible_image("A")
     a_little = GRID / 2 / WIDTH
     preview.glimpse = VisibleRegion((0.25 + a_little, 0.4, 0.45 + a_little, 0.6), SEEN.picture, SEEN.names)
     preview.work(0.0)
-    assert preview.completing and preview.seen("A") is first, "there is a margin"
+    assert preview.completing and preview.find_visible_image("A") is first, "there is a margin"
     preview.glimpse = VisibleRegion((0.7, 0.1, 0.9, 0.3), SEEN.picture, SEEN.names)
     preview.work(0.0)
     assert not preview.completing
     until_seen(preview)
     got, region = part(preview, engine)
-    assert PictureRegion(region, (WIDTH, HEIGHT)).shows(preview.glimpse) and preview.seen("A") is not first
+    assert (
+        PictureRegion(region, (WIDTH, HEIGHT)).shows(preview.glimpse) and preview.find_visible_image("A") is not first
+    )
     np.testing.assert_array_equal(got, of(whole(engine, chain(stops=2.0)), region))
     settle(preview)
-    assert not preview.seen("A").partial
+    assert not preview.find_visible_image("A").partial
 
 
 @pytest.mark.parametrize("box", [(0.0, 0.0, 1.0, 1.0), (0.1, 0.1, 0.9, 0.9)])
@@ -147,7 +156,7 @@ def test_where_most_can_be_seen_all_is_computed_at_once(preview, engine, box):
     preview.glimpse = VisibleRegion(box, SEEN.picture, SEEN.names)
     request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     while preview.work(0.0):
-        assert not preview.seen("A").partial
+        assert not preview.find_visible_image("A").partial
         time.sleep(0.0005)
     np.testing.assert_array_equal(pixels(preview, engine), whole(engine, chain(stops=2.0)))
 
@@ -192,7 +201,7 @@ def test_a_proxy_shows_the_same_part(preview, engine):
     request_preview(preview, chain(stops=2.0), bindings=bindings, scale=0.5)
     until_seen(preview)
     got, region = part(preview, engine)
-    seen = preview.seen("A")
+    seen = preview.find_visible_image("A")
     assert (seen.size, seen.full_size, seen.scale) == ((WIDTH, HEIGHT), (2 * WIDTH, 2 * HEIGHT), 0.5)
     settle(preview)
     np.testing.assert_array_equal(got, of(pixels(preview, engine), region))
@@ -208,9 +217,9 @@ def test_both_sides_that_are_compared_are_seen_in_part(preview, engine):
     for name in "AB":
         got, region = part(preview, engine, name)
         np.testing.assert_array_equal(got, of(whole(engine, chain(stops=2.0), ports[name]), region))
-    assert not preview.seen("depth").partial, "what nobody looks at comes with the rest"
+    assert not preview.find_visible_image("depth").partial, "what nobody looks at comes with the rest"
     settle(preview)
-    assert not any(preview.seen(name).partial for name in ports)
+    assert not any(preview.find_visible_image(name).partial for name in ports)
 
 
 def test_frames_that_need_the_ones_before_are_made_whole(preview, engine):
@@ -221,7 +230,7 @@ def test_frames_that_need_the_ones_before_are_made_whole(preview, engine):
     preview.glimpse = SEEN
     request_preview(preview, graph.set(Port("light", "stops"), 2.0), ports, bindings=BINDINGS)
     while preview.work(0.0):
-        assert not preview.seen("A").partial
+        assert not preview.find_visible_image("A").partial
         time.sleep(0.0005)
     assert preview.remembers
 
@@ -233,7 +242,7 @@ def test_a_fault_is_found_as_ever(preview, engine):
     broken = chain().disconnect(Port("blur", "image"))
     request_preview(preview, broken, bindings=BINDINGS)
     settle(preview)
-    assert "blur" in preview.faults and preview.shown("A") is not None
+    assert "blur" in preview.faults and preview.find_whole_image("A") is not None
     request_preview(preview, chain(stops=2.0), bindings=BINDINGS)
     settle(preview)
     assert preview.faults == {}

@@ -42,10 +42,10 @@ def test_nothing_is_compiled_until_it_is_known(engine, preview, graph):
     preview.want(graph, {"A": Port("render", "depth")})
     for _ in range(20):
         preview.work(0.01)
-    assert len(asked) == 1 and preview.busy and preview.shown("A") is None and not preview.faults
+    assert len(asked) == 1 and preview.busy and preview.find_whole_image("A") is None and not preview.faults
     ready.append(True)
     worked(preview)
-    assert len(asked) == 2 and preview.shown("A") is not None and not preview.faults
+    assert len(asked) == 2 and preview.find_whole_image("A") is not None and not preview.faults
 
 
 def test_another_wish_does_not_wait(engine, preview, graph):
@@ -57,4 +57,4 @@ def test_another_wish_does_not_wait(engine, preview, graph):
     preview.work(0.01)
     preview.want(Graph().add("plain", Constant()), {"A": Port("plain", "out")})
     worked(preview)
-    assert preview.shown("A").port == Port("plain", "out")
+    assert preview.find_whole_image("A").port == Port("plain", "out")

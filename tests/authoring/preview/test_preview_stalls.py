@@ -71,7 +71,7 @@ def test_another_pass_begins_only_while_there_is_time(preview, engine):
         request_preview(preview, ten().set(Port("n9", "stops"), 1.0), bindings={})
         preview.work(0.0)
         assert count_passes(engine) <= before + 1
-    assert preview.shown("A") is not None
+    assert preview.find_whole_image("A") is not None
 
 
 def test_a_picture_that_is_removed_broken_and_replaced_while_it_is_edited(preview, engine, tmp_path: Path):
@@ -80,7 +80,7 @@ def test_a_picture_that_is_removed_broken_and_replaced_while_it_is_edited(previe
     bound = {"image": file}
     request_preview(preview, chain(), bindings=bound)
     settle(preview)
-    shown, whole = preview.shown("A"), file.read_bytes()
+    shown, whole = preview.find_whole_image("A"), file.read_bytes()
     np.testing.assert_array_equal(pixels(preview, engine), render_port(engine, chain()))
 
     def spoil_by(act) -> None:
@@ -88,7 +88,7 @@ def test_a_picture_that_is_removed_broken_and_replaced_while_it_is_edited(previe
         preview.refresh()
         settle(preview)
         assert set(preview.faults) == {"inputs.image"} and "shot.exr" in preview.faults["inputs.image"]
-        assert preview.shown("A") is shown and not preview.busy
+        assert preview.find_whole_image("A") is shown and not preview.busy
 
     spoil_by(file.unlink)
     spoil_by(lambda: file.write_bytes(whole[: len(whole) // 2]))
@@ -97,7 +97,7 @@ def test_a_picture_that_is_removed_broken_and_replaced_while_it_is_edited(previe
     write_exr(file, {"Combined": np.zeros((5, 9, 4), np.float32)}, FLOAT)
     preview.refresh()
     settle(preview)
-    assert preview.faults == {} and preview.shown("A").size == (9, 5) and not pixels(preview, engine).any()
+    assert preview.faults == {} and preview.find_whole_image("A").size == (9, 5) and not pixels(preview, engine).any()
 
 
 def test_a_picture_that_changes_size_between_planning_and_reading(preview, engine, tmp_path: Path):
@@ -118,7 +118,7 @@ def test_a_picture_that_changes_size_between_planning_and_reading(preview, engin
     assert "render again" in preview.faults["inputs.image"]
     preview.refresh()  # what the watcher asks for
     settle(preview)
-    assert preview.faults == {} and preview.shown("A").size == (6, 4)
+    assert preview.faults == {} and preview.find_whole_image("A").size == (6, 4)
 
 
 def test_a_panel_whose_port_is_broken_does_not_stop_the_other(preview, engine):

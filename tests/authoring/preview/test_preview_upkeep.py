@@ -38,9 +38,9 @@ def test_clearing_computes_all_anew(preview, engine):
     before = count_passes(engine)
     assert preview.memory[0] > PICTURE.nbytes
     preview.clear()
-    assert preview.memory[0] == 0 and preview.shown("A") is None and preview.busy
+    assert preview.memory[0] == 0 and preview.find_whole_image("A") is None and preview.busy
     settle(preview)
-    assert count_passes(engine) == 2 * before and preview.shown("A") is not None
+    assert count_passes(engine) == 2 * before and preview.find_whole_image("A") is not None
 
 
 def test_closing_leaves_no_lease(preview, engine):

@@ -172,7 +172,7 @@ def test_inside_a_group_an_animated_control_is_what_it_is_outside(session):
     session.apply(SetValue(outer, 3.0))
     session.enter(group)
     assert session.value_now(GAIN) == 3.0 == session.graph_now.value(GAIN)
-    assert session.animated_outside(GAIN) == ((), outer)
+    assert session.find_outer_animation(GAIN) == ((), outer)
     with pytest.raises(GraphError, match="change it there"):
         session.apply(SetValue(GAIN, 1.0))
 

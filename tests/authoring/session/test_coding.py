@@ -59,11 +59,11 @@ def written(session: Session, id: str = "code") -> CustomNode:
 def test_a_new_node_is_linked_and_says_what_it_is() -> None:
     session = Session(sandbox=UNRESTRICTED)
     session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input())))
-    assert "glsl" in session.fitting(Port("inputs", "image"), True)
+    assert "glsl" in session.list_fitting_types(Port("inputs", "image"), True)
     id = session.apply(AddNode("glsl", link=Port("inputs", "image")))
     item = written(session, id)
     assert (id, item.title, item.category) == ("code", "tint", "code")
-    assert session.linked(Port("code", "image")) == Port("inputs", "image")
+    assert session.find_source(Port("code", "image")) == Port("inputs", "image")
     assert item.values["amount"].doc == "How much of it." and item.values["shade"].length == 3
 
 

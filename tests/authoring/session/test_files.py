@@ -137,7 +137,7 @@ def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
     session.apply(SetValue(Port("n0", "gain"), 3.0))
     session.revert()
     assert session.value(Port("n0", "gain")) == 1.5 and not session.dirty
-    assert session.selection == {"n1", "n2"} and session.viewed() == Port("n1", "out")
+    assert session.selection == {"n1", "n2"} and session.find_viewed_port() == Port("n1", "out")
     session.undo()
     assert session.value(Port("n0", "gain")) == 3.0 and session.dirty
     written(path, chain(2))

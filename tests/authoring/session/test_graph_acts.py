@@ -168,7 +168,7 @@ def test_values(session):
     for value, said in ((99.0, "outside the range"), ("a", "takes a number"), (float("nan"), "not a finite")):
         with pytest.raises(GraphError, match=said):
             session.apply(SetValue(gain, value))
-    assert session.linked(port("n1.image")) == port("n0.out") and session.linked(gain) is None
+    assert session.find_source(port("n1.image")) == port("n0.out") and session.find_source(gain) is None
 
 
 def test_controls(session):
@@ -346,8 +346,8 @@ def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(se
 def test_presets_that_fit_a_port():
     session, files = Session(sandbox=UNRESTRICTED), presets.paths()
     session.apply(AddNode("gaussian_blur"))
-    some = session.fitting_files(files, port("gaussian_blur.out"), True)
+    some = session.list_fitting_files(files, port("gaussian_blur.out"), True)
     assert some and set(some) <= set(files)
     id = session.apply(AddGroupFile(some[0], link=port("gaussian_blur.out")))
     assert [str(end.node) for end, start in session.graph.links.items() if str(start) == "gaussian_blur.out"] == [id]
-    assert session.fitting_files(files, port("gaussian_blur.image"), False) == files, "all of them make a picture"
+    assert session.list_fitting_files(files, port("gaussian_blur.image"), False) == files, "all of them make a picture"

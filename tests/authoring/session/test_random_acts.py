@@ -319,7 +319,7 @@ def check(session: Session) -> None:
     passed = session.graph.ui.get("routes", {})
     assert {str(end) for end in session.graph.links} >= passed.keys()
     assert dots == {dot for route in passed.values() for dot in route}
-    viewed = session.viewed()
+    viewed = session.find_viewed_port()
     assert viewed is None or viewed.node in {*session.graph.nodes, "inputs", "outputs"}
     for port in (*session.graph.links, *session.graph.links.values()):
         assert port.node in {*session.graph.nodes, "inputs", "outputs"}

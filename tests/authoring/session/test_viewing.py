@@ -37,12 +37,12 @@ def session() -> Session:
 
 
 def test_without_a_choice_a_shows_the_output_and_b_nothing(session):
-    assert session.viewed() == port("outputs.image") and session.viewed("B") is None
+    assert session.find_viewed_port() == port("outputs.image") and session.find_viewed_port("B") is None
     session.apply(Disconnect(port("outputs.image")))
-    assert session.viewed() == port("n2.out"), "the last node"
+    assert session.find_viewed_port() == port("n2.out"), "the last node"
     session.select(session.elements, "extend")
     session.apply(DeleteSelection())
-    assert session.viewed() is None
+    assert session.find_viewed_port() is None
 
 
 def test_a_port_that_vanishes_comes_back(session):
@@ -50,11 +50,11 @@ def test_a_port_that_vanishes_comes_back(session):
     session.view(port("n0.out"), "B")
     session.select([ElementId("n0"), ElementId("n1")])
     session.apply(DeleteSelection())
-    assert (session.viewed(), session.viewed("B")) == (port("outputs.image"), None)
+    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("outputs.image"), None)
     session.undo()
-    assert (session.viewed(), session.viewed("B")) == (port("n1.out"), port("n0.out"))
+    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("n1.out"), port("n0.out"))
     session.view_nothing("B")
-    assert session.viewed("B") is None
+    assert session.find_viewed_port("B") is None
 
 
 def test_the_view_follows_a_new_name_and_back(session):
@@ -62,10 +62,10 @@ def test_the_view_follows_a_new_name_and_back(session):
     session.view(port("inputs.beauty"), "B")
     session.apply(RenameNode("n1", "middle"))
     session.apply(RenameEnd(ElementId("inputs.beauty"), "plate"))
-    assert (session.viewed(), session.viewed("B")) == (port("middle.out"), port("inputs.plate"))
+    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("middle.out"), port("inputs.plate"))
     session.undo()
     session.undo()
-    assert (session.viewed(), session.viewed("B")) == (port("n1.out"), port("inputs.beauty"))
+    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("n1.out"), port("inputs.beauty"))
 
 
 def test_viewing_a_node_again_shows_its_next_output(session):
@@ -73,10 +73,10 @@ def test_viewing_a_node_again_shows_its_next_output(session):
     seen = []
     for _ in range(3):
         session.view_element(ElementId(id))
-        seen.append(str(session.viewed()))
+        seen.append(str(session.find_viewed_port()))
     assert seen == ["split.grey", "split.rest", "split.grey"]
     session.view_element(ElementId("outputs.image"))
-    assert session.viewed() == port("outputs.image")
+    assert session.find_viewed_port() == port("outputs.image")
     with pytest.raises(GraphError, match=r"no 'n9\.out' to show"):
         session.view(port("n9.out"))
 
@@ -85,15 +85,15 @@ def test_every_group_has_a_view_of_its_own(session):
     session.view(port("n0.out"))
     session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup("look")))
-    assert session.viewed() == port("outputs.out")
+    assert session.find_viewed_port() == port("outputs.out")
     session.view_element(ElementId("n1"))
     session.leave()
-    assert session.viewed() == port("n0.out")
+    assert session.find_viewed_port() == port("n0.out")
     session.enter("look")
-    assert session.viewed() == port("n1.out")
-    assert session.viewed_in_root() == port("look/n1.out")
+    assert session.find_viewed_port() == port("n1.out")
+    assert session.find_viewed_root_port() == port("look/n1.out")
     session.view(port("inputs.image"))
-    assert session.viewed_in_root() == port("n0.out"), "what feeds the group"
+    assert session.find_viewed_root_port() == port("n0.out"), "what feeds the group"
 
 
 def test_what_the_compiler_is_asked_for():
@@ -116,11 +116,11 @@ def test_what_the_compiler_is_asked_for():
     session.enter(session.apply(MakeGroup("inner")))
     for name, same in (("inputs.image", "a.out"), ("b.out", "b.out"), ("outputs.out", "b.out")):
         session.view(port(name))
-        assert key(session.viewed_in_root()) == wanted[same]
+        assert key(session.find_viewed_root_port()) == wanted[same]
     session.leave()
     for name, same in (("inputs.image", "inputs.image"), ("a.out", "a.out"), ("inner.out", "b.out")):
         session.view(port(name))
-        assert key(session.viewed_in_root()) == wanted[same]
+        assert key(session.find_viewed_root_port()) == wanted[same]
 
 
 def test_viewer_keys(session):
@@ -130,7 +130,7 @@ def test_viewer_keys(session):
     assert session.viewers == {1: port("n1.out"), 2: port("inputs.beauty")}
     assert session.graph.ui["viewers"] == {"1": "n1.out", "2": "inputs.beauty"}
     session.recall_viewer(1, "B")
-    assert session.viewed("B") == port("n1.out") and session.viewed() == port("inputs.beauty")
+    assert session.find_viewed_port("B") == port("n1.out") and session.find_viewed_port() == port("inputs.beauty")
     session.apply(RenameNode("n1", "middle"))
     assert session.viewers[1] == port("middle.out")
     session.select(ElementId("middle"))
@@ -147,4 +147,4 @@ def test_another_document_forgets_what_was_viewed(session):
     session.view(port("n0.out"))
     session.new()
     session.apply(ReplaceGraph("Start", chain(3)))
-    assert session.viewed() == port("outputs.image")
+    assert session.find_viewed_port() == port("outputs.image")

@@ -48,7 +48,7 @@ def editor() -> Any:
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
         lights={},
-        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
+        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act(), add=lambda text: None),
     )
 

@@ -66,7 +66,7 @@ def editor() -> Any:
         interface=SimpleNamespace(dragging=False),
         lights={},
         said=said,
-        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
+        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act(), add=said.append),
     )
     graph = made.session.graph.add("lamps", Lit()).add("camera", catalogue()["camera"]())
@@ -94,7 +94,7 @@ def see(editor: Any, socket: str, *values: float) -> None:
     session.select([ElementId("lamps")])
     known = {"depth": "depth", "place": "position"}
     editor.probe = SimpleNamespace(read_pixel=lambda texture, x, y: values)
-    editor.preview.shown = lambda name: (
+    editor.preview.find_whole_image = lambda name: (
         SimpleNamespace(
             port=Port(source, socket),
             full_size=(400, 200),

@@ -36,7 +36,7 @@ def editor() -> Any:
         viewer=ViewerState(picture=(400, 200)),
         interface=SimpleNamespace(dragging=False),
         lights={},
-        preview=SimpleNamespace(camera=lambda port: None, shown=lambda name: None),
+        preview=SimpleNamespace(camera=lambda port: None, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act()),
     )
     made.session.apply(AddNode("scene"))
@@ -96,7 +96,7 @@ def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -
     before = now(editor)
     editor.viewer.orbiting = True
     editor.probe = SimpleNamespace(read_pixel=lambda texture, x, y: (depth or 1e10,))
-    editor.preview.shown = lambda name: SimpleNamespace(
+    editor.preview.find_whole_image = lambda name: SimpleNamespace(
         port=Port("scene", "depth"),
         full_size=(400, 200),
         texture=SimpleNamespace(size=(400, 200)),
@@ -169,7 +169,7 @@ def test_a_camera_that_something_else_moves_is_left_alone(editor: Any) -> None:
     assert orbited(session) == "scene"
     graph = session.graph
     linked = replace(graph, links={**graph.links, Port("scene", "azimuth"): Port(INPUTS, "angle")})
-    assert orbited(SimpleNamespace(graph=linked, viewed=session.viewed, active="scene")) == ""  # type: ignore[arg-type]
+    assert orbited(SimpleNamespace(graph=linked, find_viewed_port=session.find_viewed_port, active="scene")) == ""  # type: ignore[arg-type]
 
 
 def test_only_where_it_is_wanted_the_mouse_moves_the_camera(editor: Any) -> None:
