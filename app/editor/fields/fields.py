@@ -39,7 +39,7 @@ class Typing:
     merge: str = ""
     starting: bool = True
     """True until the text cursor is in it."""
-    drawn: bool = True
+    is_drawn: bool = True
     tab: int = 0
     """1 or -1: the next or previous field is wanted."""
     has_stepped: bool = False
@@ -114,7 +114,7 @@ class Fields:
         self.order.clear()
         self.eyedropper = ""
         if self.typing:
-            self.typing.drawn = False
+            self.typing.is_drawn = False
         else:
             self.parts.clear()
             self.owners.clear()
@@ -122,7 +122,7 @@ class Fields:
     def end(self) -> tuple[str, Edit] | None:
         """Call after them: what was typed in a field that is not there any more, since something else was selected."""
         abandoned = self.typing
-        if abandoned is None or abandoned.drawn:
+        if abandoned is None or abandoned.is_drawn:
             return None
         self.typing = None
         try:

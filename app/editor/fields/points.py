@@ -100,7 +100,7 @@ def insert_point(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers,
     for index, existing in enumerate(points):
         if width == 2 and abs(existing[0] - point[0]) < NEAREST:
             return numbers, index
-    at = sum(other[0] <= point[0] for other in points)
+    at = sum(existing[0] <= point[0] for existing in points)
     points.insert(at, (min(max(point[0], 0.0), 1.0), *point[1:]))
     return join_points(points), at
 

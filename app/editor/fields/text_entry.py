@@ -19,7 +19,7 @@ def text_entry(fields: Fields, width: float, *, lines: int = 1, hint: str = "") 
     """
     typing = fields.typing
     assert typing is not None
-    typing.drawn = True
+    typing.is_drawn = True
     if typing.starting:
         imgui.set_keyboard_focus_here()
     escaped, shift = imgui.is_key_pressed(imgui.Key.escape), imgui.get_io().key_shift

@@ -54,7 +54,9 @@ class ValueRows:
         source = session.find_source(port)
         moves = source is None and session.can_animate(port)
         value = value_now(session, port)[0] if moves else graph.value(port)
-        changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)
+        changed = any(
+            row_port in graph.animation or graph.value(row_port) != default_of(graph, row_port) for row_port in ports
+        )
         control = session.control_of(port) if len(ports) == 1 else None
         rows.name(
             key,
@@ -81,7 +83,7 @@ class ValueRows:
             self._keying.note(rows, port, spoken(value))
         else:
             mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
-            mixed = any(value_now(session, one)[0] != value for one in ports[1:])
+            mixed = any(value_now(session, other_port)[0] != value for other_port in ports[1:])
             edit = self._field(rows, ports, declaration, value, width - mark, mixed)
             rows.record(key)
             released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)

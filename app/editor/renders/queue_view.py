@@ -80,8 +80,8 @@ class RenderQueueView:
             draw_empty_panel(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
             return
         running, waiting = exports.running, exports.waiting
-        ended = [one for one in exports.all if one not in running and one not in waiting]
-        ended.sort(key=lambda one: -one.ended_at)
+        ended = [render for render in exports.all if render not in running and render not in waiting]
+        ended.sort(key=lambda render: -render.ended_at)
         imgui.align_text_to_frame_padding()
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
         draw_dim(self._context, ", ".join(f"{count} {state}" for count, state in counts if count))
@@ -184,7 +184,7 @@ class RenderQueueView:
         """What it can be compared with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
-        candidates = [one for one in self._context.exports.all if one is not export and one.written_files]
+        candidates = [render for render in self._context.exports.all if render is not export and render.written_files]
         for place, candidate in enumerate(candidates):
             path = candidate.destinations[0][1]
             name = f"{path.parent.name}/{title(candidate)}" if title(candidate) == title(export) else title(candidate)
@@ -259,7 +259,7 @@ class RenderQueueView:
 
     def _forget(self, renders: tuple[QueuedRender, ...]) -> None:
         for remembered in (self._seen, self._shown):
-            for export in [one for one in remembered if one not in renders]:
+            for export in [render for render in remembered if render not in renders]:
                 del remembered[export]
         self._open.intersection_update(renders)
 

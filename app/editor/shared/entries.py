@@ -92,9 +92,9 @@ class Section:
 def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequence[str] = ()) -> tuple[Section, ...]:
     """What the list shows: the best matches of `query`, or without one the recent ones and then all by category."""
     if query.strip():
-        titles = match(query, [entry.title for entry in entries])
-        named = [entries[one.index] for one in titles]
-        described = [entries[one.index] for one in match(query, [entry.searched for entry in entries])]
+        title_matches = match(query, [entry.title for entry in entries])
+        named = [entries[hit.index] for hit in title_matches]
+        described = [entries[hit.index] for hit in match(query, [entry.searched for entry in entries])]
         rest = [entry for entry in described if entry not in named and _says(entry, query)]
         return (Section("", (*named, *rest)),)
     by_id = {entry.id: entry for entry in entries}

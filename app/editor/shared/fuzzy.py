@@ -41,7 +41,7 @@ def split_matched(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bo
 def _rank(query: str, candidates: tuple[str, ...]) -> tuple[Match, ...]:
     words = query.split()
     matches = (_match_words(index, words, text) for index, text in enumerate(candidates))
-    return tuple(sorted((one for one in matches if one), key=lambda one: (-one.score, one.index)))
+    return tuple(sorted((hit for hit in matches if hit), key=lambda hit: (-hit.score, hit.index)))
 
 
 def _match_words(index: int, words: list[str], text: str) -> Match | None:

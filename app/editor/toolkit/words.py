@@ -62,12 +62,12 @@ def tip(text: str) -> None:
 
 def cut_end(text: str, width: float) -> str:
     """`text`, or as much of its beginning as fits in `width` pixels, with an ellipsis."""
-    return _cut(text, width, lambda kept: text[:kept] + "…")
+    return _cut(text, width, lambda length: text[:length] + "…")
 
 
 def cut_middle(text: str, width: float) -> str:
     """`text`, or its two ends if it is wider than `width` pixels: for paths."""
-    return _cut(text, width, lambda kept: text[: kept // 2] + "…" + text[len(text) - (kept - kept // 2) :])
+    return _cut(text, width, lambda length: text[: length // 2] + "…" + text[len(text) - (length - length // 2) :])
 
 
 def _cut(text: str, width: float, shorter: Callable[[int], str]) -> str:

@@ -86,7 +86,7 @@ def _region(context: ViewerContext) -> None:
     viewer.region = None
 
 
-def _shown(context: ViewerContext) -> bool:
+def _views_picture(context: ViewerContext) -> bool:
     return context.session.find_viewed_port("A") is not None
 
 
@@ -120,7 +120,7 @@ def _scope(name: str) -> Action[ViewerContext]:
     )
 
 
-def _numbered(number: int) -> tuple[Action[ViewerContext], Action[ViewerContext]]:
+def _make_bookmark_actions(number: int) -> tuple[Action[ViewerContext], Action[ViewerContext]]:
     recall: Action[ViewerContext] = Action(
         f"viewer.recall.{number}",
         f"Show {number}",
@@ -136,13 +136,13 @@ def _numbered(number: int) -> tuple[Action[ViewerContext], Action[ViewerContext]
         lambda context: context.session.apply(AssignViewer(number)),
         "Viewer/Bookmarks",
         f"Ctrl+{number}",
-        enabled=_shown,
+        enabled=_views_picture,
         doc="Let this key show the active node, or else what is viewed now.",
     )
     return recall, assign
 
 
-_BOOKMARKS = tuple(_numbered(number) for number in range(1, 10))
+_BOOKMARKS = tuple(_make_bookmark_actions(number) for number in range(1, 10))
 
 VIEWER: tuple[Action[ViewerContext], ...] = (
     Action(
@@ -203,7 +203,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Viewer/Compare",
         "Shift+X",
         "viewer",
-        lambda context: _shown(context) and context.session.find_viewed_port("B") is not None,
+        lambda context: _views_picture(context) and context.session.find_viewed_port("B") is not None,
     ),
     Action(
         "viewer.brighter",
@@ -270,7 +270,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Find the First Node That Makes Them",
         _set(finding=True),
         "Viewer/Warnings",
-        enabled=_shown,
+        enabled=_views_picture,
         doc="Looks at one node after the other, from the inputs on.",
     ),
     Action(
@@ -280,7 +280,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Viewer",
         "Shift+R",
         "viewer",
-        _shown,
+        _views_picture,
         lambda context: context.viewer.drawing_region or context.viewer.region is not None,
         contexts=_SHOWN,
         doc="Drag a rectangle: scopes and the pixel table measure only that, and the rest is dimmed.",
@@ -313,7 +313,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Viewer",
         "Ctrl+C",
         "viewer",
-        _shown,
+        _views_picture,
         contexts=_SHOWN,
         doc="The numbers under the pointer.",
     ),
@@ -322,7 +322,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Save What Is Seen...",
         _set(saving=True),
         "Viewer",
-        enabled=_shown,
+        enabled=_views_picture,
         contexts=_SHOWN,
         doc="The picture as the viewer shows it, at its own size.",
     ),

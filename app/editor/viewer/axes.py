@@ -24,8 +24,8 @@ _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5
 
 def axes(camera: CameraModel) -> tuple[tuple[str, Point, float], ...]:
     """x, y and z as the camera sees them, the farthest first: right and down, and how far ahead."""
-    found = [(name, (camera.right[at], camera.down[at]), camera.forward[at]) for at, name in enumerate("xyz")]
-    return tuple(sorted(found, key=lambda axis: -axis[2]))
+    arms = [(name, (camera.right[at], camera.down[at]), camera.forward[at]) for at, name in enumerate("xyz")]
+    return tuple(sorted(arms, key=lambda axis: -axis[2]))
 
 
 def draw_axes(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:

@@ -10,7 +10,7 @@ import math
 from halation.nodes import CameraModel
 
 from .geometry import Point, Sight
-from .perspective import Place, dot, moved, unit
+from .perspective import Place, dot, move_place, unit
 
 RADIUS, MARGIN = 46.0, 14.0
 """Of the disk, and between it and the corner, at UI scale 1."""
@@ -48,7 +48,7 @@ def direction_of(camera: CameraModel, flat: Point) -> Place:
     out = math.hypot(*flat)
     angle = min(out, 1.0) * math.pi
     x, y = (part / out * math.sin(angle) for part in flat) if out > 0.0 else (0.0, 0.0)
-    way = moved((0.0, 0.0, 0.0), camera.right, -x)
-    way = moved(moved(way, camera.down, -y), camera.forward, math.cos(angle))
+    way = move_place((0.0, 0.0, 0.0), camera.right, -x)
+    way = move_place(move_place(way, camera.down, -y), camera.forward, math.cos(angle))
     first, second, third = (round(part, 5) for part in unit(way))
     return first, second, third

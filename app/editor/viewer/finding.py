@@ -23,7 +23,7 @@ class InvalidPixelSearch:
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
         self._steps: Iterator[NonfinitePixel | None] | None = None
-        self._of: object = None
+        self._search_key: object = None
 
     def step(self) -> None:
         """Go on; at the end, select the node and say what was found. Another graph starts it anew."""
@@ -34,9 +34,9 @@ class InvalidPixelSearch:
         if port is None:
             self._context.viewer.finding = False
             return
-        if self._of != (id(self._context.session.root), port):
+        if self._search_key != (id(self._context.session.root), port):
             self._stop()
-            self._of = (id(self._context.session.root), port)
+            self._search_key = (id(self._context.session.root), port)
             self._steps = _search(self._context, port)
         try:
             self._go_on()
@@ -47,40 +47,40 @@ class InvalidPixelSearch:
     def _go_on(self) -> None:
         assert self._steps is not None
         started = time.perf_counter()
-        found = None
-        for found in self._steps:
-            if found is not None or time.perf_counter() - started > BUDGET:
+        bad_pixel = None
+        for bad_pixel in self._steps:
+            if bad_pixel is not None or time.perf_counter() - started > BUDGET:
                 break
         else:
             self._context.log.add("every number is finite up to here")
             self._context.viewer.finding = False
-        if found is not None:
+        if bad_pixel is not None:
             self._context.viewer.finding = False
-            _show(self._context, found)
+            _show(self._context, bad_pixel)
         if not self._context.viewer.finding:
             self._stop()
 
     def _stop(self) -> None:
-        steps, self._steps, self._of = self._steps, None, None
+        steps, self._steps, self._search_key = self._steps, None, None
         if steps is not None and hasattr(steps, "close"):
             steps.close()  # type: ignore[attr-defined]
 
 
 def _search(context: ViewerContext, port: Port) -> Iterator[NonfinitePixel | None]:
     viewer = context.viewer
-    wanted = RenderRequest(context.session.bindings, {"A": port}, scale=viewer.proxy)
-    return find_first_nonfinite(context.preview.renderer, context.session.root, wanted, port)
+    request = RenderRequest(context.session.bindings, {"A": port}, scale=viewer.proxy)
+    return find_first_nonfinite(context.preview.renderer, context.session.root, request, port)
 
 
-def _show(context: ViewerContext, found: NonfinitePixel) -> None:
+def _show(context: ViewerContext, bad_pixel: NonfinitePixel) -> None:
     """Go to the node that was found, and mark the pixel."""
-    x, y = found.pixel
+    x, y = bad_pixel.pixel
     context.log.add(
-        f"{found.path} is the first node that makes {found.value} (pixel {x}, {y} of its output)", "warning"
+        f"{bad_pixel.path} is the first node that makes {bad_pixel.value} (pixel {x}, {y} of its output)", "warning"
     )
-    *place, name = found.path.split("/")
+    *place, name = bad_pixel.path.split("/")
     context.log.attempt(lambda: context.session.go(tuple(place)))
-    port = Port(found.port.node.rpartition("/")[2], found.port.socket)
+    port = Port(bad_pixel.port.node.rpartition("/")[2], bad_pixel.port.socket)
     element = ElementId(name) if name in context.session.graph.nodes else ElementId.of_port(port)
     context.log.attempt(lambda: context.session.select(element))
     context.canvas.fit({element})

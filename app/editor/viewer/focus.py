@@ -37,10 +37,10 @@ def is_distance(port: Port) -> bool:
 def is_idle(session: Session, port: Port) -> bool:
     """True for a point that does not matter now, as a distance is chosen."""
     item = session.graph.nodes.get(port.node)
-    return port.socket == _POINT and focuses(item) and focused_by(session, port.node) != "point"
+    return port.socket == _POINT and focuses(item) and read_focus_choice(session, port.node) != "point"
 
 
-def focused_by(session: Session, id: str) -> str:
+def read_focus_choice(session: Session, id: str) -> str:
     """What a node that focuses goes by."""
     return str(session.value(Port(id, _CHOICE)))
 

@@ -76,7 +76,7 @@ class Sight:
         x, y = (math.floor(part) for part in self.pixel(at))
         return (x, y) if 0 <= x < self.picture[0] and 0 <= y < self.picture[1] else None
 
-    def zoomed(self, factor: float, at: Point) -> Sight:
+    def zoom_by(self, factor: float, at: Point) -> Sight:
         """Nearer by `factor`, with the same picture position under the screen point `at`."""
         zoom = min(max(self.zoom * factor, MIN_ZOOM), MAX_ZOOM)
         grown = zoom / self.zoom
@@ -86,7 +86,7 @@ class Sight:
         )
         return replace(self, zoom=zoom, pan=(x, y))
 
-    def panned(self, dx: float, dy: float) -> Sight:
+    def pan_by(self, dx: float, dy: float) -> Sight:
         """Moved by screen units; some of the picture always stays in sight."""
         moved = (self.pan[0] + dx * self.density, self.pan[1] + dy * self.density)
         x, y = (
@@ -106,14 +106,14 @@ def texel(pixel: Pixels, full: Pixels, size: Pixels) -> Pixels:
 
 def texels(box: Box, size: Pixels) -> tuple[int, int, int, int]:
     """The pixels (x, y, width, height; at least one) of a texture that a box of fractions covers."""
-    left, top, right, bottom = ordered(box)
+    left, top, right, bottom = order_box(box)
     x, y = (min(max(math.floor(part * size[i] + 1e-6), 0), size[i] - 1) for i, part in enumerate((left, top)))
     ends = (min(max(math.ceil(part * size[i] - 1e-6), 1), size[i]) for i, part in enumerate((right, bottom)))
     x1, y1 = ends
     return x, y, max(x1 - x, 1), max(y1 - y, 1)
 
 
-def ordered(box: Box) -> Box:
+def order_box(box: Box) -> Box:
     """The same box with left before right and top before bottom, inside the picture."""
     (left, right), (top, bottom) = sorted((box[0], box[2])), sorted((box[1], box[3]))
     left, top, right, bottom = (min(max(part, 0.0), 1.0) for part in (left, top, right, bottom))
@@ -170,14 +170,14 @@ def box_grip(at: Point, box: Box, reach: float) -> Grip:
     return sides.get((vertical, horizontal), "")
 
 
-def box_dragged(box: Box, grip: Grip, by: Point) -> Box:
+def drag_box(box: Box, grip: Grip, by: Point) -> Box:
     """A box of fractions after one of its grips was moved; it stays inside the picture."""
     left, top, right, bottom = box
     if grip == "move":
         dx = min(max(by[0], -left), 1.0 - right)
         dy = min(max(by[1], -top), 1.0 - bottom)
         return left + dx, top + dy, right + dx, bottom + dy
-    return ordered(
+    return order_box(
         (
             left + (by[0] if "w" in grip else 0.0),
             top + (by[1] if "n" in grip else 0.0),

@@ -28,16 +28,16 @@ _ASTRAY = 0.02
 
 def depths(context: ViewerContext) -> dict[str, Port]:
     """What is to be computed for handles, by name."""
-    session, found = context.session, dict[str, Port]()
+    session, ports = context.session, dict[str, Port]()
     if context.viewer.orbits and (scene := scene_at(context)) is not None and "depth" in scene.outputs:
-        found[SCENE] = Port(context.viewer.scene, "depth")
+        ports[SCENE] = Port(context.viewer.scene, "depth")
     item = session.graph.nodes.get(session.active)
     if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
         linked = {DEPTH: session.find_source(Port(session.active, "depth"))}
         if not focuses(item):
             linked[PLACE] = session.find_source(Port(session.active, "position"))
-        found |= {name: port for name, port in linked.items() if port is not None}
-    return found
+        ports |= {name: port for name, port in linked.items() if port is not None}
+    return ports
 
 
 def depth_at(context: ViewerContext, at: Point, name: str = DEPTH) -> float | None:
@@ -53,19 +53,19 @@ def surface_at(context: ViewerContext, camera: CameraModel, at: Point) -> tuple[
     values = _read(context, PLACE, at)
     if values is not None:
         x, y, z = values[:3]
-        seen = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
-        return ((x, y, z), seen[2]) if seen and math.dist(seen[:2], at) < _ASTRAY else None
+        projection = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
+        return ((x, y, z), projection[2]) if projection and math.dist(projection[:2], at) < _ASTRAY else None
     depth = depth_at(context, at)
     return (unproject(camera, *at, depth), depth) if depth is not None and depth < FAR else None
 
 
 def _read(context: ViewerContext, name: str, at: Point) -> tuple[float, ...] | None:
     """Once it is there: until then, what was read of another node is shown under that name."""
-    port, shown = depths(context).get(name), context.preview.find_whole_image(name)
+    port, image = depths(context).get(name), context.preview.find_whole_image(name)
     inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
-    if port is None or shown is None or not inside:
+    if port is None or image is None or not inside:
         return None
-    if shown.port != Port("/".join((*context.session.place, port.node)), port.socket):
+    if image.port != Port("/".join((*context.session.place, port.node)), port.socket):
         return None
-    width, height = shown.full_size
-    return context.viewer.reader.pixel(context.probe, name, shown, (int(at[0] * width), int(at[1] * height)))
+    width, height = image.full_size
+    return context.viewer.reader.read_pixel(context.probe, name, image, (int(at[0] * width), int(at[1] * height)))

@@ -12,9 +12,8 @@ from imgui_bundle import imgui
 from ..theme.style import ui_scale
 from .geometry import Point, Sight
 from .holding import HandleTarget, MouseHold, aim
-from .lights import add, can_add, put, token, turn
-from .orbit import Orbit, scene_at
-from .orbit import put as put_camera
+from .lights import add_light, can_add, make_merge_token, place_light, turn_spot
+from .orbit import Orbit, move_camera, scene_at
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -49,9 +48,9 @@ class ViewerInput:
         self._context = context
         self._hold: MouseHold | None = None
         self.aim = HandleTarget("pan")
-        self._turned = "", 0.0
+        self._last_turn = "", 0.0
         """What the wheel changed last, and when."""
-        self.picked: Point | None = None
+        self.picked_point: Point | None = None
         """Where the eyedropper was pressed or dragged to in this frame."""
 
     def follow(self, sight: Sight) -> None:
@@ -59,7 +58,7 @@ class ViewerInput:
         viewer, io = self._context.viewer, imgui.get_io()
         hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
         at = (io.mouse_pos.x, io.mouse_pos.y)
-        self.picked = None
+        self.picked_point = None
         viewer.hovered = hovered or active
         imgui.set_item_key_owner(imgui.Key.mouse_wheel_y)
         if hovered and not active:
@@ -86,19 +85,19 @@ class ViewerInput:
             else:
                 imgui.open_popup("viewer menu")
             return
-        taken = self.aim if left else HandleTarget("track" if self._context.viewer.orbits else "pan")
-        taken = HandleTarget("pan") if imgui.is_key_down(imgui.Key.space) else taken
+        target = self.aim if left else HandleTarget("track" if self._context.viewer.orbits else "pan")
+        target = HandleTarget("pan") if imgui.is_key_down(imgui.Key.space) else target
         twice = left and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
-        if twice and taken.what in ("pan", "orbit") and sight.under(at) and can_add(self._context):
-            add(self._context, sight.fraction(at))
+        if twice and target.kind in ("pan", "orbit") and sight.under(at) and can_add(self._context):
+            add_light(self._context, sight.fraction(at))
             return
-        self._hold = MouseHold.begin(self._context, sight, at, taken, ui_scale())
+        self._hold = MouseHold.begin(self._context, sight, at, target, ui_scale())
 
     def _drag(self, sight: Sight, at: Point, active: bool) -> None:
         assert self._hold is not None
         delta = imgui.get_io().mouse_delta
-        if self._hold.aim.what == "pick":
-            self.picked = at
+        if self._hold.aim.kind == "pick":
+            self.picked_point = at
         if self._hold.token and imgui.is_key_pressed(imgui.Key.escape, False):
             self._context.session.abandon(self._hold.token)
             self._hold = None
@@ -112,41 +111,41 @@ class ViewerInput:
         """Zoom; over a light, take that nearer or farther; where the mouse moves a camera, go nearer."""
         if self._hold is not None and self._hold.token:
             return
-        lamp, what = self.aim.lamp, self.aim.what
-        if lamp is not None and what in ("light", "light depth", "light drop"):
-            self._begin_turn(token(lamp))
-            put(self._context, lamp, lamp.at, lamp.depth / factor)
-        elif lamp is not None and what in ("goal", "goal depth") and lamp.aims:
-            self._begin_turn(token(lamp))
-            turn(self._context, lamp, lamp.aims[0], lamp.aims[1] / factor)
-        elif what in ("orbit", "track") and not imgui.is_key_down(imgui.Key.space):
+        lamp, kind = self.aim.lamp, self.aim.kind
+        if lamp is not None and kind in ("light", "light depth", "light drop"):
+            self._begin_turn(make_merge_token(lamp))
+            place_light(self._context, lamp, lamp.at, lamp.depth / factor)
+        elif lamp is not None and kind in ("goal", "goal depth") and lamp.aims:
+            self._begin_turn(make_merge_token(lamp))
+            turn_spot(self._context, lamp, lamp.aims[0], lamp.aims[1] / factor)
+        elif kind in ("orbit", "track") and not imgui.is_key_down(imgui.Key.space):
             scene = scene_at(self._context)
             if scene is not None:
                 self._begin_turn(self._context.viewer.scene)
-                put_camera(self._context, Orbit.of(scene).nearer(factor), "orbit")
+                move_camera(self._context, Orbit.of(scene).approach_by(factor), "orbit")
         else:
             self._zoom(sight, factor, at)
 
     def _begin_turn(self, of: str) -> None:
         """What the wheel does without a pause is one step."""
-        last, when = self._turned
+        last, when = self._last_turn
         if of != last or imgui.get_time() - when > _PAUSE:
             self._context.session.seal()
-        self._turned = of, imgui.get_time()
+        self._last_turn = of, imgui.get_time()
 
     def _zoom(self, sight: Sight, factor: float, at: Point) -> None:
         """A zoom that passes 1 stops there."""
-        now = sight.zoom
-        if (now - 1.0) * (now * factor - 1.0) < 0.0 and not math.isclose(now, 1.0):
-            factor = 1.0 / now
-        zoomed = sight.zoomed(factor, at)
-        self._context.viewer.zoom, self._context.viewer.pan = zoomed.zoom, zoomed.pan
+        zoom = sight.zoom
+        if (zoom - 1.0) * (zoom * factor - 1.0) < 0.0 and not math.isclose(zoom, 1.0):
+            factor = 1.0 / zoom
+        new_sight = sight.zoom_by(factor, at)
+        self._context.viewer.zoom, self._context.viewer.pan = new_sight.zoom, new_sight.pan
 
     def _show_cursor(self) -> None:
-        what = self._hold.aim if self._hold else self.aim
-        if what.what in ("handle", "track", "sun") or what.lamp:
+        target = self._hold.aim if self._hold else self.aim
+        if target.kind in ("handle", "track", "sun") or target.lamp:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
-        elif what.what == "matte" or (what.what in ("pan", "orbit") and self._hold and self._hold.moved):
+        elif target.kind == "matte" or (target.kind in ("pan", "orbit") and self._hold and self._hold.moved):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-        elif what.grip in _CURSORS:
-            imgui.set_mouse_cursor(_CURSORS[what.grip])
+        elif target.grip in _CURSORS:
+            imgui.set_mouse_cursor(_CURSORS[target.grip])

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..shared.action import Action
 from .focus import find_focus_port, pick_focus
-from .lights import can_remove, remove
+from .lights import can_remove, remove_chosen_light
 from .orbit import frame_scene
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
     Action(
         "viewer.remove_light",
         "Remove the Light",
-        remove,
+        remove_chosen_light,
         "Viewer/Handles",
         "Delete",
         "viewer",

@@ -27,13 +27,13 @@ def handles(session: Session) -> tuple[ViewerHandle, ...]:
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
-    found: list[ViewerHandle] = []
+    free_handles: list[ViewerHandle] = []
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
         if value.handle and session.find_source(port) is None and not is_idle(session, port):
             x, y = cast("Point", session.graph_now.value(port))
-            found.append(ViewerHandle(port, (x, y)))
-    return tuple(found)
+            free_handles.append(ViewerHandle(port, (x, y)))
+    return tuple(free_handles)
 
 
 def takes_position(session: Session, port: Port) -> bool:

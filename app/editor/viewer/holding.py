@@ -11,18 +11,17 @@ from msgspec import structs
 from ...authoring.commands import SetValue
 from ...graph import Port
 from .dome import RADIUS, direction_at, knob_of, middle_of
-from .geometry import Box, Grip, Point, Sight, box_dragged, box_grip, ordered, wipe_angle, wipe_grip
+from .geometry import Box, Grip, Point, Sight, box_grip, drag_box, order_box, wipe_angle, wipe_grip
 from .ground import FAR, SCENE, depth_at
 from .handles import handles
-from .lights import Lamp, change, drop, lamps, put, suns, token, turn
+from .lights import Lamp, change_light, drop_light, lamps, make_merge_token, place_light, suns, turn_spot
 from .mattes import click, picks
-from .orbit import Orbit, aspect_of, scene_at
-from .orbit import put as put_camera
+from .orbit import Orbit, aspect_of, move_camera, scene_at
 
 if TYPE_CHECKING:
     from .context import ViewerContext
 
-What = Literal[
+HoldKind = Literal[
     "pan",
     "handle",
     "light",
@@ -56,7 +55,7 @@ DOUBLINGS = 3.0
 class HandleTarget:
     """What a press of the button would take hold of."""
 
-    what: What
+    kind: HoldKind
     grip: Grip = ""
     port: Port | None = None
     lamp: Lamp | None = None
@@ -83,8 +82,8 @@ def aim(
     for handle in handles(context.session):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
             return HandleTarget("handle", port=handle.port)
-    if found := _light(context, sight, at, scale, alt, shift):
-        return found
+    if light_target := _light(context, sight, at, scale, alt, shift):
+        return light_target
     if viewer.compare == "wipe" and sight.under(at):
         grip = wipe_grip(at, sight.place(viewer.wipe), viewer.wipe_angle, ARM * scale, reach)
         if grip:
@@ -138,23 +137,23 @@ class MouseHold:
     def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
         """Take hold of what is aimed at."""
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
-        held = next((one.at for one in handles(context.session) if one.port == aim.port), None)
+        held_point = next((handle.at for handle in handles(context.session) if handle.port == aim.port), None)
         if aim.lamp is not None:
-            held, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
-            if aim.what in ("goal", "goal depth") and aim.lamp.aims:
-                held, hold.depth = aim.lamp.aims
-            elif aim.what == "sun":
+            held_point, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
+            if aim.kind in ("goal", "goal depth") and aim.lamp.aims:
+                held_point, hold.depth = aim.lamp.aims
+            elif aim.kind == "sun":
                 knob = knob_of(sight, scale, aim.lamp.camera, aim.lamp.light.direction)
-                held, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
-        if aim.what in ("orbit", "track") and (scene := scene_at(context)) is not None:
+                held_point, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
+        if aim.kind in ("orbit", "track") and (scene := scene_at(context)) is not None:
             hold.orbit = Orbit.of(scene)
-            depth = depth_at(context, (x, y), SCENE) if aim.what == "track" else None
+            depth = depth_at(context, (x, y), SCENE) if aim.kind == "track" else None
             hold.depth = depth if depth is not None and depth < FAR else hold.orbit.distance
-        if aim.what == "wipe" and aim.grip == "line":
-            held = context.viewer.wipe
-        if held is not None:
-            hold.offset = held[0] - x, held[1] - y
-        if aim.what == "region" and context.viewer.region:
+        if aim.kind == "wipe" and aim.grip == "line":
+            held_point = context.viewer.wipe
+        if held_point is not None:
+            hold.offset = held_point[0] - x, held_point[1] - y
+        if aim.kind == "region" and context.viewer.region:
             hold.box = context.viewer.region
         return hold
 
@@ -162,10 +161,10 @@ class MouseHold:
         """Follow the mouse to `at`, `by` screen units from where it was a frame ago."""
         self.moved = self.moved or math.dist(at, self.start) > 3.0
         viewer, (x, y), begun = self.context.viewer, sight.fraction(at), sight.fraction(self.start)
-        match self.aim.what:
+        match self.aim.kind:
             case "pan" | "matte":
                 if by != (0.0, 0.0) and self.moved:
-                    moved = sight.panned(*by)
+                    moved = sight.pan_by(*by)
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
                 self._move_handle((x + self.offset[0], y + self.offset[1]))
@@ -179,11 +178,11 @@ class MouseHold:
                 left, top = (min(max(part, 0.0), 1.0) for part in (x + self.offset[0], y + self.offset[1]))
                 viewer.wipe = left, top
             case "region":
-                viewer.region = box_dragged(self.box, self.aim.grip, (x - begun[0], y - begun[1]))
+                viewer.region = drag_box(self.box, self.aim.grip, (x - begun[0], y - begun[1]))
             case "new region" if self.moved:
-                viewer.region = ordered((*begun, x, y))
+                viewer.region = order_box((*begun, x, y))
             case "measure" if self.moved:
-                viewer.measured = ordered((*begun, x, y))
+                viewer.measured = order_box((*begun, x, y))
             case _:
                 pass
 
@@ -192,55 +191,55 @@ class MouseHold:
         viewer = self.context.viewer
         if self.token:
             self.context.session.seal()
-        elif self.aim.what == "matte" and not self.moved:
+        elif self.aim.kind == "matte" and not self.moved:
             click(self.context, sight, at)
-        elif self.aim.what == "new region":
+        elif self.aim.kind == "new region":
             viewer.drawing_region = False
             viewer.region = viewer.region if self.moved else None
-        elif self.aim.what == "measure":
+        elif self.aim.kind == "measure":
             viewer.table = True  # only now: it takes room, and the picture would move under the pointer
             if not self.moved and sight.under(at):
-                viewer.markers = toggled(viewer.markers, sight, at)
+                viewer.markers = toggle_marker(viewer.markers, sight, at)
 
     @property
     def token(self) -> str:
         """The merge token of what it does to the document; "" if it does nothing."""
-        if self.aim.port is not None and self.aim.what == "handle":
+        if self.aim.port is not None and self.aim.kind == "handle":
             return f"handle {self.aim.port}"
-        return token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
+        return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
 
     def _move_light(self, sight: Sight, at: Point, to: Point) -> None:
         lamp = self.aim.lamp
         assert lamp is not None
         farther = 2.0 ** (DOUBLINGS * (self.start[1] - at[1]) * sight.density / sight.panel[1])
-        match self.aim.what:
+        match self.aim.kind:
             case "light":
-                put(self.context, lamp, to)
+                place_light(self.context, lamp, to)
             case "light depth":
-                put(self.context, lamp, lamp.at, lamp.depth * farther)
+                place_light(self.context, lamp, lamp.at, lamp.depth * farther)
             case "light drop":
-                drop(self.context, lamp, to)
+                drop_light(self.context, lamp, to)
             case "goal":
-                turn(self.context, lamp, to, self.depth)
+                turn_spot(self.context, lamp, to, self.depth)
             case "goal depth" if lamp.aims:
-                turn(self.context, lamp, lamp.aims[0], self.depth * farther)
+                turn_spot(self.context, lamp, lamp.aims[0], self.depth * farther)
             case "sun":
                 knob = at[0] + self.offset[0], at[1] + self.offset[1]
                 direction = direction_at(sight, self.scale, lamp.camera, knob)
-                change(self.context, lamp, structs.replace(lamp.light, direction=direction))
+                change_light(self.context, lamp, structs.replace(lamp.light, direction=direction))
             case _:
                 pass
 
     def _move_camera(self, sight: Sight, at: Point, orbit: Orbit) -> None:
         """From where it was: nothing adds up."""
         self.context.interface.dragging = True
-        if self.aim.what == "orbit":
+        if self.aim.kind == "orbit":
             across = sight.panel[0] / sight.density
-            orbit = orbit.turned((at[0] - self.start[0]) / across, (at[1] - self.start[1]) / across)
+            orbit = orbit.turn_by((at[0] - self.start[0]) / across, (at[1] - self.start[1]) / across)
         else:
             (x, y), (left, top) = sight.fraction(at), sight.fraction(self.start)
-            orbit = orbit.moved(x - left, y - top, self.depth, aspect_of(self.context))
-        put_camera(self.context, orbit, self.token)
+            orbit = orbit.shift_target(x - left, y - top, self.depth, aspect_of(self.context))
+        move_camera(self.context, orbit, self.token)
 
     def _move_handle(self, to: Point) -> None:
         port = self.aim.port
@@ -250,12 +249,12 @@ class MouseHold:
         self.context.log.attempt(lambda: self.context.session.apply(SetValue(port, position, merge=self.token)))
 
 
-def toggled(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:
+def toggle_marker(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:
     """The markers with one more at the pixel under the mouse, or without the one that is there."""
     pixel = sight.under(at)
     assert pixel is not None
     width, height = sight.picture
-    near = tuple(one for one in markers if math.dist(sight.place(one), at) <= REACH)
+    near = tuple(marker for marker in markers if math.dist(sight.place(marker), at) <= REACH)
     if near:
-        return tuple(one for one in markers if one not in near)
+        return tuple(marker for marker in markers if marker not in near)
     return (*markers, ((pixel[0] + 0.5) / width, (pixel[1] + 0.5) / height))

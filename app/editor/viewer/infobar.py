@@ -14,8 +14,8 @@ from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.words import font
 from .geometry import Pixels, Sight
-from .looking import displayed
-from .measuring import hsv, written
+from .looking import display_pixels
+from .measuring import format_pixel_number, hsv
 from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
@@ -41,27 +41,27 @@ def row_height() -> float:
     return imgui.get_text_line_height() + 6 * ui_scale()
 
 
-def about(context: ViewerContext, side: str, shown: DisplayedImage | None, sight: Sight, seconds: float) -> list[Word]:
+def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight: Sight, seconds: float) -> list[Word]:
     """What a side shows, in a few words; for A also how, and how long it took."""
     palette, preview = context.palette, context.preview
     words: list[Word] = []
     if context.viewer.compares:
         words.append(Word(side, palette.accent if side == "A" else palette.good))
-    if shown is not None:
-        width, height = shown.full_size
-        words += [Word(f"{width}\u00d7{height}", palette.text), Word(describe(shown.kind, shown.channels), palette.dim)]
-        if shown.scale != 1.0:
-            words.append(Word(f"1/{1 / shown.scale:.0f}", palette.warning))
+    if image is not None:
+        width, height = image.full_size
+        words += [Word(f"{width}\u00d7{height}", palette.text), Word(describe(image.kind, image.channels), palette.dim)]
+        if image.scale != 1.0:
+            words.append(Word(f"1/{1 / image.scale:.0f}", palette.warning))
     if side != "A":
         return words
-    if shown is not None and shown.kind not in (Kind.NUMBER, Kind.COLOR):
+    if image is not None and image.kind not in (Kind.NUMBER, Kind.COLOR):
         words.append(Word(f"{sight.zoom * 100:.{0 if sight.zoom >= 0.1 else 1}f} %", palette.dim))
     if preview.paused:
         words.append(Word("paused", palette.warning))
     elif preview.busy and not preview.completing:
-        done, total = preview.progress
-        words.append(Word(f"{done}/{total}", palette.accent))
-    elif seconds > 0.0 and shown is not None:
+        finished, total = preview.progress
+        words.append(Word(f"{finished}/{total}", palette.accent))
+    elif seconds > 0.0 and image is not None:
         words.append(Word(f"{seconds * 1000:.0f} ms" if seconds < 1.0 else f"{seconds:.1f} s", palette.dim))
     return words
 
@@ -85,17 +85,17 @@ def of_pixel(
     for index, value in enumerate(values):
         shade = mix(palette.text, _CHANNEL_COLORS[index], 0.6) if color and index < 3 else palette.text
         shade = shade if np.isfinite(value) else palette.error
-        words.append(Word(f"{written(value):>8}", shade, 0.5 if index else 1.0))
+        words.append(Word(f"{format_pixel_number(value):>8}", shade, 0.5 if index else 1.0))
     if color:
-        shown = displayed(np.asarray([[values]], np.float32), look)[0, 0]
-        eight = " ".join(f"{int(part * 255 + 0.5):3d}" for part in shown)
-        hue, saturation, value = hsv(tuple(float(part) for part in shown))
+        display_rgb = display_pixels(np.asarray([[values]], np.float32), look)[0, 0]
+        eight = " ".join(f"{int(part * 255 + 0.5):3d}" for part in display_rgb)
+        hue, saturation, value = hsv(tuple(float(part) for part in display_rgb))
         light = float(np.dot(values[:3], LUMINANCE))
         words += [
-            Word("", (float(shown[0]), float(shown[1]), float(shown[2])), 1.5),
+            Word("", (float(display_rgb[0]), float(display_rgb[1]), float(display_rgb[2])), 1.5),
             Word(eight, palette.dim, 0.5),
             Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
-            Word(f"L {written(light)}", palette.dim, 1.5),
+            Word(f"L {format_pixel_number(light)}", palette.dim, 1.5),
         ]
     return words
 

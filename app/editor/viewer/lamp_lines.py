@@ -15,8 +15,8 @@ from ..theme.style import mix, u32, ui_scale
 from .dome import RADIUS, knob_of, middle_of
 from .geometry import Point, Sight
 from .lights import Lamp, lamps, suns
-from .perspective import Place, dot, moved, project, unit
-from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, dashed_circle, label, path
+from .perspective import Place, dot, move_place, project, unit
+from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, draw_dashed_circle, draw_label, draw_path
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -45,21 +45,21 @@ def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) ->
         _knob(lines, at, lamp.light, ring)
         if near or (lamp.chosen and context.interface.dragging and context.viewer.hovered):
             words = f"{light_title(lamp.light, lamp.index)}  depth {lamp.depth:.4g}"
-            context.places[f"label {lamp.port} {lamp.index}"] = label(lines, (at[0], at[1] + 2.0 * reach), words)
+            context.places[f"label {lamp.port} {lamp.index}"] = draw_label(lines, (at[0], at[1] + 2.0 * reach), words)
         context.places[f"handle {lamp.port} {lamp.index}"] = around(at, 0.6 * reach)
 
 
 def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """A ball in the light of the selected sun, in a disk of all directions; every sun is a knob there."""
-    found, scale = suns(context), ui_scale()
-    if not found:
+    visible_suns, scale = suns(context), ui_scale()
+    if not visible_suns:
         return
-    middle, mouse, last = middle_of(sight, scale), imgui.get_mouse_pos(), found[-1]
+    middle, mouse, last = middle_of(sight, scale), imgui.get_mouse_pos(), visible_suns[-1]
     lines.add_circle_filled(middle, (RADIUS + 4.0) * scale, u32(BLACK, 0.45))
     _ball(lines, middle, 0.5 * RADIUS * scale, last)
-    dashed_circle(lines, middle, 0.5 * RADIUS * scale, mix(BLACK, WHITE, 0.6))
+    draw_dashed_circle(lines, middle, 0.5 * RADIUS * scale, mix(BLACK, WHITE, 0.6))
     lines.add_circle(middle, RADIUS * scale, u32(WHITE, 0.6), 0, 1.2 * scale)
-    for sun in found:
+    for sun in visible_suns:
         at = knob_of(sight, scale, sun.camera, sun.light.direction)
         near = math.dist((mouse.x, mouse.y), at) <= 10.0 * scale
         if sun.chosen:
@@ -67,7 +67,7 @@ def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> 
             lines.add_line(at, middle, u32(WHITE), 1.5 * scale)
         _knob(lines, at, sun.light, CHOSEN if near or sun.chosen else WHITE)
         if near:
-            label(lines, (at[0], at[1] - 20.0 * scale), light_title(sun.light, sun.index))
+            draw_label(lines, (at[0], at[1] - 20.0 * scale), light_title(sun.light, sun.index))
         context.places[f"handle {sun.port} {sun.index}"] = around(at, 6.0 * scale)
     context.places["viewer dome"] = around(middle, RADIUS * scale)
 
@@ -87,14 +87,14 @@ def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
 def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool) -> None:
     """What a spot shines to: a ring at the end of a line."""
     assert lamp.aims is not None
-    scale, (seen, depth) = ui_scale(), lamp.aims
-    end, color = sight.place(seen), CHOSEN if near else ring
-    path(lines, (sight.place(lamp.at), end), ring)
+    scale, (goal_point, depth) = ui_scale(), lamp.aims
+    end, color = sight.place(goal_point), CHOSEN if near else ring
+    draw_path(lines, (sight.place(lamp.at), end), ring)
     lines.add_circle(end, 5.0 * scale, u32(BLACK, SHADE), 0, 3.5 * scale)
     lines.add_circle(end, 5.0 * scale, u32(color), 0, 2.0 * scale)
     if near:
         words = f"{light_title(lamp.light, lamp.index)} shines here  depth {depth:.4g}"
-        context.places[f"label goal {lamp.port} {lamp.index}"] = label(lines, (end[0], end[1] + 20 * scale), words)
+        context.places[f"label goal {lamp.port} {lamp.index}"] = draw_label(lines, (end[0], end[1] + 20 * scale), words)
     context.places[f"goal {lamp.port} {lamp.index}"] = around(end, 6.0 * scale)
 
 
@@ -103,18 +103,18 @@ def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> No
     light, at = lamp.light, sight.place(lamp.at)
     unit_size = lamp.camera.focal[0] * sight.picture[0] * sight.zoom / sight.density / lamp.depth
     if light.reach > 0.0:
-        dashed_circle(lines, at, light.reach * unit_size, color)
+        draw_dashed_circle(lines, at, light.reach * unit_size, color)
     if light.kind is LightKind.SPHERE:
         lines.add_circle(at, light.size * unit_size, u32(BLACK, SHADE), 0, 3.0 * ui_scale())
         lines.add_circle(at, light.size * unit_size, u32(color), 0, 1.5 * ui_scale())
     for angle, width in ((light.outer, 1.5), (light.inner, 0.8)):
-        rim = _seen(sight, lamp, cone(lamp, angle)) if light.kind is LightKind.SPOT else []
+        rim = _project_places(sight, lamp, cone(lamp, angle)) if light.kind is LightKind.SPOT else []
         if not rim:
             continue
-        path(lines, rim, color, width, closed=True)
+        draw_path(lines, rim, color, width, closed=True)
         if angle == light.outer:
             for corner in sides(at, rim):
-                path(lines, (at, corner), color, width)
+                draw_path(lines, (at, corner), color, width)
 
 
 def cone(lamp: Lamp, angle: float) -> list[Place]:
@@ -125,20 +125,20 @@ def cone(lamp: Lamp, angle: float) -> list[Place]:
     way, length = unit(lamp.light.direction), math.dist(goal, lamp.light.place)
     radius = length * math.tan(math.radians(min(angle, _WIDEST)))
     side = _across(way, (0.0, 0.0, 1.0) if abs(way[2]) < 0.9 else (1.0, 0.0, 0.0))
-    other = _cross(way, side)
+    perpendicular = _cross(way, side)
     return [
-        moved(moved(goal, side, radius * math.cos(turn)), other, radius * math.sin(turn))
+        move_place(move_place(goal, side, radius * math.cos(turn)), perpendicular, radius * math.sin(turn))
         for turn in (2.0 * math.pi * step / _STEPS for step in range(_STEPS))
     ]
 
 
 def sides(apex: Point, rim: list[Point]) -> tuple[Point, ...]:
     """The corners of a rim that the outline of its cone touches; none if the apex is seen through the rim."""
-    found: list[Point] = []
+    corners: list[Point] = []
     for before, at, after in zip((rim[-1], *rim[:-1]), rim, (*rim[1:], rim[0]), strict=True):
         if (_side(apex, at, before) >= 0.0) == (_side(apex, at, after) >= 0.0):
-            found.append(at)
-    return tuple(found)
+            corners.append(at)
+    return tuple(corners)
 
 
 def _side(start: Point, end: Point, of: Point) -> float:
@@ -146,12 +146,12 @@ def _side(start: Point, end: Point, of: Point) -> float:
     return (end[0] - start[0]) * (of[1] - start[1]) - (end[1] - start[1]) * (of[0] - start[0])
 
 
-def _seen(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point]:
+def _project_places(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point]:
     """Places on the screen; none if any of them is not before the camera."""
-    seen = [project(lamp.camera, place) for place in places]
-    if any(one is None or one[2] < 0.02 * lamp.depth for one in seen):
+    projections = [project(lamp.camera, place) for place in places]
+    if any(projection is None or projection[2] < 0.02 * lamp.depth for projection in projections):
         return []
-    return [sight.place(one[:2]) for one in seen if one is not None]
+    return [sight.place(projection[:2]) for projection in projections if projection is not None]
 
 
 def _ball(lines: imgui.ImDrawList, middle: Point, radius: float, sun: Lamp) -> None:

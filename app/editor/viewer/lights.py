@@ -14,7 +14,7 @@ from ...graph import Port, Unknown, signature
 from ..fields.lights import count_lights, insert_light, light_at, make_light, remove_light, replace_light
 from .geometry import Point
 from .ground import surface_at
-from .perspective import Place, dot, moved, project, unit, unproject
+from .perspective import Place, dot, move_place, project, unit, unproject
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -59,38 +59,38 @@ class Lamp:
         ahead = dot(self.camera.forward, self.light.direction) * far
         if self.depth + ahead < _NEAREST * self.depth:
             far *= (1.0 - _NEAREST) * self.depth / -ahead
-        return moved(self.light.place, self.light.direction, far)
+        return move_place(self.light.place, self.light.direction, far)
 
     @property
     def aims(self) -> tuple[Point, float] | None:
         """Where the camera sees that, and how deep."""
         goal = self.goal
-        seen = project(self.camera, goal) if goal else None
-        return (seen[:2], seen[2]) if seen else None
+        projection = project(self.camera, goal) if goal else None
+        return (projection[:2], projection[2]) if projection else None
 
 
 def lamps(context: ViewerContext) -> tuple[Lamp, ...]:
     """Those that the camera sees, the selected one last; none if no camera is linked, or none is known yet."""
-    return tuple(lamp for lamp in _all(context) if lamp.light.kind is not LightKind.SUN)
+    return tuple(lamp for lamp in _list_lamps(context) if lamp.light.kind is not LightKind.SUN)
 
 
 def suns(context: ViewerContext) -> tuple[Lamp, ...]:
     """The suns of the active node, the selected one last."""
-    return tuple(lamp for lamp in _all(context) if lamp.light.kind is LightKind.SUN)
+    return tuple(lamp for lamp in _list_lamps(context) if lamp.light.kind is LightKind.SUN)
 
 
-def _all(context: ViewerContext) -> tuple[Lamp, ...]:
-    camera, found = _camera(context), list[Lamp]()
+def _list_lamps(context: ViewerContext) -> tuple[Lamp, ...]:
+    camera, found_lamps = _camera(context), list[Lamp]()
     for port in lists(context) if camera else ():
         numbers = _numbers(context, port)
-        chosen = _chosen(context, port)
+        chosen = _find_chosen_index(context, port)
         few = count_lights(numbers) <= MOST
         for index, light in enumerate(lights_of(numbers)) if few else ((chosen, light_at(numbers, chosen)),):
             assert camera is not None
-            seen = (0.5, 0.5, 0.0) if light.kind is LightKind.SUN else project(camera, light.place)
-            if seen is not None:
-                found.append(Lamp(port, index, light, camera, seen[:2], seen[2], index == chosen))
-    return tuple(sorted(found, key=lambda lamp: lamp.chosen))
+            projection = (0.5, 0.5, 0.0) if light.kind is LightKind.SUN else project(camera, light.place)
+            if projection is not None:
+                found_lamps.append(Lamp(port, index, light, camera, projection[:2], projection[2], index == chosen))
+    return tuple(sorted(found_lamps, key=lambda lamp: lamp.chosen))
 
 
 def lists(context: ViewerContext) -> tuple[Port, ...]:
@@ -108,7 +108,7 @@ def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
     return value if isinstance(value, tuple) else ()
 
 
-def _chosen(context: ViewerContext, port: Port) -> int:
+def _find_chosen_index(context: ViewerContext, port: Port) -> int:
     """The selected light; -1 if there is none."""
     return min(max(context.lights.get(str(port), 0), 0), count_lights(_numbers(context, port)) - 1)
 
@@ -122,48 +122,50 @@ def _camera(context: ViewerContext) -> CameraModel | None:
     path = "/".join((*session.place, session.active))
     inputs = [name for name, socket in signature(item).inputs.items() if socket.kind is Kind.CAMERA]
     linked = (name for name in inputs if session.find_source(Port(session.active, name)) is not None)
-    found = (context.preview.camera(Port(path, name)) for name in linked)
-    return next((camera for camera in found if camera is not None), None)
+    cameras = (context.preview.camera(Port(path, name)) for name in linked)
+    return next((camera for camera in cameras if camera is not None), None)
 
 
 # --- what is done to them ------------------------------------------------------------------------------------------
 
 
-def put(context: ViewerContext, lamp: Lamp, to: Point, depth: float | None = None) -> None:
+def place_light(context: ViewerContext, lamp: Lamp, to: Point, depth: float | None = None) -> None:
     """Put a light elsewhere on the picture, as far from the camera as it is, or at another depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
-    change(context, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
+    change_light(context, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
 
 
-def drop(context: ViewerContext, lamp: Lamp, to: Point) -> None:
+def drop_light(context: ViewerContext, lamp: Lamp, to: Point) -> None:
     """Put it before the surface that is seen there; where none is, it stays as far away as it is."""
     place = _over(context, lamp.camera, to, lamp.light)
     if place is None:
-        put(context, lamp, to)
+        place_light(context, lamp, to)
     else:
-        change(context, lamp, structs.replace(lamp.light, place=place))
+        change_light(context, lamp, structs.replace(lamp.light, place=place))
 
 
-def turn(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
+def turn_spot(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
     """Let a spot shine to a point of the picture at a depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
-    direction = moved(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
+    direction = move_place(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
     x, y, z = (round(part, 5) for part in direction)
     if any((x, y, z)):
-        change(context, lamp, structs.replace(lamp.light, direction=(x, y, z)))
+        change_light(context, lamp, structs.replace(lamp.light, direction=(x, y, z)))
 
 
-def change(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
+def change_light(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
     """Let it be that one; what is done to it in a row is one step."""
     numbers = _numbers(context, lamp.port)
     if lamp.index >= count_lights(numbers):
         return
     value = replace_light(numbers, lamp.index, light)
     context.interface.dragging = True
-    context.log.attempt(lambda: context.session.apply(SetValue(lamp.port, value, merge=merge or token(lamp))))
+    context.log.attempt(
+        lambda: context.session.apply(SetValue(lamp.port, value, merge=merge or make_merge_token(lamp)))
+    )
 
 
-def token(lamp: Lamp) -> str:
+def make_merge_token(lamp: Lamp) -> str:
     """The merge token of what is done to it."""
     return f"light {lamp.port} {lamp.index}"
 
@@ -173,52 +175,56 @@ def can_add(context: ViewerContext) -> bool:
     return bool(lists(context)) and _camera(context) is not None
 
 
-def add(context: ViewerContext, to: Point) -> None:
+def add_light(context: ViewerContext, to: Point) -> None:
     """Add a point light before the surface that is seen there; where none is, as deep as the selected one."""
     ports, camera = lists(context), _camera(context)
     if not ports or camera is None:
         return
     port, light = ports[0], make_light(LightKind.POINT)
-    numbers, chosen = _numbers(context, port), _chosen(context, port)
+    numbers, chosen = _numbers(context, port), _find_chosen_index(context, port)
     depths = [lamp.depth for lamp in lamps(context)]
     deep = depths[-1] if depths else _DEFAULT_DEPTH
     place = _over(context, camera, to, light) or unproject(camera, *to, deep)
-    made, at = insert_light(numbers, chosen, structs.replace(light, place=place))
-    if made == numbers:
+    new_numbers, at = insert_light(numbers, chosen, structs.replace(light, place=place))
+    if new_numbers == numbers:
         context.log.add("there is no room for another light")
         return
     context.lights[str(port)] = at
     context.log.attempt(
-        lambda: context.session.apply(ReplaceGraph(f"Add light to {port.node}", context.session.graph.set(port, made)))
+        lambda: context.session.apply(
+            ReplaceGraph(f"Add light to {port.node}", context.session.graph.set(port, new_numbers))
+        )
     )
 
 
 def can_remove(context: ViewerContext) -> bool:
     """True if a light is selected."""
-    return any(_chosen(context, port) >= 0 for port in lists(context))
+    return any(_find_chosen_index(context, port) >= 0 for port in lists(context))
 
 
-def remove(context: ViewerContext) -> None:
+def remove_chosen_light(context: ViewerContext) -> None:
     """Remove the selected light."""
     session = context.session
-    port = next((port for port in lists(context) if _chosen(context, port) >= 0), None)
+    port = next((port for port in lists(context) if _find_chosen_index(context, port) >= 0), None)
     if port is not None:
-        made, at = remove_light(_numbers(context, port), _chosen(context, port))
+        remaining_numbers, at = remove_light(_numbers(context, port), _find_chosen_index(context, port))
         context.lights[str(port)] = max(at, 0)
         context.log.attempt(
-            lambda: session.apply(ReplaceGraph(f"Remove light of {port.node}", session.graph.set(port, made)))
+            lambda: session.apply(
+                ReplaceGraph(f"Remove light of {port.node}", session.graph.set(port, remaining_numbers))
+            )
         )
 
 
 def _over(context: ViewerContext, camera: CameraModel, to: Point, light: Light) -> Place | None:
     """A place before the surface that is seen at a point of the picture, on the way to it."""
-    found = surface_at(context, camera, to)
-    if found is None:
+    surface = surface_at(context, camera, to)
+    if surface is None:
         return None
-    place, depth = found
-    back = moved(camera.eye, place, -1.0)
-    wanted = _OVER * depth + (light.size if light.kind is LightKind.SPHERE else 0.0)
+    place, depth = surface
+    back = move_place(camera.eye, place, -1.0)
+    gap = _OVER * depth + (light.size if light.kind is LightKind.SPHERE else 0.0)
     way = unit(back)
-    far = min(wanted / max(-dot(way, camera.forward), 1e-3), 0.9 * math.hypot(*back))
-    x, y, z = (round(part, 5) for part in moved(place, way, far))
+    far = min(gap / max(-dot(way, camera.forward), 1e-3), 0.9 * math.hypot(*back))
+    x, y, z = (round(part, 5) for part in move_place(place, way, far))
     return x, y, z

@@ -15,7 +15,7 @@ from ...color.management import ColorManager, get_default_color_manager
 from ...graph import OUTPUTS, Graph, Port
 from ...media.comparison.data_range import Array, are_normals, balance_range, find_data_range
 from ...renderer.viewing.look import Look
-from .geometry import Sight, ordered
+from .geometry import Sight, order_box
 from .scopes import rgb_of
 from .state import Background, Meaning, ViewerState
 
@@ -26,7 +26,7 @@ Samples = Callable[[], Array]
 """Gives the picture with most pixels left out; only called where it matters."""
 
 
-def meaning_of(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
+def choose_meaning(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
     """As what to show it."""
     if state.meaning != "auto":
         return state.meaning
@@ -37,7 +37,7 @@ def meaning_of(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
     return "field"
 
 
-def range_of(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[float, float]:
+def choose_range(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[float, float]:
     """The numbers that are shown as black and as white."""
     if state.low != state.high:
         return state.low, state.high
@@ -55,7 +55,7 @@ def measures(state: ViewerState, kind: Kind) -> bool:
     return meaning in ("field", "vector") and state.low == state.high
 
 
-def requested_view(graph: Graph, port: Port) -> str:
+def find_requested_view(graph: Graph, port: Port) -> str:
     """The view that an output of the graph asks for: also of what is linked to it, for it is the same picture."""
     for name, output in graph.outputs.items():
         end = Port(OUTPUTS, name)
@@ -79,7 +79,7 @@ def look_of(
     """
     region = None
     if state.region is not None:
-        left, top, right, bottom = ordered(state.region)
+        left, top, right, bottom = order_box(state.region)
         width, height = sight.picture
         region = (left * width, top * height, (right - left) * width, (bottom - top) * height)
     compare = state.compare if state.compare in ("wipe", "difference") else "off"
@@ -115,16 +115,16 @@ def picture_only(look: Look) -> Look:
     return replace(look, zoom=1.0, pan=(0.0, 0.0), clipping=False, nonfinite=False, region=None)
 
 
-def displayed(pixels: Array, look: Look) -> Array:
+def display_pixels(pixels: Array, look: Look) -> Array:
     """Pixels [h, w, channels] as the display shows them, [h, w, 3] of 0..1, transparency over black."""
     if look.meaning == "normal":
         return np.clip(rgb_of(pixels) * 0.5 + 0.5, 0.0, 1.0)
     if look.meaning != "image":
         return np.clip((rgb_of(pixels) - look.low) / max(look.high - look.low, 1e-6), 0.0, 1.0)
     lit = np.concatenate([rgb_of(pixels) * np.float32(2.0**look.exposure), _alpha(pixels)], axis=2)
-    shown = to_display(lit, look.view, bits=32, display=look.display, look=look.look, manager=look.manager)[..., :3]
+    encoded = to_display(lit, look.view, bits=32, display=look.display, look=look.look, manager=look.manager)[..., :3]
     cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color without alpha is light
-    return np.clip(shown, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
+    return np.clip(encoded, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
 
 
 def _alpha(pixels: Array) -> Array:

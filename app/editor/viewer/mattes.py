@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Under:
+class MatteHit:
     """What is under the pointer: its id, and its name if the file gives it one; `on` if it is picked."""
 
     port: Port
@@ -47,34 +47,34 @@ def picks(context: ViewerContext) -> Port | None:
     return Port(session.active, value.name)
 
 
-def under(context: ViewerContext, sight: Sight, at: Point) -> Under | None:
+def find_matte_hit(context: ViewerContext, sight: Sight, at: Point) -> MatteHit | None:
     """What a click there would pick; None for nothing, and while the file is being read."""
     port = picks(context)
     file = render_file(context.session.graph, port.node) if port else None
     matte = matte_at(context, port.node) if port else None
     if port is None or file is None or not isinstance(matte, Matte) or sight.under(at) is None:
         return None
-    known = context.renders.ids(file, matte)
-    id = known.id_at(*sight.fraction(at)) if isinstance(known, IdMap) else 0
-    if not id or not isinstance(known, IdMap):
+    id_map = context.renders.ids(file, matte)
+    id = id_map.id_at(*sight.fraction(at)) if isinstance(id_map, IdMap) else 0
+    if not id or not isinstance(id_map, IdMap):
         return None
-    name = known.names.get(id, "")
+    name = id_map.names.get(id, "")
     alone = {name: matte.ids[name]} if name in matte.ids else {}
     on = bool(alone) and float_bits(matte.ids[name]) in pick_ids(str(context.session.value(port)), alone)
-    return Under(port, matte, id, name if alone else "", on)
+    return MatteHit(port, matte, id, name if alone else "", on)
 
 
 def click(context: ViewerContext, sight: Sight, at: Point) -> None:
     """Pick what is there, or no longer, as one step."""
-    found = under(context, sight, at)
-    if found is None:
+    hit = find_matte_hit(context, sight, at)
+    if hit is None:
         return
-    if not found.name:
-        context.log.add(f"the file has no name for the id {found.id:08x}: it cannot be picked by name")
+    if not hit.name:
+        context.log.add(f"the file has no name for the id {hit.id:08x}: it cannot be picked by name")
         return
     session = context.session
-    pick = toggle_name(str(session.value(found.port)), found.name, found.matte.ids)
-    context.log.attempt(lambda: session.apply(SetValue(found.port, pick)))
+    pick = toggle_name(str(session.value(hit.port)), hit.name, hit.matte.ids)
+    context.log.attempt(lambda: session.apply(SetValue(hit.port, pick)))
 
 
 def draw_name(context: ViewerContext, sight: Sight) -> None:
@@ -82,10 +82,10 @@ def draw_name(context: ViewerContext, sight: Sight) -> None:
     if not context.viewer.hovered or picks(context) is None:
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
-    found = under(context, sight, (mouse.x, mouse.y))
-    if found is None:
+    hit = find_matte_hit(context, sight, (mouse.x, mouse.y))
+    if hit is None:
         return
-    size, pad = imgui.calc_text_size(found.words), 6.0 * scale
+    size, pad = imgui.calc_text_size(hit.words), 6.0 * scale
     right = sight.origin[0] + sight.panel[0] / sight.density
     bottom = sight.origin[1] + sight.panel[1] / sight.density
     left = min(mouse.x + 14.0 * scale, right - size.x - 3.0 * pad)
@@ -94,8 +94,8 @@ def draw_name(context: ViewerContext, sight: Sight) -> None:
     box = round(left), round(top), round(left + size.x + 2.0 * pad), round(top + size.y + pad)
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(box[:2], box[2:], u32((0.0, 0.0, 0.0), 0.75), 4.0 * scale)
-    edge = context.palette.accent if found.on else (1.0, 1.0, 1.0)
-    lines.add_rect(box[:2], box[2:], u32(edge, 0.9 if found.on else 0.25), 4.0 * scale)
-    ink = (1.0, 1.0, 1.0) if found.name else (0.75, 0.75, 0.75)
-    lines.add_text((round(left + pad), round(top + pad / 2)), u32(ink), found.words)
+    edge = context.palette.accent if hit.on else (1.0, 1.0, 1.0)
+    lines.add_rect(box[:2], box[2:], u32(edge, 0.9 if hit.on else 0.25), 4.0 * scale)
+    ink = (1.0, 1.0, 1.0) if hit.name else (0.75, 0.75, 0.75)
+    lines.add_text((round(left + pad), round(top + pad / 2)), u32(ink), hit.words)
     context.places["matte name"] = box

@@ -27,15 +27,15 @@ def statistics(pixels: Array) -> Statistics:
     finite = np.isfinite(flat)
     low, mean, high = [], [], []
     for index in range(flat.shape[1]):
-        kept = flat[finite[:, index], index]
-        low.append(float(kept.min()) if kept.size else 0.0)
-        mean.append(float(kept.mean()) if kept.size else 0.0)
-        high.append(float(kept.max()) if kept.size else 0.0)
+        finite_numbers = flat[finite[:, index], index]
+        low.append(float(finite_numbers.min()) if finite_numbers.size else 0.0)
+        mean.append(float(finite_numbers.mean()) if finite_numbers.size else 0.0)
+        high.append(float(finite_numbers.max()) if finite_numbers.size else 0.0)
     wrong = int((~finite.all(axis=1)).sum())
     return Statistics(tuple(low), tuple(mean), tuple(high), wrong, len(flat))
 
 
-def written(number: float) -> str:
+def format_pixel_number(number: float) -> str:
     """A number in at most nine characters."""
     if number != number:
         return "NaN"
@@ -53,12 +53,12 @@ def hsv(rgb: tuple[float, ...]) -> tuple[float, float, float]:
     return hue * 360.0, saturation, value
 
 
-def copied(name: str, pixel: tuple[int, int], values: tuple[float, ...]) -> str:
+def format_pixel(name: str, pixel: tuple[int, int], values: tuple[float, ...]) -> str:
     """One line for the clipboard: where, and the numbers with all their digits."""
-    return f"{name} {pixel[0]} {pixel[1]}: " + " ".join(repr(float(np.float32(one))) for one in values)
+    return f"{name} {pixel[0]} {pixel[1]}: " + " ".join(repr(float(np.float32(number))) for number in values)
 
 
-def picked_color(values: tuple[float, ...]) -> tuple[float, float, float, float]:
+def make_opaque_color(values: tuple[float, ...]) -> tuple[float, float, float, float]:
     """A pixel as an opaque, straight, scene-linear color."""
     alpha = values[3] if len(values) == 4 and values[3] > 0.0 else 1.0
     red, green, blue = (values[index if len(values) > 2 else 0] / alpha for index in range(3))

@@ -61,14 +61,14 @@ class Orbit:
         angles = math.radians(self.azimuth), math.radians(self.elevation)
         return orbit_camera(self.target, self.distance, *angles, (across, across * aspect))
 
-    def turned(self, right: float, down: float) -> Orbit:
+    def turn_by(self, right: float, down: float) -> Orbit:
         """After a drag by parts of the panel's width: what is in front of the target goes where the mouse goes."""
         azimuth = (self.azimuth - HALF_TURN * right + 180.0) % 360.0 - 180.0
         low, high = min(self.elevation, -STEEPEST), max(self.elevation, STEEPEST)
         elevation = min(max(self.elevation + HALF_TURN * down, low), high)
         return replace(self, azimuth=round(azimuth, 3), elevation=round(elevation, 3))
 
-    def moved(self, right: float, down: float, depth: float, aspect: float) -> Orbit:
+    def shift_target(self, right: float, down: float, depth: float, aspect: float) -> Orbit:
         """With the target moved so that what lies at a depth goes right and down by fractions of the picture."""
         camera = self.camera(aspect)
         across, along = right * depth / camera.focal[0], down * depth / camera.focal[1]
@@ -78,11 +78,11 @@ class Orbit:
         )
         return replace(self, target=(x, y, z))
 
-    def nearer(self, factor: float) -> Orbit:
+    def approach_by(self, factor: float) -> Orbit:
         """With the target that many times as near."""
         return replace(self, distance=neat(min(max(self.distance / factor, NEAREST), FARTHEST)))
 
-    def framing(self, places: np.ndarray, aspect: float) -> Orbit:
+    def frame_places(self, places: np.ndarray, aspect: float) -> Orbit:
         """Seen from the same side, with all places [n, 3] in the picture, and their middle in its middle."""
         low, high = places.min(axis=0), places.max(axis=0)
         x, y, z = (neat(float(part)) for part in (low + high) / 2.0)
@@ -100,16 +100,16 @@ class Orbit:
 # --- the node whose camera it is -----------------------------------------------------------------------------------
 
 
-def orbited(session: Session) -> str:
+def find_orbit_node(session: Session) -> str:
     """The node whose camera the viewer moves: the scene that is selected, else the only one that is seen; "" if none.
 
     One that is selected must be seen too. Values that links or keys set are not for the mouse.
     """
-    graph, seen = session.graph, session.find_viewed_port("A")
+    graph, viewed_port = session.graph, session.find_viewed_port("A")
     scenes = [id for id, item in graph.nodes.items() if _goes_around(item)]
-    if not scenes or seen is None:
+    if not scenes or viewed_port is None:
         return ""
-    behind = _upstream(graph, seen)
+    behind = _upstream(graph, viewed_port)
     scenes = [id for id in scenes if id in behind and _is_free(graph, id)]
     return session.active if session.active in scenes else scenes[0] if len(scenes) == 1 else ""
 
@@ -124,13 +124,13 @@ def _upstream(graph: Graph, port: Port) -> set[str]:
     for target, source in graph.links.items():
         feeds.setdefault(target.node, []).append(source)
     start = graph.links.get(port, port)
-    found, left = set[str](), [start.node]
-    while left:
-        node = left.pop()
-        if node not in found:
-            found.add(node)
-            left.extend(source.node for source in feeds.get(node, ()))
-    return found
+    upstream, pending = set[str](), [start.node]
+    while pending:
+        node = pending.pop()
+        if node not in upstream:
+            upstream.add(node)
+            pending.extend(source.node for source in feeds.get(node, ()))
+    return upstream
 
 
 def _is_free(graph: Graph, id: str) -> bool:
@@ -144,7 +144,7 @@ def scene_at(context: ViewerContext) -> Node | None:
     return item if isinstance(item, Node) and _goes_around(item) else None
 
 
-def put(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
+def move_camera(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
     """Move the camera there; equal `merge` tokens in a row make one step."""
     session, id = context.session, context.viewer.scene
     graph, before = session.graph, scene_at(context)
@@ -166,7 +166,7 @@ def frame_scene(context: ViewerContext) -> None:
     """Show all of the scene, as one step."""
     node = scene_at(context)
     if node is not None:
-        put(context, Orbit.of(node).framing(_places(context, node), aspect_of(context)))
+        move_camera(context, Orbit.of(node).frame_places(_places(context, node), aspect_of(context)))
 
 
 def _places(context: ViewerContext, node: Node) -> np.ndarray:
@@ -187,5 +187,5 @@ def without_surroundings(places: np.ndarray, objects: np.ndarray) -> np.ndarray:
     starts = np.flatnonzero(np.diff(objects, prepend=objects[0] - 1))
     ends = (np.maximum.reduceat(places, starts), np.minimum.reduceat(places, starts))
     wide = (ends[0] - ends[1])[:, :2] >= _SURROUNDING * np.ptp(places[:, :2], axis=0)
-    kept = np.repeat(~wide.all(axis=1), np.diff(starts, append=len(places)))
-    return places[kept] if kept.any() else places
+    is_inside = np.repeat(~wide.all(axis=1), np.diff(starts, append=len(places)))
+    return places[is_inside] if is_inside.any() else places

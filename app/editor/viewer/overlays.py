@@ -17,7 +17,7 @@ from .handles import handles
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
 from .mattes import draw_name
-from .strokes import BLACK, WHITE, around, cross, frame, label
+from .strokes import BLACK, WHITE, around, cross, draw_label, frame
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -102,7 +102,7 @@ def _wipe(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None
         lines.add_circle_filled(end, (width + 2.5) * scale, color)
     for name, away in (("A", -1.0), ("B", 1.0)):
         at = x + dy * away * 18 * scale, y - dx * away * 18 * scale
-        label(lines, at, name)
+        draw_label(lines, at, name)
     context.places["viewer wipe"] = around((x, y), 6.0 * scale)
     context.places["viewer wipe angle"] = around(end, 6.0 * scale)
 
@@ -121,7 +121,7 @@ def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> N
         if port == find_focus_port(context.session):
             words.append(distance_in_words(depth_at(context, handle.at)))
         if words:
-            context.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
+            context.places[f"label {port}"] = draw_label(lines, (x, y + 20 * scale), "  ".join(words))
         context.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
 
 
@@ -132,13 +132,13 @@ def _draw_picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: S
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
     words = distance_in_words(depth_at(context, sight.fraction((mouse.x, mouse.y))))
-    context.places[f"label {port}"] = label(lines, (mouse.x, mouse.y + 26 * scale), words)
+    context.places[f"label {port}"] = draw_label(lines, (mouse.x, mouse.y + 26 * scale), words)
 
 
 def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
     scale = ui_scale()
     cross(lines, at, 6.0 * scale)
-    label(lines, (at[0] + 10 * scale, at[1] - 10 * scale), text)
+    draw_label(lines, (at[0] + 10 * scale, at[1] - 10 * scale), text)
 
 
 # --- messages ------------------------------------------------------------------------------------------------------

@@ -17,19 +17,19 @@ OVERDUE = 0.5
 """Seconds after which a picture counts as slow even if it is not there yet."""
 
 
-def coarse(finest: float, scale: float, seconds: float) -> float:
+def coarsen_scale(finest: float, scale: float, seconds: float) -> float:
     """The scale for the next picture of a drag, when one at `scale` took `seconds`; `finest` is what was asked for."""
     while seconds > SLOW and scale > finest * COARSEST:
         scale, seconds = scale / 2.0, seconds / 4.0
     return scale
 
 
-def starting(finest: float, scale: float, seconds: float) -> float:
+def choose_start_scale(finest: float, scale: float, seconds: float) -> float:
     """The scale for a new drag, when the last one ended at `scale` and pictures of the chosen proxy take `seconds`."""
     part = scale / finest
     while part < 1.0 and seconds * (2.0 * part) ** 2 <= EASY:
         part *= 2.0
-    return coarse(finest, finest * part, seconds * part * part)
+    return coarsen_scale(finest, finest * part, seconds * part * part)
 
 
 @dataclass
@@ -53,7 +53,7 @@ class Pace:
             self.scale *= finest / self._finest
             self._finest = finest
         if dragging and not self._dragging:
-            self.scale = starting(finest, self.scale, self.seconds * share)
+            self.scale = choose_start_scale(finest, self.scale, self.seconds * share)
         self._dragging = dragging
         return self.scale if dragging else finest
 
@@ -61,7 +61,7 @@ class Pace:
         """A picture at `scale`, or a part of it, was finished after `seconds`."""
         self.seconds = seconds * (self._finest / scale) ** 2 / share
         if self._dragging and scale == self.scale:
-            self.scale = coarse(self._finest, scale, seconds)
+            self.scale = coarsen_scale(self._finest, scale, seconds)
 
 
 @dataclass
@@ -71,13 +71,13 @@ class PictureTimer:
     _started: float | None = None
     _key: str = ""
 
-    def lap(self, busy: bool, key: str, now: float) -> float | None:
+    def lap(self, busy: bool, key: str, time_now: float) -> float | None:
         """Seconds that a picture took, when another one is shown, nothing is left to do, or it is overdue."""
         if self._started is None:
-            self._started, self._key = (now if busy else None), key
+            self._started, self._key = (time_now if busy else None), key
             return None
-        seconds = now - self._started
+        seconds = time_now - self._started
         if busy and key == self._key and seconds < OVERDUE:
             return None
-        self._started, self._key = (now if busy else None), key
+        self._started, self._key = (time_now if busy else None), key
         return seconds

@@ -7,11 +7,11 @@ import math
 from halation.nodes import CameraModel
 
 Place = tuple[float, float, float]
-Seen = tuple[float, float, float]
+ProjectedPoint = tuple[float, float, float]
 """A fraction of the picture, and the depth."""
 
 
-def project(camera: CameraModel, place: Place) -> Seen | None:
+def project(camera: CameraModel, place: Place) -> ProjectedPoint | None:
     """Where a place is on the picture, and its depth; None for what is not in front of the camera."""
     try:
         u, v, depth = camera.project(place)
@@ -22,14 +22,15 @@ def project(camera: CameraModel, place: Place) -> Seen | None:
 
 def unproject(camera: CameraModel, u: float, v: float, depth: float) -> Place:
     """The place in the world of a point of the picture at a depth."""
-    rows, seen = camera.inverse, (u * depth, v * depth, depth, 1.0)
+    rows, homogeneous_point = camera.inverse, (u * depth, v * depth, depth, 1.0)
     x, y, z = (
-        neat(sum(part * number for part, number in zip(rows[at : at + 4], seen, strict=True))) for at in (0, 4, 8)
+        neat(sum(part * number for part, number in zip(rows[at : at + 4], homogeneous_point, strict=True)))
+        for at in (0, 4, 8)
     )
     return x, y, z
 
 
-def moved(place: Place, way: Place, far: float) -> Place:
+def move_place(place: Place, way: Place, far: float) -> Place:
     """So many lengths of a way from a place."""
     x, y, z = (at + far * part for at, part in zip(place, way, strict=True))
     return x, y, z
@@ -43,7 +44,7 @@ def dot(first: Place, second: Place) -> float:
 def unit(way: Place, otherwise: Place = (0.0, 0.0, -1.0)) -> Place:
     """The same way with a length of 1."""
     length = math.hypot(*way)
-    return moved((0.0, 0.0, 0.0), way, 1.0 / length) if length > 0.0 and math.isfinite(length) else otherwise
+    return move_place((0.0, 0.0, 0.0), way, 1.0 / length) if length > 0.0 and math.isfinite(length) else otherwise
 
 
 def neat(number: float) -> float:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
     """Everything that can be shown, under headings, as the graph flows."""
-    nodes = tuple(Port(id, name) for id in _ordered(graph) for name in signature(graph.nodes[id]).outputs)
+    nodes = tuple(Port(id, name) for id in _order_nodes(graph) for name in signature(graph.nodes[id]).outputs)
     groups = (
         ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)),
         ("Nodes", nodes),
@@ -60,7 +60,7 @@ def list_ports(context: ViewerContext, side: str) -> None:
                 context.log.attempt(lambda port=port: session.view(port, cast("Literal['A', 'B']", side)))
 
 
-def _ordered(graph: Graph) -> tuple[str, ...]:
+def _order_nodes(graph: Graph) -> tuple[str, ...]:
     try:
         return tuple(reversed(graph.order()))
     except GraphError:  # a loop: any order will do

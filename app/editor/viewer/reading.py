@@ -27,42 +27,42 @@ class ValueReader:
     """What was read last, by what it is of."""
 
     def __init__(self) -> None:
-        self._known: dict[object, tuple[object, Any]] = {}
+        self._cache: dict[object, tuple[object, Any]] = {}
 
-    def small(self, probe: PixelProbe, shown: DisplayedImage) -> Array:
+    def read_small(self, probe: PixelProbe, image: DisplayedImage) -> Array:
         """The picture [h, w, channels] with most pixels left out."""
-        return self._kept(
+        return self._remember(
             "small",
-            _mark(shown),
-            lambda: probe.read_small(shown.texture, SMALL)[..., : shown.channels].astype(np.float32),
+            _mark(image),
+            lambda: probe.read_small(image.texture, SMALL)[..., : image.channels].astype(np.float32),
         )
 
-    def pixel(self, probe: PixelProbe, name: str, shown: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
+    def read_pixel(self, probe: PixelProbe, name: str, image: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
         """The numbers of one pixel, given at full size; `name` says what for. None where there are none as yet."""
-        (x, y), (left, top) = texel(pixel, shown.full_size, shown.size), shown.start
+        (x, y), (left, top) = texel(pixel, image.full_size, image.size), image.start
         x, y = x - left, y - top
-        if not (0 <= x < shown.texture.size[0] and 0 <= y < shown.texture.size[1]):
+        if not (0 <= x < image.texture.size[0] and 0 <= y < image.texture.size[1]):
             return ()
-        return self._kept(
+        return self._remember(
             ("pixel", name),
-            (_mark(shown), x, y),
-            lambda: tuple(probe.read_pixel(shown.texture, x, y)[: shown.channels]),
+            (_mark(image), x, y),
+            lambda: tuple(probe.read_pixel(image.texture, x, y)[: image.channels]),
         )
 
-    def measured(self, probe: PixelProbe, name: str, shown: DisplayedImage, box: Box) -> Statistics:
+    def measure_box(self, probe: PixelProbe, name: str, image: DisplayedImage, box: Box) -> Statistics:
         """Statistics of a box of fractions."""
-        part = texels(box, shown.texture.size)
-        return self._kept(
+        part = texels(box, image.texture.size)
+        return self._remember(
             ("box", name),
-            (_mark(shown), part),
-            lambda: statistics(probe.read_region(shown.texture, part)[..., : shown.channels]),
+            (_mark(image), part),
+            lambda: statistics(probe.read_region(image.texture, part)[..., : image.channels]),
         )
 
-    def _kept(self, key: object, mark: object, read: Callable[[], T]) -> T:
-        known = self._known.get(key)
-        if known is None or known[0] != mark:
-            known = self._known[key] = (mark, read())
-        return known[1]
+    def _remember(self, key: object, mark: object, read: Callable[[], T]) -> T:
+        entry = self._cache.get(key)
+        if entry is None or entry[0] != mark:
+            entry = self._cache[key] = (mark, read())
+        return entry[1]
 
 
 class Scan:
@@ -74,27 +74,27 @@ class Scan:
         self.wrong = 0
         """Pixels found so far."""
 
-    def step(self, probe: PixelProbe, shown: DisplayedImage | None) -> None:
+    def step(self, probe: PixelProbe, image: DisplayedImage | None) -> None:
         """Go on, from the start where the picture is another one."""
-        if shown is None:
+        if image is None:
             self._mark, self._steps, self.wrong = None, None, 0
             return
-        if self._mark != _mark(shown):
-            self._mark, self._steps, self.wrong = _mark(shown), self._look_through(probe, shown), 0
+        if self._mark != _mark(image):
+            self._mark, self._steps, self.wrong = _mark(image), self._look_through(probe, image), 0
         if self._steps is not None:
-            found = next(self._steps, None)
-            if found is None:
+            count = next(self._steps, None)
+            if count is None:
                 self._steps = None
             else:
-                self.wrong += found
+                self.wrong += count
 
-    def _look_through(self, probe: PixelProbe, shown: DisplayedImage) -> Iterator[int]:
-        width, height = shown.texture.size
+    def _look_through(self, probe: PixelProbe, image: DisplayedImage) -> Iterator[int]:
+        width, height = image.texture.size
         rows = max(BAND // max(width, 1), 1)
         for top in range(0, height, rows):
-            part = probe.read_region(shown.texture, (0, top, width, min(rows, height - top)))[..., : shown.channels]
+            part = probe.read_region(image.texture, (0, top, width, min(rows, height - top)))[..., : image.channels]
             yield int((~np.isfinite(part).all(axis=2)).sum())
 
 
-def _mark(shown: DisplayedImage) -> object:
-    return shown.key, shown.revision, shown.texture.size
+def _mark(image: DisplayedImage) -> object:
+    return image.key, image.revision, image.texture.size

@@ -48,7 +48,7 @@ def histogram(rgb: Array, low: float = 0.0, high: float = 1.0) -> Array:
     return np.stack([np.bincount(bins[:, index], minlength=BINS) for index in range(4)])
 
 
-def clipped(rgb: Array) -> tuple[float, float]:
+def measure_clipping(rgb: Array) -> tuple[float, float]:
     """The part of all pixels that is at or below 0 in every channel, and at or above 1 in any."""
     if not rgb.size:
         return 0.0, 0.0
@@ -73,10 +73,10 @@ def parade(rgb: Array, columns: int, rows: int, low: float = 0.0, high: float = 
     """Waveforms of red, green and blue side by side: [rows, columns, 3], each in its own color alone."""
     each = max(columns // 3, 1)
     counts = waveform(rgb, each, rows, low, high)
-    found = np.zeros((rows, each * 3, 3), counts.dtype)
+    parade_counts = np.zeros((rows, each * 3, 3), counts.dtype)
     for index in range(3):
-        found[:, index * each : (index + 1) * each, index] = counts[..., index]
-    return found
+        parade_counts[:, index * each : (index + 1) * each, index] = counts[..., index]
+    return parade_counts
 
 
 def chroma(rgb: Array) -> Array:

@@ -16,9 +16,9 @@ from ..toolkit.buttons import quiet_button, tool, width_of_buttons
 from ..toolkit.words import draw_empty_panel
 from . import graticules, scope_images
 from .geometry import Box, Sight, texels
-from .looking import displayed, look_of, meaning_of, range_of, requested_view
+from .looking import choose_meaning, choose_range, display_pixels, find_requested_view, look_of
 from .reading import ValueReader
-from .scopes import clipped, extent, rgb_of
+from .scopes import extent, measure_clipping, rgb_of
 from .state import SCOPES
 from .wanted import A
 
@@ -46,11 +46,11 @@ class ScopesPanel:
         """Scopes still to be made of what was measured: one per frame, so that none of them stutters."""
         self._next = 0.0
         self._range = (0.0, 1.0)
-        self._clipped = (0.0, 0.0)
+        self._clipping = (0.0, 0.0)
 
     def draw(self) -> None:
         """Tools, and every scope."""
-        shown = self._context.preview.find_whole_image(A)
+        image = self._context.preview.find_whole_image(A)
         self._draw_tools()
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
@@ -58,17 +58,17 @@ class ScopesPanel:
                 self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on."
             )
             return
-        if shown is None:
+        if image is None:
             draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows."
             )
             return
-        if shown.kind in (Kind.NUMBER, Kind.COLOR):
+        if image.kind in (Kind.NUMBER, Kind.COLOR):
             draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture."
             )
             return
-        self._refresh(shown, names)
+        self._refresh(image, names)
         room, gap = imgui.get_content_region_avail(), 6.0 * ui_scale()
         columns = _columns(room.x, room.y, len(names))
         rows = -(-len(names) // columns)
@@ -101,12 +101,12 @@ class ScopesPanel:
         if quiet_button(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
-    def _refresh(self, shown: DisplayedImage, names: list[str]) -> None:
+    def _refresh(self, image: DisplayedImage, names: list[str]) -> None:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
         viewer = self._context.viewer
         mark = (
-            shown.key,
-            shown.revision,
+            image.key,
+            image.revision,
             tuple(names),
             viewer.exposure,
             viewer.gamma,
@@ -120,16 +120,16 @@ class ScopesPanel:
             viewer.meaning,
             self._context.palette.name,
         )
-        now = imgui.get_time()
+        time_now = imgui.get_time()
         if self._waiting:
             self._make(self._waiting.pop(0))
             return
-        if mark == self._mark or now < self._next:
+        if mark == self._mark or time_now < self._next:
             return
-        self._mark, self._next = mark, now + SECONDS
-        self._rgb = self._measured(shown)
+        self._mark, self._next = mark, time_now + SECONDS
+        self._rgb = self._measure_pixels(image)
         self._range = extent(self._rgb) if viewer.scopes_of_scene else (0.0, 1.0)
-        self._clipped = clipped(self._rgb)
+        self._clipping = measure_clipping(self._rgb)
         self._waiting = list(names)
 
     def _make(self, name: str) -> None:
@@ -141,22 +141,22 @@ class ScopesPanel:
         )
         self._textures[name] = plate.show(pixels).native_handle
 
-    def _measured(self, shown: DisplayedImage) -> np.ndarray:
+    def _measure_pixels(self, image: DisplayedImage) -> np.ndarray:
         """The picture, or its region, as [h, w, 3]."""
         viewer = self._context.viewer
-        whole = self._reader.small(self._context.probe, shown)
+        whole = self._reader.read_small(self._context.probe, image)
         part = whole
         if viewer.region is not None:
             x, y, width, height = texels(viewer.region, (whole.shape[1], whole.shape[0]))
             part = whole[y : y + height, x : x + width]
         if viewer.scopes_of_scene:
             return rgb_of(part)
-        meaning = meaning_of(viewer, shown.kind, lambda: whole)
+        meaning = choose_meaning(viewer, image.kind, lambda: whole)
         port = self._context.session.find_viewed_port("A")
-        view = requested_view(self._context.session.graph, port) if port else ""
-        sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
-        span = range_of(viewer, meaning, lambda: whole)
-        return displayed(
+        view = find_requested_view(self._context.session.graph, port) if port else ""
+        sight = Sight((0.0, 0.0), (1, 1), image.full_size)
+        span = choose_range(viewer, meaning, lambda: whole)
+        return display_pixels(
             part,
             look_of(
                 viewer, sight, meaning, span, view, self._context.palette.surround, find_color_manager(self._context)
@@ -188,7 +188,7 @@ class ScopesPanel:
             graticules.chroma_lines(lines, palette, box)
         elif name == "histogram":
             graticules.range_lines(lines, palette, box, *self._range)
-            dark, bright = self._clipped
+            dark, bright = self._clipping
             graticules.hint(lines, palette, box, f"black {dark:.1%}  white {bright:.1%}")
         else:
             graticules.level_lines(lines, palette, box, *self._range)

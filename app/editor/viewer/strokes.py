@@ -39,7 +39,7 @@ def frame(lines: imgui.ImDrawList, box: Box, color: RGB = WHITE) -> None:
     lines.add_rect(box[:2], box[2:], u32(color), 0.0, 1.0)
 
 
-def path(
+def draw_path(
     lines: imgui.ImDrawList, points: Sequence[Point], color: RGB, width: float = 1.5, *, closed: bool = False
 ) -> None:
     """A line through points."""
@@ -49,7 +49,7 @@ def path(
             lines.add_line(first, second, shade, thick * scale)
 
 
-def dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, color: RGB) -> None:
+def draw_dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, color: RGB) -> None:
     """A thin circle of dashes."""
     length = _DASH * ui_scale()
     count = min(max(round(math.pi * radius / length), 8), 360)
@@ -60,7 +60,7 @@ def dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, color: 
             lines.path_stroke(shade, width * ui_scale())
 
 
-def label(lines: imgui.ImDrawList, center: Point, text: str) -> Box:
+def draw_label(lines: imgui.ImDrawList, center: Point, text: str) -> Box:
     """Words around a point; returns where."""
     size = imgui.calc_text_size(text)
     x, y = round(center[0] - size.x / 2), round(center[1] - size.y / 2)

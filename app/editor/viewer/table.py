@@ -11,7 +11,7 @@ from ...errors import HalationError
 from ..theme.style import ui_scale, vec4
 from ..toolkit.words import draw_dim, font
 from .geometry import Pixels
-from .measuring import written
+from .measuring import format_pixel_number
 from .reading import ValueReader
 from .wanted import layer
 
@@ -33,31 +33,31 @@ def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str,
     """Every row of the table: name, place, numbers."""
     viewer = context.viewer
     rows: list[tuple[str, str, tuple[float, ...]]] = []
-    shown = _layers(context)
+    layers = _layers(context)
     points: list[tuple[str, Pixels]] = []
     if viewer.pixel is not None:
         points.append(("", viewer.pixel))
     width, height = viewer.picture
     points += ((f"{number}", (int(x * width), int(y * height))) for number, (x, y) in enumerate(viewer.markers, 1))
     for mark, pixel in points:
-        for name, one in shown:
+        for name, image in layers:
             if mark and name not in ("A", "B"):
                 continue
-            at = _same_place(pixel, viewer.picture, one.full_size)
-            newer = (context.preview.find_visible_image(name) if name in ("A", "B") else None) or one
-            values = reader.pixel(context.probe, f"table {mark} {name}", newer, at)
-            values = values or reader.pixel(context.probe, f"table {mark} {name}", one, at)
+            at = _same_place(pixel, viewer.picture, image.full_size)
+            newer = (context.preview.find_visible_image(name) if name in ("A", "B") else None) or image
+            values = reader.read_pixel(context.probe, f"table {mark} {name}", newer, at)
+            values = values or reader.read_pixel(context.probe, f"table {mark} {name}", image, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
     box = viewer.measured or viewer.region
     if box is not None:
-        for name, one in shown:
+        for name, image in layers:
             if name not in ("A", "B"):
                 continue
-            found = reader.measured(context.probe, name, one, box)
+            statistics = reader.measure_box(context.probe, name, image, box)
             rows += [
-                (f"{name} least", "", found.low),
-                (f"{name} mean", f"{found.count} px", found.mean),
-                (f"{name} most", f"{found.wrong} NaN" if found.wrong else "", found.high),
+                (f"{name} least", "", statistics.low),
+                (f"{name} mean", f"{statistics.count} px", statistics.mean),
+                (f"{name} most", f"{statistics.wrong} NaN" if statistics.wrong else "", statistics.high),
             ]
     return rows
 
@@ -91,7 +91,7 @@ def _row(context: ViewerContext, name: str, place: str, values: tuple[float, ...
     for value in values:
         imgui.table_next_column()
         color = context.palette.text if np.isfinite(value) else context.palette.error
-        imgui.text_colored(vec4(color), f"{written(value):>9}")
+        imgui.text_colored(vec4(color), f"{format_pixel_number(value):>9}")
 
 
 def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
@@ -100,7 +100,7 @@ def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
     if context.viewer.compares:
         names.append(("B", "B"))
     names += ((name, layer(name)) for name in context.session.graph.inputs)
-    return [(name, shown) for name, key in names if (shown := context.preview.find_whole_image(key)) is not None]
+    return [(name, image) for name, key in names if (image := context.preview.find_whole_image(key)) is not None]
 
 
 def _same_place(pixel: Pixels, of: Pixels, size: Pixels) -> Pixels:

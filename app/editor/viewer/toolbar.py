@@ -46,7 +46,7 @@ class _ViewerTool:
 
     width: float
     draw: Draw
-    listed: Draw
+    draw_entry: Draw
     apart: bool = False
     """True begins a group."""
 
@@ -55,29 +55,29 @@ def draw_toolbar(context: ViewerContext, asked_view: str, is_data: bool) -> None
     """Draw the tools in one row."""
     room = imgui.internal.get_current_window().inner_rect.max.x - imgui.get_cursor_screen_pos().x
     tools = _tools(context, asked_view, is_data)
-    count = _fitting(tools, room)
-    for index, one in enumerate(tools[:count]):
+    count = _count_tools(tools, room)
+    for index, viewer_tool in enumerate(tools[:count]):
         if index:
-            imgui.same_line(0.0, _space(one))
-        one.draw()
+            imgui.same_line(0.0, _space(viewer_tool))
+        viewer_tool.draw()
     if count < len(tools):
         if count:
             imgui.same_line(0.0, _GAP * ui_scale())
 
         def rest() -> None:
-            for one in tools[count:]:
-                one.listed()
+            for viewer_tool in tools[count:]:
+                viewer_tool.draw_entry()
 
         dropdown(context, icons.ICON_FA_ELLIPSIS, "button more tools", "More tools", rest)
 
 
-def _space(one: _ViewerTool) -> float:
-    return (_APART if one.apart else _GAP) * ui_scale()
+def _space(viewer_tool: _ViewerTool) -> float:
+    return (_APART if viewer_tool.apart else _GAP) * ui_scale()
 
 
-def _fitting(tools: list[_ViewerTool], room: float) -> int:
+def _count_tools(tools: list[_ViewerTool], room: float) -> int:
     """How many tools fit, with the button of the menu for the others."""
-    if sum(one.width + _space(one) for one in tools) <= room:
+    if sum(viewer_tool.width + _space(viewer_tool) for viewer_tool in tools) <= room:
         return len(tools)
     room -= width_of_buttons(icons.ICON_FA_ELLIPSIS) + _GAP * ui_scale()
     count = 0
@@ -89,20 +89,20 @@ def _fitting(tools: list[_ViewerTool], room: float) -> int:
 
 def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_ViewerTool]:
     viewer = context.viewer
-    found = [_port(context, A), _menu(context, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
+    tools = [_port(context, A), _menu(context, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
     if viewer.compares:
-        found.append(_port(context, B))
+        tools.append(_port(context, B))
     if is_data:
-        found += _range(context)
+        tools += _range(context)
     if viewer.scene:
-        found.append(_action(context, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
+        tools.append(_action(context, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
     if find_focus_port(context.session):
-        found.append(_action(context, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
+        tools.append(_action(context, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
     lit, widest = viewer.channels != "color", max(map(width_of_buttons, _SHORT.values()))
-    found.append(_menu(context, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
+    tools.append(_menu(context, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
-        found += _brightness(context)
-    found += [
+        tools += _brightness(context)
+    tools += [
         _menu(
             context,
             f"1/{1 / viewer.proxy:.0f}",
@@ -130,8 +130,8 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
         ),
     ]
     if not is_data or viewer.meaning == "image":
-        found.append(_view(context, asked_view))
-    return found
+        tools.append(_view(context, asked_view))
+    return tools
 
 
 def _action(context: ViewerContext, icon: str, id: str, apart: bool = False) -> _ViewerTool:
@@ -154,7 +154,7 @@ def _dropdown(
     apart: bool = False,
     width: float = 0.0,
 ) -> _ViewerTool:
-    def listed() -> None:
+    def draw_entry() -> None:
         if imgui.begin_menu(f"{doc}##{name}"):
             fill()
             imgui.end_menu()
@@ -162,7 +162,7 @@ def _dropdown(
     def draw() -> None:
         dropdown(context, label, f"button {name}", doc, fill, lit=lit, width=width)
 
-    return _ViewerTool(width or width_of_buttons(label), draw, listed, apart)
+    return _ViewerTool(width or width_of_buttons(label), draw, draw_entry, apart)
 
 
 def _menu(
@@ -192,12 +192,12 @@ def _port(context: ViewerContext, side: str) -> _ViewerTool:
     name = str(port) if port else "nothing"
     label = f"{side}  {name if len(name) <= 22 else f'{name[:21]}…'}"
 
-    def listed() -> None:
+    def draw_entry() -> None:
         if imgui.begin_menu(f"{side} shows##{side}"):
             list_ports(context, side)
             imgui.end_menu()
 
-    return _ViewerTool(width_of_buttons(label), lambda: pick_port(context, side, label), listed)
+    return _ViewerTool(width_of_buttons(label), lambda: pick_port(context, side, label), draw_entry)
 
 
 def _number(width: float, draw: Callable[[float], object], apart: bool = False) -> _ViewerTool:
@@ -255,26 +255,26 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
             viewer.low = viewer.high = 0.0
 
     def black(width: float) -> None:
-        now = number(context, "data low", low, "%.3g", width, "Shown as black", speed=speed)
-        if now != low:
-            viewer.low, viewer.high = now, high
+        new_low = number(context, "data low", low, "%.3g", width, "Shown as black", speed=speed)
+        if new_low != low:
+            viewer.low, viewer.high = new_low, high
 
     def white(width: float) -> None:
-        now = number(context, "data high", high, "%.3g", width, "Shown as white", speed=speed)
-        if now != high:
-            viewer.low, viewer.high = low, now
+        new_high = number(context, "data high", high, "%.3g", width, "Shown as white", speed=speed)
+        if new_high != high:
+            viewer.low, viewer.high = low, new_high
 
     how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", "How data is shown", menu, not measured)
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
-def _view(context: ViewerContext, asked: str) -> _ViewerTool:
+def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
     viewer, color = context.viewer, find_color_manager(context)
 
     def menu() -> None:
         if context.coloring.fault:
             imgui.text_disabled("The color config cannot be read: these are the built-in views")
-        if imgui.menu_item(f"As the output asks ({asked or 'default'})", "", not viewer.view)[0]:
+        if imgui.menu_item(f"As the output asks ({asked_view or 'default'})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
         for display in list_displays(color):
@@ -284,16 +284,16 @@ def _view(context: ViewerContext, asked: str) -> _ViewerTool:
                     if imgui.menu_item(view, "", chosen)[0]:
                         viewer.view, viewer.display = view, display
                 imgui.end_menu()
-        if known := list_looks(color):
+        if looks := list_looks(color):
             imgui.separator()
             if imgui.begin_menu("Look"):
-                for look, title in (("", "As the view says"), (NO_LOOK, "None"), *((name, name) for name in known)):
+                for look, title in (("", "As the view says"), (NO_LOOK, "None"), *((name, name) for name in looks)):
                     if imgui.menu_item(title, "", viewer.look == look)[0]:
                         viewer.look = look
                 imgui.end_menu()
 
-    now = viewer.view or asked or "Default"
-    label = f"{icons.ICON_FA_DISPLAY}  {'No view' if now == 'none' else now}"
+    view_name = viewer.view or asked_view or "Default"
+    label = f"{icons.ICON_FA_DISPLAY}  {'No view' if view_name == 'none' else view_name}"
     return _dropdown(context, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
 
 

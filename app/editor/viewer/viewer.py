@@ -21,15 +21,15 @@ from .geometry import Sight
 from .ground import depth_at
 from .hand import ViewerInput
 from .handles import pixel_place, takes_position
-from .looking import look_of, meaning_of, range_of, requested_view
+from .looking import choose_meaning, choose_range, find_requested_view, look_of
 from .mattes import picks
-from .measuring import copied, picked_color, written
-from .orbit import orbited
+from .measuring import format_pixel, format_pixel_number, make_opaque_color
+from .orbit import find_orbit_node
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import PictureTimer
 from .reading import Scan, ValueReader
 from .saving import ask_to_save
-from .strokes import label
+from .strokes import draw_label
 from .table import draw_table
 from .toolbar import context_menu, draw_toolbar
 from .wanted import A, B
@@ -49,7 +49,7 @@ _EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image
 
 
 @dataclass(frozen=True)
-class _Now:
+class _FrameImages:
     """What is shown in this frame."""
 
     a: DisplayedImage | None
@@ -60,9 +60,9 @@ class _Now:
     @property
     def is_whole(self) -> bool:
         """True unless only a part is there of what is shown."""
-        return not any(shown is not None and shown.partial for shown in (self.a, self.b))
+        return not any(image is not None and image.partial for image in (self.a, self.b))
 
-    def beside(self, context: ViewerContext) -> bool:
+    def is_beside(self, context: ViewerContext) -> bool:
         """True if B is seen at the right of A."""
         return context.viewer.compare == "beside" and self.a is not None and self.b is not None
 
@@ -88,16 +88,18 @@ class Viewer:
         viewer, preview = self._context.viewer, self._context.preview
         port = self._context.session.find_viewed_port("A")
         b = preview.find_visible_image(B) if viewer.compares else None
-        now = _Now(preview.find_visible_image(A), b, requested_view(self._context.session.graph, port) if port else "")
-        viewer.scene = orbited(self._context.session)
-        self._time(now)
+        images = _FrameImages(
+            preview.find_visible_image(A), b, find_requested_view(self._context.session.graph, port) if port else ""
+        )
+        viewer.scene = find_orbit_node(self._context.session)
+        self._time(images)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
         imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
         draw_banner(self._context)
-        draw_toolbar(self._context, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.VECTOR))
+        draw_toolbar(self._context, images.view, images.a is not None and images.a.kind in (Kind.FIELD, Kind.VECTOR))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         try:
-            self._draw_panel(now)
+            self._draw_panel(images)
         finally:
             imgui.pop_style_var()
         context_menu(self._context)
@@ -105,27 +107,27 @@ class Viewer:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _draw_panel(self, now: _Now) -> None:
+    def _draw_panel(self, images: _FrameImages) -> None:
         viewer, scale = self._context.viewer, ui_scale()
         inner = imgui.internal.get_current_window().inner_rect
         start = inner.min.x, imgui.get_cursor_screen_pos().y + 3 * scale
         imgui.set_cursor_screen_pos(start)
-        lines = 2 if now.b is not None else 1
+        lines = 2 if images.b is not None else 1
         below = infobar.row_height() * lines
         row = imgui.get_text_line_height() + 2 * imgui.get_style().cell_padding.y
         table = row * TABLE_LINES if viewer.table else 0.0
         width, room = inner.max.x - start[0], inner.max.y - start[1]
         table = min(table, room * 0.4)
-        sight = self._catch(now, (max(width, 32.0), max(room - below - table, 32.0)))
-        look = self._draw_picture(now, sight)
-        self._draw_messages(now, sight)
-        self._read(now, sight, look)
+        sight = self._catch(images, (max(width, 32.0), max(room - below - table, 32.0)))
+        look = self._draw_picture(images, sight)
+        self._draw_messages(images, sight)
+        self._read(images, sight, look)
         if viewer.table:
             draw_table(self._context, self._reader, table)
 
-    def _catch(self, now: _Now, size: tuple[float, float]) -> Sight:
+    def _catch(self, images: _FrameImages, size: tuple[float, float]) -> Sight:
         """The area of the picture, of A where B is beside it, after mouse and wheel had their say."""
-        viewer, a, across = self._context.viewer, now.a, 2 if now.beside(self._context) else 1
+        viewer, a, across = self._context.viewer, images.a, 2 if images.is_beside(self._context) else 1
         start = imgui.get_cursor_screen_pos()
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
         origin = round(start.x), round(start.y)
@@ -141,36 +143,38 @@ class Viewer:
         if not imgui.is_item_active():
             self._right = across == 2 and imgui.get_mouse_pos().x >= origin[0] + viewer.panel[0] / density
         if a is not None:
-            self._hand.follow(self._aimed(sight()))
+            self._hand.follow(self._find_hovered_sight(sight()))
             self._context.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
         else:
             viewer.hovered = imgui.is_item_hovered()
         return sight()
 
-    def _aimed(self, sight: Sight) -> Sight:
+    def _find_hovered_sight(self, sight: Sight) -> Sight:
         """Where the picture lies that the mouse is over."""
         if not self._right:
             return sight
         return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
 
-    def _draw_picture(self, now: _Now, sight: Sight) -> Look:
+    def _draw_picture(self, images: _FrameImages, sight: Sight) -> Look:
         viewer, palette = self._context.viewer, self._context.palette
-        if now.a is None:
+        if images.a is None:
             look = Look(surround=palette.surround)
         else:
             toggled = viewer.compare == "toggle" and viewer.toggled
-            name, shown = (B, now.b) if toggled and now.b is not None else (A, now.a)
+            name, image = (B, images.b) if toggled and images.b is not None else (A, images.a)
 
             def samples():
-                return self._reader.small(self._context.probe, self._context.preview.find_whole_image(name) or shown)
+                return self._reader.read_small(
+                    self._context.probe, self._context.preview.find_whole_image(name) or image
+                )
 
-            meaning = meaning_of(viewer, shown.kind, samples)
-            viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
+            meaning = choose_meaning(viewer, image.kind, samples)
+            viewer.span = choose_range(viewer, meaning, samples) if image.kind is not Kind.NUMBER else (0.0, 1.0)
             look = look_of(
-                viewer, sight, meaning, viewer.span, now.view, palette.surround, find_color_manager(self._context)
+                viewer, sight, meaning, viewer.span, images.view, palette.surround, find_color_manager(self._context)
             )
         texture = self._context.log.attempt(
-            lambda: self._context.display.draw("viewer", sight.panel, now.a, now.b, look)
+            lambda: self._context.display.draw("viewer", sight.panel, images.a, images.b, look)
         )
         if texture is None:  # a view that there is not
             viewer.view = viewer.display = viewer.look = ""
@@ -178,29 +182,31 @@ class Viewer:
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
         corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
         lines.add_image(imgui.ImTextureRef(texture.native_handle), (x, y), corner)
-        if now.beside(self._context):
-            other = self._context.display.draw("viewer beside", sight.panel, now.b, None, look)
-            lines.add_image(imgui.ImTextureRef(other.native_handle), (corner[0], y), (2 * corner[0] - x, corner[1]))
+        if images.is_beside(self._context):
+            second_texture = self._context.display.draw("viewer beside", sight.panel, images.b, None, look)
+            lines.add_image(
+                imgui.ImTextureRef(second_texture.native_handle), (corner[0], y), (2 * corner[0] - x, corner[1])
+            )
             lines.add_line((corner[0], y), corner, u32(palette.border), ui_scale())
             for name, left in ((A, x), (B, corner[0])):
-                label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)
+                draw_label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)
         else:
             self._context.display.release_slot("viewer beside")
-        if now.a is not None:
+        if images.a is not None:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(self._context, sight)
             lines.pop_clip_rect()
-            if viewer.saving and now.is_whole:
-                self._context.log.attempt(lambda: ask_to_save(self._context, now.a, now.b, look))  # type: ignore[arg-type]
-        viewer.saving = viewer.saving and not now.is_whole
+            if viewer.saving and images.is_whole:
+                self._context.log.attempt(lambda: ask_to_save(self._context, images.a, images.b, look))  # type: ignore[arg-type]
+        viewer.saving = viewer.saving and not images.is_whole
         return look
 
-    def _draw_messages(self, now: _Now, sight: Sight) -> None:
+    def _draw_messages(self, images: _FrameImages, sight: Sight) -> None:
         preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault and (now.a is None or preview.faults.get(self._context.code.fault_path) != fault):
-            draw_message(self._context, sight, fault, palette.error, dim=now.a is not None)
-        elif now.a is None and not preview.busy:
+        if fault and (images.a is None or preview.faults.get(self._context.code.fault_path) != fault):
+            draw_message(self._context, sight, fault, palette.error, dim=images.a is not None)
+        elif images.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
         elif viewer.compares and self._context.session.find_viewed_port("B") is None:
             draw_badge(self._context, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
@@ -215,13 +221,13 @@ class Viewer:
             draw_badge(self._context, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
             self._offer_search(sight)
-        if now.a is not None and not fault and now.a.kind in (Kind.NUMBER, Kind.COLOR):
-            values = self._reader.pixel(self._context.probe, "single", now.a, (0, 0))
-            draw_message(self._context, sight, "  ".join(written(value) for value in values), palette.text)
+        if images.a is not None and not fault and images.a.kind in (Kind.NUMBER, Kind.COLOR):
+            values = self._reader.read_pixel(self._context.probe, "single", images.a, (0, 0))
+            draw_message(self._context, sight, "  ".join(format_pixel_number(value) for value in values), palette.text)
         waited = imgui.get_time() - self._busy_since if self._busy_since is not None else 0.0
         if waited > 0.12 and not preview.paused:
-            done, total = preview.progress
-            draw_progress(self._context, sight, done / total if total else 0.0)
+            finished, total = preview.progress
+            draw_progress(self._context, sight, finished / total if total else 0.0)
 
     def _offer_search(self, sight: Sight) -> None:
         count = self._scan.wrong
@@ -237,32 +243,32 @@ class Viewer:
         imgui.set_cursor_screen_pos(back)
         imgui.dummy((0, 0))
 
-    def _read(self, now: _Now, sight: Sight, look: Look) -> None:
+    def _read(self, images: _FrameImages, sight: Sight, look: Look) -> None:
         """What is under the pointer, written below the picture."""
         viewer = self._context.viewer
         mouse = imgui.get_mouse_pos()
-        under = self._aimed(sight).under((mouse.x, mouse.y))
-        viewer.pixel = under if viewer.hovered and now.a is not None else None
-        for name, shown in ((A, now.a), (B, now.b)):
-            if name == B and shown is None:
+        under = self._find_hovered_sight(sight).under((mouse.x, mouse.y))
+        viewer.pixel = under if viewer.hovered and images.a is not None else None
+        for name, image in ((A, images.a), (B, images.b)):
+            if name == B and image is None:
                 continue
             values: tuple[float, ...] = ()
-            if shown is not None and viewer.pixel is not None:
-                values = self._reader.pixel(self._context.probe, name, shown, viewer.pixel)
-            words = infobar.about(self._context, name, shown, sight, self._seconds)
-            if shown is not None:
-                words += infobar.of_pixel(self._context, viewer.pixel, values, shown.kind, look)
+            if image is not None and viewer.pixel is not None:
+                values = self._reader.read_pixel(self._context.probe, name, image, viewer.pixel)
+            words = infobar.about(self._context, name, image, sight, self._seconds)
+            if image is not None:
+                words += infobar.of_pixel(self._context, viewer.pixel, values, image.kind, look)
             infobar.draw_line(self._context, f"viewer info {name}", words)
             if name == A and values:
                 self._use(values)
         viewer.copying = False
         if (
-            now.a is not None
+            images.a is not None
             and not self._context.preview.busy
             and viewer.warn_nonfinite
             and not self._context.interface.dragging
         ):
-            self._scan.step(self._context.probe, now.a)
+            self._scan.step(self._context.probe, images.a)
 
     def _use(self, values: tuple[float, ...]) -> None:
         """Copy or pick the values of A under the pointer."""
@@ -270,26 +276,26 @@ class Viewer:
         assert viewer.pixel is not None
         if viewer.copying:
             port = self._context.session.find_viewed_port("A")
-            self._context.clipboard.put(copied(str(port), viewer.pixel, values))
+            self._context.clipboard.put(format_pixel(str(port), viewer.pixel, values))
             self._context.log.add(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
-        if self._hand.picked is not None and viewer.picking:
+        if self._hand.picked_point is not None and viewer.picking:
             port = Port.parse(viewer.picking)
-            picked = self._picked(port, values)
-            if picked is not None:
+            picked_value = self._convert_pick(port, values)
+            if picked_value is not None:
                 self._context.log.attempt(
-                    lambda: self._context.session.apply(SetValue(port, picked, merge=f"pick {port}"))
+                    lambda: self._context.session.apply(SetValue(port, picked_value, merge=f"pick {port}"))
                 )
             if not imgui.is_mouse_down(imgui.MouseButton_.left):
                 self._context.session.seal()
                 viewer.picking = ""
 
-    def _picked(self, port: Port, values: tuple[float, ...]) -> Plain | None:
+    def _convert_pick(self, port: Port, values: tuple[float, ...]) -> Plain | None:
         """What a value becomes by a click on the picture: a place, a depth or a color; None if it is not known."""
         viewer = self._context.viewer
         if takes_position(self._context.session, port):
             return pixel_place(viewer)
         if not is_distance(port):
-            return picked_color(values)
+            return make_opaque_color(values)
         depth = depth_at(self._context, pixel_place(viewer))
         return None if depth is None else float(f"{depth:.7g}")
 
@@ -299,7 +305,7 @@ class Viewer:
             return f"Nothing is linked to the output '{port.socket}' yet."
         return _EMPTY
 
-    def _time(self, now: _Now) -> None:
+    def _time(self, images: _FrameImages) -> None:
         """How long pictures take, for the line below and for the proxy of drags."""
         preview, moment = self._context.preview, imgui.get_time()
         busy = preview.busy and not preview.completing
@@ -307,8 +313,8 @@ class Viewer:
             self._busy_since = moment if self._busy_since is None else self._busy_since
         else:
             self._busy_since = None
-        key = f"{now.a.key} {now.a.revision}" if now.a is not None else ""
+        key = f"{images.a.key} {images.a.revision}" if images.a is not None else ""
         seconds = self._watch.lap(busy and not preview.paused, key, moment)
-        if seconds is not None and now.a is not None:
+        if seconds is not None and images.a is not None:
             self._seconds = seconds
-            self._context.viewer.pace.took(now.a.scale, seconds, now.a.share)
+            self._context.viewer.pace.took(images.a.scale, seconds, images.a.share)

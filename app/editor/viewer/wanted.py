@@ -23,8 +23,8 @@ def layer(name: str) -> str:
 
 def effective_scale(context: ViewerContext) -> float:
     """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
-    viewer, seen = context.viewer, find_visible_region(context)
-    share = seen.share(viewer.proxy) if seen else 1.0
+    viewer, region = context.viewer, find_visible_region(context)
+    share = region.share(viewer.proxy) if region else 1.0
     return viewer.pace.at(
         viewer.proxy, context.interface.dragging and context.store.current.proxy_while_dragging, share
     )
@@ -37,10 +37,10 @@ def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
     away things are where a handle asks for that.
     """
     session, viewer = context.session, context.viewer
-    found = _sides(context)
+    ports = _sides(context)
     if viewer.table:
-        found |= {layer(name): Port(INPUTS, name) for name in session.graph.inputs}
-    return found | depths(context), effective_scale(context)
+        ports |= {layer(name): Port(INPUTS, name) for name in session.graph.inputs}
+    return ports | depths(context), effective_scale(context)
 
 
 def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
@@ -53,8 +53,8 @@ def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
     if viewer.zoom <= 0.0 or context.timeline.playing or context.timeline.scrubbing:
         return None
     sides = {side: context.preview.find_visible_image(side) for side in _sides(context)}
-    for shown in sides.values():
-        if shown is None or shown.full_size != viewer.picture or measures(viewer, shown.kind):
+    for image in sides.values():
+        if image is None or image.full_size != viewer.picture or measures(viewer, image.kind):
             return None
     sight = Sight.of((0.0, 0.0), viewer.panel, viewer.picture, viewer.zoom, viewer.pan)
     (left, top), (right, bottom) = sight.fraction((0.0, 0.0)), sight.fraction(viewer.panel)

@@ -73,7 +73,7 @@ class InputQueue:
             (self._held.add if is_down else self._held.discard)(_modifier_keys()[key])
             modifiers = frozenset(self._held)
         else:
-            modifiers = self._held_with(bits)
+            modifiers = self._update_held(bits)
         name = _translate_key(key, scancode)
         presses = is_down and key not in _modifier_keys()
         is_shift = _modifier_keys().get(key) == imgui.Key.mod_shift
@@ -102,7 +102,7 @@ class InputQueue:
         if button >= int(imgui.MouseButton_.count):
             return
         is_down = action == glfw.PRESS
-        modifiers = self._held_with(bits)
+        modifiers = self._update_held(bits)
         self._events.append(InputEvent(modifiers, is_down, lambda io: io.add_mouse_button_event(button, is_down)))
 
     def add_wheel(self, across: float, down: float) -> None:
@@ -139,7 +139,7 @@ class InputQueue:
     def _latest(self) -> frozenset[imgui.Key]:
         return frozenset(self._held)
 
-    def _held_with(self, bits: int) -> frozenset[imgui.Key]:
+    def _update_held(self, bits: int) -> frozenset[imgui.Key]:
         """What the event itself says is held; it knows of a release that happened over another window."""
         self._held = {modifier for bit, modifier in _BITS.items() if bits & bit}
         return frozenset(self._held)

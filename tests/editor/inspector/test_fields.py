@@ -35,7 +35,7 @@ class TestTyping:
         fields.type_in("one.gain", "1", 1.0, GAIN)
         fields.typing.starting, fields.typing.text = False, "*4"
         fields.begin()
-        fields.typing.drawn = True
+        fields.typing.is_drawn = True
         assert fields.end() is None
         fields.begin()
         assert fields.end() == ("one.gain", Edit(4.0, text="*4"))

@@ -5,9 +5,9 @@ import math
 import pytest
 from halation.editor.viewer.geometry import (
     Sight,
-    box_dragged,
     box_grip,
-    ordered,
+    drag_box,
+    order_box,
     texel,
     texels,
     wipe_angle,
@@ -34,7 +34,7 @@ def test_screen_and_picture_positions_are_inverse(density: float) -> None:
 @pytest.mark.parametrize("factor", [1.2, 0.5, 1000.0, 1e-9])
 def test_zooming_keeps_what_is_under_the_pointer(factor: float) -> None:
     at = (640.0, 123.0)
-    zoomed = SIGHT.zoomed(factor, at)
+    zoomed = SIGHT.zoom_by(factor, at)
     now, before = zoomed.pixel(at), SIGHT.pixel(at)  # pictures lie on whole pixels of the panel
     assert now == pytest.approx(before, abs=0.51 / SIGHT.zoom + 0.51 / zoomed.zoom)
 
@@ -42,14 +42,14 @@ def test_zooming_keeps_what_is_under_the_pointer(factor: float) -> None:
 def test_zooming_in_and_out_again_changes_nothing() -> None:
     at, sight = (640.0, 123.0), SIGHT
     for factor in [1.1] * 20 + [1 / 1.1] * 20:
-        sight = sight.zoomed(factor, at)
+        sight = sight.zoom_by(factor, at)
     assert (sight.zoom, *sight.pan) == pytest.approx((SIGHT.zoom, *SIGHT.pan))
 
 
 def test_panning_follows_the_hand_and_never_loses_the_picture() -> None:
     at = SIGHT.pixel((300.0, 300.0))
-    assert SIGHT.panned(20.0, -8.0).screen(at) == pytest.approx((320.0, 292.0))
-    left, top, right, bottom = SIGHT.panned(1e6, -1e6).rectangle((0.0, 0.0, 1.0, 1.0))
+    assert SIGHT.pan_by(20.0, -8.0).screen(at) == pytest.approx((320.0, 292.0))
+    left, top, right, bottom = SIGHT.pan_by(1e6, -1e6).rectangle((0.0, 0.0, 1.0, 1.0))
     assert left < 900.0 and bottom > 50.0 and right > left and top < bottom
 
 
@@ -90,7 +90,7 @@ def test_boxes_have_edges_corners_and_a_middle() -> None:
 
 
 def test_boxes_follow_the_hand_and_stay_inside() -> None:
-    assert box_dragged((0.2, 0.2, 0.5, 0.5), "se", (0.1, 0.2)) == pytest.approx((0.2, 0.2, 0.6, 0.7))
-    assert box_dragged((0.2, 0.2, 0.5, 0.5), "w", (0.4, 0.2)) == pytest.approx((0.5, 0.2, 0.6, 0.5))
-    assert box_dragged((0.2, 0.2, 0.5, 0.5), "move", (0.9, -0.9)) == pytest.approx((0.7, 0.0, 1.0, 0.3))
-    assert ordered((0.9, -1.0, 0.1, 2.0)) == (0.1, 0.0, 0.9, 1.0)
+    assert drag_box((0.2, 0.2, 0.5, 0.5), "se", (0.1, 0.2)) == pytest.approx((0.2, 0.2, 0.6, 0.7))
+    assert drag_box((0.2, 0.2, 0.5, 0.5), "w", (0.4, 0.2)) == pytest.approx((0.5, 0.2, 0.6, 0.5))
+    assert drag_box((0.2, 0.2, 0.5, 0.5), "move", (0.9, -0.9)) == pytest.approx((0.7, 0.0, 1.0, 0.3))
+    assert order_box((0.9, -1.0, 0.1, 2.0)) == (0.1, 0.0, 0.9, 1.0)

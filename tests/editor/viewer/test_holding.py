@@ -58,7 +58,7 @@ def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **ke
     hold = MouseHold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
     hold.drag(SIGHT, end, (end[0] - start[0], end[1] - start[1]))
     hold.release(SIGHT, end)
-    return hold.aim.what
+    return hold.aim.kind
 
 
 def test_the_picture_itself_is_panned(editor: Any) -> None:
@@ -188,4 +188,4 @@ def test_ctrl_measures_rectangles_and_sets_markers(editor: Any) -> None:
 def test_the_eyedropper_comes_first(editor: Any) -> None:
     editor.session.apply(AddNode("ramp"))
     editor.viewer.picking = "constant.color"
-    assert aim(editor, SIGHT, (0.0, 200.0)).what == "pick"
+    assert aim(editor, SIGHT, (0.0, 200.0)).kind == "pick"

@@ -15,7 +15,16 @@ from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_o
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.holding import MouseHold, aim
 from halation.editor.viewer.lamp_lines import cone, sides
-from halation.editor.viewer.lights import Lamp, add, can_add, can_remove, lamps, put, remove, suns
+from halation.editor.viewer.lights import (
+    Lamp,
+    add_light,
+    can_add,
+    can_remove,
+    lamps,
+    place_light,
+    remove_chosen_light,
+    suns,
+)
 from halation.editor.viewer.perspective import project
 from halation.editor.viewer.state import ViewerState
 from halation.graph import Port
@@ -83,7 +92,7 @@ def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **ke
     hold = MouseHold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
     hold.drag(SIGHT, end, (1.0, 1.0))
     hold.release(SIGHT, end)
-    return hold.aim.what
+    return hold.aim.kind
 
 
 def see(editor: Any, socket: str, *values: float) -> None:
@@ -115,7 +124,7 @@ def test_alt_moves_along_the_line_of_sight(editor: Any) -> None:
     assert of(editor)[0].place == pytest.approx((0.0, 5.0, 0.0)) and editor.interface.dragging
     assert len(editor.session.history.steps) == 2
     chosen = lamps(editor)[-1]
-    put(editor, chosen, chosen.at, 2.5)
+    place_light(editor, chosen, chosen.at, 2.5)
     assert of(editor)[0].place == pytest.approx((0.0, -2.5, 0.0))
 
 
@@ -200,18 +209,18 @@ def test_a_sun_is_dragged_on_the_dome(editor: Any) -> None:
 def test_lights_are_added_and_removed(editor: Any) -> None:
     assert can_add(editor) and can_remove(editor)
     editor.lights["lamps.lights"] = 1
-    add(editor, (0.7, 0.5))
+    add_light(editor, (0.7, 0.5))
     assert [light.kind.name for light in of(editor)] == ["POINT", "SPOT", "POINT", "SUN", "SPHERE"]
     assert of(editor)[2].place == pytest.approx((1.0, 0.0, 0.0)) and editor.lights["lamps.lights"] == 2
     see(editor, "depth", 10.0)
-    add(editor, (0.5, 0.5))
+    add_light(editor, (0.5, 0.5))
     assert of(editor)[3].place == pytest.approx((0.0, 4.5, 0.0))
     for left in (5, 4, 3, 2, 1, 0):
-        remove(editor)
+        remove_chosen_light(editor)
         assert len(of(editor)) == left
     assert not can_remove(editor) and len(editor.session.history.steps) == 11
     editor.session.apply(SetValue(PORT, numbers_of((POINT,) * MAX_LIGHTS)))
-    add(editor, (0.5, 0.5))
+    add_light(editor, (0.5, 0.5))
     assert len(of(editor)) == MAX_LIGHTS and editor.said
     editor.session.apply(Disconnect(Port("lamps", "camera")))
     assert not can_add(editor) and can_remove(editor) and suns(editor) == ()

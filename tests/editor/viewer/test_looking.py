@@ -9,8 +9,15 @@ from halation.authoring.commands import AddInput, AddNode
 from halation.authoring.session import Session
 from halation.color.display import to_display
 from halation.editor.viewer.geometry import Sight
-from halation.editor.viewer.looking import displayed, look_of, meaning_of, picture_only, range_of, requested_view
-from halation.editor.viewer.measuring import picked_color
+from halation.editor.viewer.looking import (
+    choose_meaning,
+    choose_range,
+    display_pixels,
+    find_requested_view,
+    look_of,
+    picture_only,
+)
+from halation.editor.viewer.measuring import make_opaque_color
 from halation.editor.viewer.picking import ports_of, title
 from halation.editor.viewer.state import ViewerState
 from halation.editor.viewer.wanted import list_wanted_ports
@@ -29,24 +36,24 @@ def unread() -> np.ndarray:
 def test_kinds_decide_how_they_are_shown() -> None:
     state = ViewerState()
     up = np.full((4, 4, 3), (0.0, 1.0, 0.0))
-    assert meaning_of(state, Kind.IMAGE, unread) == "image"
-    assert meaning_of(state, Kind.FIELD, unread) == "field"
-    assert meaning_of(state, Kind.VECTOR, lambda: up) == "normal"
-    assert meaning_of(state, Kind.VECTOR, lambda: 3.0 * up) == "vector"
+    assert choose_meaning(state, Kind.IMAGE, unread) == "image"
+    assert choose_meaning(state, Kind.FIELD, unread) == "field"
+    assert choose_meaning(state, Kind.VECTOR, lambda: up) == "normal"
+    assert choose_meaning(state, Kind.VECTOR, lambda: 3.0 * up) == "vector"
     state.meaning = "image"
-    assert meaning_of(state, Kind.VECTOR, unread) == "image"
+    assert choose_meaning(state, Kind.VECTOR, unread) == "image"
 
 
 def test_ranges_are_measured_unless_they_are_given() -> None:
     state = ViewerState()
     data = np.linspace(-1.0, 4.0, 1001).reshape(-1, 1, 1)
-    low, high = range_of(state, "field", lambda: data)
+    low, high = choose_range(state, "field", lambda: data)
     assert (low, high) == pytest.approx((-1.0, 4.0), abs=0.03)
-    low, high = range_of(state, "vector", lambda: data)
+    low, high = choose_range(state, "vector", lambda: data)
     assert low == -high
-    assert range_of(state, "image", unread) == (0.0, 1.0)
+    assert choose_range(state, "image", unread) == (0.0, 1.0)
     state.low, state.high = 2.0, 5.0
-    assert range_of(state, "field", unread) == (2.0, 5.0)
+    assert choose_range(state, "field", unread) == (2.0, 5.0)
 
 
 def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
@@ -54,9 +61,9 @@ def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
     noise = session.apply(AddNode("noise"))
     graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
     graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
-    assert requested_view(graph, Port("outputs", "image")) == "none"
-    assert requested_view(graph, Port(noise, "out")) == "none"
-    assert requested_view(graph, Port(noise, "value")) == ""
+    assert find_requested_view(graph, Port("outputs", "image")) == "none"
+    assert find_requested_view(graph, Port(noise, "out")) == "none"
+    assert find_requested_view(graph, Port(noise, "value")) == ""
 
 
 def test_the_look_has_what_the_viewer_is_set_to() -> None:
@@ -76,21 +83,21 @@ def test_what_scopes_measure_is_what_the_display_shows() -> None:
     pixels[..., 3] = 1.0
     exposed = pixels * np.float32([2.0, 2.0, 2.0, 1.0])
     expected = to_display(exposed, "none", bits=32)[..., :3].clip(0.0, 1.0)
-    assert np.allclose(displayed(pixels, Look(exposure=1.0, view="none")), expected, atol=1e-6)
-    assert np.allclose(displayed(pixels, Look(exposure=1.0, view="none", gamma=2.0)), expected**0.5, atol=1e-6)
+    assert np.allclose(display_pixels(pixels, Look(exposure=1.0, view="none")), expected, atol=1e-6)
+    assert np.allclose(display_pixels(pixels, Look(exposure=1.0, view="none", gamma=2.0)), expected**0.5, atol=1e-6)
 
 
 def test_scopes_see_transparency_over_black_and_light_without_alpha_as_it_is() -> None:
     half = np.asarray([[[0.5, 0.5, 0.5, 0.5]]], np.float32)
-    assert displayed(half, Look(view="none"))[0, 0] == pytest.approx([0.5] * 3, abs=1e-5)
+    assert display_pixels(half, Look(view="none"))[0, 0] == pytest.approx([0.5] * 3, abs=1e-5)
     glow = np.asarray([[[1.0, 1.0, 1.0, 0.0]]], np.float32)
-    assert displayed(glow, Look(view="none"))[0, 0] == pytest.approx([1.0] * 3, abs=1e-5)
+    assert display_pixels(glow, Look(view="none"))[0, 0] == pytest.approx([1.0] * 3, abs=1e-5)
 
 
 def test_scopes_see_data_in_its_range() -> None:
     data = np.asarray([[[2.0], [3.0], [9.0]]], np.float32)
-    assert displayed(data, Look(meaning="field", low=2.0, high=4.0))[0, :, 0].tolist() == [0.0, 0.5, 1.0]
-    assert displayed(np.zeros((1, 1, 3), np.float32), Look(meaning="normal")).tolist() == [[[0.5] * 3]]
+    assert display_pixels(data, Look(meaning="field", low=2.0, high=4.0))[0, :, 0].tolist() == [0.0, 0.5, 1.0]
+    assert display_pixels(np.zeros((1, 1, 3), np.float32), Look(meaning="normal")).tolist() == [[[0.5] * 3]]
 
 
 @pytest.fixture
@@ -137,6 +144,6 @@ def test_everything_can_be_chosen_by_its_name(editor: Any) -> None:
 
 
 def test_picked_colors_are_straight_and_opaque() -> None:
-    assert picked_color((0.2, 0.1, 0.4, 0.5)) == pytest.approx((0.4, 0.2, 0.8, 1.0))
-    assert picked_color((0.2, 0.1, 0.4, 0.0)) == pytest.approx((0.2, 0.1, 0.4, 1.0))
-    assert picked_color((0.3,)) == pytest.approx((0.3, 0.3, 0.3, 1.0))
+    assert make_opaque_color((0.2, 0.1, 0.4, 0.5)) == pytest.approx((0.4, 0.2, 0.8, 1.0))
+    assert make_opaque_color((0.2, 0.1, 0.4, 0.0)) == pytest.approx((0.2, 0.1, 0.4, 1.0))
+    assert make_opaque_color((0.3,)) == pytest.approx((0.3, 0.3, 0.3, 1.0))

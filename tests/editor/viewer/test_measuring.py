@@ -26,9 +26,9 @@ def test_statistics_leave_out_what_is_not_finite() -> None:
     ],
 )
 def test_numbers_are_short(number: float, text: str) -> None:
-    assert measuring.written(number) == text
+    assert measuring.format_pixel_number(number) == text
 
 
 def test_copies_keep_every_digit() -> None:
-    assert measuring.copied("A", (3, 4), (float(np.float32(0.1)), 1.0)) == "A 3 4: 0.10000000149011612 1.0"
+    assert measuring.format_pixel("A", (3, 4), (float(np.float32(0.1)), 1.0)) == "A 3 4: 0.10000000149011612 1.0"
     assert measuring.hsv((0.0, 0.5, 0.0)) == pytest.approx((120.0, 1.0, 0.5))

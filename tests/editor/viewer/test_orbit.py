@@ -15,7 +15,7 @@ from halation.authoring.session import Session
 from halation.editor.viewer.axes import axes
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.holding import HandleTarget, MouseHold, aim
-from halation.editor.viewer.orbit import Orbit, frame_scene, orbited, without_surroundings
+from halation.editor.viewer.orbit import Orbit, find_orbit_node, frame_scene, without_surroundings
 from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
 from halation.graph import INPUTS, Input, Port
@@ -40,7 +40,7 @@ def editor() -> Any:
         log=SimpleNamespace(attempt=lambda act: act()),
     )
     made.session.apply(AddNode("scene"))
-    made.viewer.scene = orbited(made.session)
+    made.viewer.scene = find_orbit_node(made.session)
     return made
 
 
@@ -85,9 +85,9 @@ def test_a_drag_across_the_panel_is_half_a_turn(editor: Any) -> None:
 def test_what_is_in_front_goes_where_the_mouse_goes() -> None:
     camera = START.camera(ASPECT)
     front = unproject(camera, 0.5, 0.5, 4.0)
-    u, v, _ = project(START.turned(0.02, 0.0).camera(ASPECT), front) or (0, 0, 0)
+    u, v, _ = project(START.turn_by(0.02, 0.0).camera(ASPECT), front) or (0, 0, 0)
     assert u > 0.501 and v == pytest.approx(0.5, abs=0.01)
-    u, v, _ = project(START.turned(0.0, 0.02).camera(ASPECT), front) or (0, 0, 0)
+    u, v, _ = project(START.turn_by(0.0, 0.02).camera(ASPECT), front) or (0, 0, 0)
     assert v > 0.501 and u == pytest.approx(0.5, abs=0.01)
 
 
@@ -114,9 +114,9 @@ def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -
 
 
 def test_nearer_and_farther_within_limits() -> None:
-    assert START.nearer(2.0).distance == 3.25
-    assert replace(START, distance=1e-3).nearer(2.0).distance == 1e-3
-    assert replace(START, distance=9e5).nearer(0.5).distance == 1e6
+    assert START.approach_by(2.0).distance == 3.25
+    assert replace(START, distance=1e-3).approach_by(2.0).distance == 1e-3
+    assert replace(START, distance=9e5).approach_by(0.5).distance == 1e6
 
 
 @pytest.mark.parametrize("name", ["stage", "corner", "blocks"])
@@ -145,43 +145,45 @@ def test_a_floor_alone_is_framed_too() -> None:
 
 def test_the_scene_that_is_seen_or_selected(editor: Any) -> None:
     session = editor.session
-    assert orbited(session) == "scene"
+    assert find_orbit_node(session) == "scene"
     other = session.apply(AddNode("scene"))
     mixed = session.apply(AddNode("mix_images"))
     for source, socket in zip(("scene", other), session.graph.nodes[mixed].inputs, strict=False):
         session.apply(Connect(Port(source, "color"), Port(mixed, socket)))
     session.view(Port(mixed, "out"))
     session.select(())
-    assert orbited(session) == ""
+    assert find_orbit_node(session) == ""
     session.select([other])
-    assert orbited(session) == other
+    assert find_orbit_node(session) == other
     session.view(Port("scene", "albedo"))
-    assert orbited(session) == "scene"
+    assert find_orbit_node(session) == "scene"
     noise = session.apply(AddNode("noise"))
     session.view(Port(noise, "value"))
     session.select([ElementId("scene")])
-    assert orbited(session) == ""
+    assert find_orbit_node(session) == ""
 
 
 def test_a_camera_that_something_else_moves_is_left_alone(editor: Any) -> None:
     session = editor.session
     session.apply(ReplaceGraph("Add", session.graph.add_input("angle", Input(Kind.NUMBER, 1, default=3.0))))
-    assert orbited(session) == "scene"
+    assert find_orbit_node(session) == "scene"
     graph = session.graph
     linked = replace(graph, links={**graph.links, Port("scene", "azimuth"): Port(INPUTS, "angle")})
-    assert orbited(SimpleNamespace(graph=linked, find_viewed_port=session.find_viewed_port, active="scene")) == ""  # type: ignore[arg-type]
+    assert (
+        find_orbit_node(SimpleNamespace(graph=linked, find_viewed_port=session.find_viewed_port, active="scene")) == ""
+    )  # type: ignore[arg-type]
 
 
 def test_only_where_it_is_wanted_the_mouse_moves_the_camera(editor: Any) -> None:
     viewer = editor.viewer
-    assert aim(editor, SIGHT, (200.0, 200.0)).what == "pan"
-    assert aim(editor, SIGHT, (200.0, 200.0), alt=True).what == "orbit"
+    assert aim(editor, SIGHT, (200.0, 200.0)).kind == "pan"
+    assert aim(editor, SIGHT, (200.0, 200.0), alt=True).kind == "orbit"
     viewer.orbiting = True
-    assert aim(editor, SIGHT, (200.0, 200.0)).what == "orbit"
-    assert aim(editor, SIGHT, (200.0, 200.0), shift=True).what == "track"
-    assert aim(editor, SIGHT, (200.0, 200.0), ctrl=True).what == "measure"
+    assert aim(editor, SIGHT, (200.0, 200.0)).kind == "orbit"
+    assert aim(editor, SIGHT, (200.0, 200.0), shift=True).kind == "track"
+    assert aim(editor, SIGHT, (200.0, 200.0), ctrl=True).kind == "measure"
     viewer.scene = ""
-    assert aim(editor, SIGHT, (200.0, 200.0), alt=True).what == "pan"
+    assert aim(editor, SIGHT, (200.0, 200.0), alt=True).kind == "pan"
 
 
 def test_the_axes_as_they_are_seen() -> None:

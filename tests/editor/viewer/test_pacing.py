@@ -1,18 +1,18 @@
 """Pictures get coarser while a value is dragged, if they are too slow."""
 
 import pytest
-from halation.editor.viewer.pacing import Pace, PictureTimer, coarse, starting
+from halation.editor.viewer.pacing import Pace, PictureTimer, choose_start_scale, coarsen_scale
 
 
 @pytest.mark.parametrize(
     ("seconds", "scale"), [(0.02, 1.0), (0.06, 1.0), (0.1, 0.5), (0.24, 0.5), (0.25, 0.25), (9, 0.25)]
 )
 def test_slow_pictures_get_coarser(seconds: float, scale: float) -> None:
-    assert coarse(1.0, 1.0, seconds) == scale
+    assert coarsen_scale(1.0, 1.0, seconds) == scale
 
 
 def test_coarser_is_relative_to_the_chosen_proxy() -> None:
-    assert coarse(0.5, 0.5, 9.0) == 0.125
+    assert coarsen_scale(0.5, 0.5, 9.0) == 0.125
 
 
 def test_a_drag_falls_and_never_rises_and_ends_at_full() -> None:
@@ -35,9 +35,9 @@ def test_the_next_drag_starts_where_it_will_be_fast() -> None:
 
 
 def test_a_scale_is_not_left_for_a_small_gain() -> None:
-    assert starting(1.0, 0.5, 0.05) == 0.5
-    assert starting(1.0, 0.5, 0.03) == 1.0
-    assert starting(1.0, 1.0, 0.05) == 1.0
+    assert choose_start_scale(1.0, 0.5, 0.05) == 0.5
+    assert choose_start_scale(1.0, 0.5, 0.03) == 1.0
+    assert choose_start_scale(1.0, 1.0, 0.05) == 1.0
 
 
 def test_another_proxy_is_another_matter() -> None:

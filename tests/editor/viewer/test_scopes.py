@@ -25,7 +25,7 @@ def test_histogram_piles_up_what_is_outside() -> None:
 
 def test_clipping_is_a_part_of_the_pixels() -> None:
     rgb = np.asarray([[[0.0, 0.0, 0.0], [0.0, 0.2, 0.0], [0.5, 1.0, 0.5], [0.1, 0.1, 0.1]]], np.float32)
-    assert scopes.clipped(rgb) == (0.25, 0.25)
+    assert scopes.measure_clipping(rgb) == (0.25, 0.25)
 
 
 def test_waveform_of_a_ramp_is_a_diagonal() -> None:
