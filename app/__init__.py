@@ -96,15 +96,12 @@ def render_frames(
     Whatever the order, a frame is always the same: nodes with a memory are led up to it from the first frame of the
     graph, or by its pre-roll.
     """
-    from .graph import find_node_output
-    from .graph.custom_code import has_code
     from .scripting import arguments
     from .scripting.threads import choose_thread
 
     graph = arguments.check_graph(graph)
     thread = choose_thread()
-    if has_code(graph):
-        thread.trial_process.start()  # while the renderer is loaded
+    thread.prepare(graph)  # while the renderer is loaded
     from .renderer import RenderRequest
     from .resources.sandbox import read_process_sandbox
     from .scripting.rendering import ScriptedRendering
@@ -114,7 +111,7 @@ def render_frames(
         arguments.check_choice("precision", precision, ("half", "float"))
     for name, value in arguments.check_mapping("values", values).items():
         graph = graph.override(name, value)
-    targets = {node: find_node_output(graph, node)} if arguments.check_text("node", node) else {}
+    targets = arguments.check_target(graph, node)
     request = RenderRequest(arguments.check_inputs(inputs), targets, canvas, proxy, precision=precision)
     chosen = None if frames is None else arguments.check_frame_numbers(frames)
     rendering = ScriptedRendering(graph, request, thread, read_process_sandbox())

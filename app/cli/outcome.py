@@ -98,16 +98,14 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
 
 
 def _name_reader(fault: HalationError) -> str:
-    """The sentence of an error; of a picture that cannot be read, also who reads it and how to give another file."""
+    """The sentence of an error; of a picture that cannot be read, also the input or node that reads it."""
     sentence = str(fault)
     if not isinstance(fault, InputError) or not fault.node or f"'{fault.node}'" in sentence:
         return sentence
     from ..graph import INPUTS
 
     name = fault.node.removeprefix(f"{INPUTS}.")
-    if name == fault.node:
-        return f"node '{name}': {sentence}"
-    return f"input '{name}': {sentence}; -i {name}=FILE gives another file"
+    return f"{'node' if name == fault.node else 'input'} '{name}': {sentence}"
 
 
 def flush_output(code: int) -> int:

@@ -16,7 +16,7 @@ from ..errors import GraphError, UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from ..graph import Graph
+    from ..graph import Graph, Port
 
 MAX_SIDE = 131_072
 """Pixels on a side: what files may have (docs/security.md)."""
@@ -68,6 +68,14 @@ def check_text(name: str, text: object) -> str:
     if not isinstance(text, str):
         raise UsageError(f"{name}: give a string, not {describe_object(text)}")
     return text
+
+
+def check_target(graph: Graph, node: object) -> dict[str, Port]:
+    """What `render` is asked for by the `node` (`id` or `id.output`), by that name; empty for all outputs."""
+    from ..graph import find_node_output
+
+    name = check_text("node", node)
+    return {name: find_node_output(graph, name)} if name else {}
 
 
 def check_choice(name: str, text: object, words: tuple[str, ...]) -> Any:

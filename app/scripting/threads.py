@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, ParamSpec, TypeVar
 from ..errors import UsageError
 
 if TYPE_CHECKING:
+    from ..graph import Graph
     from ..renderer.execution.trials import TrialProcess
 
 P = ParamSpec("P")
@@ -35,6 +36,13 @@ class DrawingThread:
         from ..renderer.execution.trials import TrialProcess
 
         return TrialProcess()
+
+    def prepare(self, graph: Graph) -> None:
+        """Start the process that tries programs if the graph has code of users: that takes a moment."""
+        from ..graph.custom_code import has_code
+
+        if has_code(graph):
+            self.trial_process.start()
 
     def call(self, function: Callable[P, R], *args: P.args, **options: P.kwargs) -> R:
         """Call a function on this thread. Raises UsageError where that cannot be."""

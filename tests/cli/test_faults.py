@@ -25,28 +25,32 @@ def test_a_truncated_exr(fails, graphs, shot, share):
         outputs={"far": {"type": "Field"}},
         links={"outputs.far": "inputs.depth"},
     )
-    assert fails(4, "render", path) == f"{shot}: is cut short or damaged: copy or render it again"
+    said = fails(4, "render", path)
+    assert said.endswith(f"': {shot}: is cut short or damaged: copy or render it again") and said.startswith("input '")
 
 
 def test_an_empty_picture(fails, graphs, shot):
     shot.write_bytes(b"")
-    assert fails(4, "render", graphs()) == f"{shot}: is empty (0 bytes): copy or render it again"
+    assert fails(4, "render", graphs()) == f"input 'beauty': {shot}: is empty (0 bytes): copy or render it again"
 
 
 def test_a_missing_layer(fails, graphs, shot):
     said = fails(4, "render", graphs(), "-i", f"beauty={shot}:Depht")
-    assert said.startswith(f"{shot}: ") and "'Depht'" in said and "Depth" in said
+    assert said.startswith(f"input 'beauty': {shot}: ") and "'Depht'" in said and "Depth" in said
     path = graphs(
         inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
         outputs={"far": {"type": "Field"}},
         links={"outputs.far": "inputs.depth"},
     )
-    assert fails(4, "render", path) == said
+    assert fails(4, "render", path) == said.replace("'beauty'", "'depth'")
 
 
 def test_a_missing_picture(fails, graphs, tmp_path):
     path = graphs(inputs={"beauty": {"type": "Image", "file": "shto.exr"}})
-    assert fails(4, "render", path) == f"{tmp_path / 'shto.exr'}: there is no such file; did you mean 'shot.exr'?"
+    assert (
+        fails(4, "render", path)
+        == f"input 'beauty': {tmp_path / 'shto.exr'}: there is no such file; did you mean 'shot.exr'?"
+    )
 
 
 def test_an_input_that_nobody_filled(fails, graphs):
