@@ -29,7 +29,7 @@ _BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
 _NO_TABLE = b"no table"
 """What OpenColorIO is given in place of a file that it may not read."""
 
-_NO_TEXT = "\N{REPLACEMENT CHARACTER}"
+_NO_TEXT = "\ufffd"
 
 
 def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:

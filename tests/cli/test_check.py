@@ -67,7 +67,7 @@ def test_every_problem_of_every_file_and_the_worst_code(cli, tidy, graphs, tmp_p
         ("bad.json", 1, "warning", "not-canonical"),
         ("bad.json", 1, "warning", "unfinished-node"),
         ("missing.json", line_of(missing, "no.exr"), "error", "unreadable-file"),
-        ("broken.json", 3, "error", "syntax"),
+        ("broken.json", 2, "error", "syntax"),
     ]
     assert result.err == "4 graphs: 4 errors, 2 warnings\n"
     told = cli("check", good, bad, missing, broken, "--json").json["graphs"]

@@ -34,7 +34,7 @@ def test_a_graph_becomes_a_picture_and_the_device_is_named_once(cli, graphs, out
     np.testing.assert_allclose(read(out)[0, 0], (0.0, 0.5, 1.0, 1.0))
     renderer = header(out)["halation:renderer"]
     assert result.err.count(renderer) == 1
-    told = rf"{re.escape(str(out))}  \d+\.\d\d s, 1 passes, .* of textures at the peak"
+    told = rf"{re.escape(str(out))}  \d+\.\d\d s, 1 pass, .* of textures at the peak"
     assert re.fullmatch(told, result.err.splitlines()[1])
 
 

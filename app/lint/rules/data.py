@@ -9,7 +9,6 @@ from halation.nodes import Kind, Trait
 
 from ...graph import INPUTS, Graph, Port, Problem
 from ...graph.rules import Rule
-from ...media.layers import split_layer
 from ..sheet import Check, GraphFacts, has_trait, layer_read
 
 DATA_AS_COLOR = Rule(
@@ -55,6 +54,8 @@ def is_data_layer(name: str) -> bool:
 
 def find_data_bindings(graph: Graph, files: Mapping[str, str]) -> Iterator[str]:
     """Sentences about layers of data that are bound, as `FILE:LAYER`, to inputs that feed nodes about color."""
+    from ...media.layers import split_layer  # loads libraries for pictures, which rules do without
+
     for name, file in files.items():
         layer = split_layer(file)[1]
         if not layer or not is_data_layer(layer) or graph.inputs[name].kind is not Kind.IMAGE:
