@@ -25,11 +25,11 @@ _PROLOG = 4096
 _BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
 """White space and marks of byte order (XML 1.0, section 2.3 and appendix F), with the zeros of UTF-16 and UTF-32."""
 
-
 _NO_TABLE = b"no table"
 """What OpenColorIO is given in place of a file that it may not read."""
 
 _NO_TEXT = "\ufffd"
+"""What Python decodes bytes to that are not UTF-8."""
 
 
 def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:

@@ -13,6 +13,7 @@ from ..shared.dialogs import Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import align_right, main_button, quiet_button, width_of_buttons
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
 from .browsing import Browsing, begin_browsing
@@ -199,7 +200,7 @@ class FileBrowser:
         if not self._elsewhere and self._context.dialogs.question is None:
             if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and not browsing.browse.saving:
                 self._go_to(browsing, browsing.folder.parent)
-            if any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter)):
+            if is_enter_pressed(repeats=False):
                 self._open_chosen(browsing)
         self._draw_buttons(browsing)
 

@@ -38,6 +38,7 @@ from ..shared.entries import (
     shader_entries,
 )
 from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import record
 from .geometry import Point
 
@@ -148,8 +149,7 @@ class NodeSearch:
             chosen = self._draw_list(sections, bool(moved) or self._query != before)
         imgui.end_child()
         self._draw_footer(lines)
-        entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
-        return lines[self._marked] if entered and lines else chosen
+        return lines[self._marked] if lines and is_enter_pressed() else chosen
 
     def _draw_list(self, sections: tuple[Section, ...], follow: bool) -> CatalogEntry | None:
         chosen, index = None, 0

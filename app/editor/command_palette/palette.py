@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from ..shared.fuzzy import Match, split_matched
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.keys import display_shortcut
+from ..toolkit.keys import display_shortcut, is_enter_pressed
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, font
 from .commands import Command, list_commands, rank_commands
@@ -45,8 +45,7 @@ class CommandPalette:
         with dialog(self._context, "Command palette", (620, 0), top=0.18):
             self._draw_field()
             moved = self._move_by_arrows(len(matches))
-            entered = any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
-            if entered and matches:
+            if matches and is_enter_pressed(repeats=False):
                 chosen = matches[self._chosen][0]
             chosen = self._draw_list(matches, moved) or chosen
             close = close or escape_pressed()

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from ..theme.style import mix, u32
 from ..toolkit.fields import background, draw_arrow
+from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import place
 from ..toolkit.words import write
 from .fields import Edit, Fields
@@ -79,7 +80,7 @@ def _draw_popup(
         fields.filter = _extend_filter(fields.filter)
         word = fields.filter.casefold()
     matches = [index for index, choice in enumerate(choices) if word in choice.casefold()] or list(range(len(choices)))
-    entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
+    entered = is_enter_pressed()
     for index in matches:
         chosen = choices[index] == current
         if imgui.selectable(f"{choices[index] or ' '}##{index}", chosen or (bool(word) and index == matches[0]))[0]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
+from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import item_rect
 from ..toolkit.words import note_below
 from .fields import Edit, Fields, Typing
@@ -88,11 +89,7 @@ def _draw_input(typing: Typing, width: float, lines: int, hint: str) -> bool:
         entered, typing.text = imgui.input_text_multiline(label, typing.text, (width, height), flags)
         return entered
     _, typing.text = imgui.input_text_with_hint(label, hint, typing.text, flags, on_key)
-    return imgui.is_item_deactivated() and _enter_pressed()
-
-
-def _enter_pressed() -> bool:
-    return imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
+    return imgui.is_item_deactivated() and is_enter_pressed()
 
 
 def _draw_note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float]) -> None:

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from imgui_bundle import ImVec2, imgui
 
 from ..theme.style import ui_scale, vec4
+from .keys import is_enter_pressed
 from .places import WidgetSurface
 
 FIXED = (
@@ -76,7 +77,7 @@ def dialog(
 def enter_pressed() -> bool:
     """True if Enter was pressed for the dialog as a whole: a button in the focus ring takes Enter for itself."""
     ringed = imgui.get_io().nav_visible and imgui.is_any_item_focused()
-    return not ringed and any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
+    return not ringed and is_enter_pressed(repeats=False)
 
 
 def escape_pressed() -> bool:

@@ -63,6 +63,11 @@ def display_shortcut(text: str) -> str:
     return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
 
 
+def is_enter_pressed(repeats: bool = True) -> bool:
+    """True if Enter went down in this frame, on the keypad too; while it is held also again if it `repeats`."""
+    return any(imgui.is_key_pressed(key, repeats) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
+
+
 def find_pressed_chord() -> str:
     """The chord whose key went down in this frame, "" if none did; Escape is left to whoever asks."""
     held = int(imgui.get_io().key_mods)
