@@ -16,10 +16,26 @@ Anything else that escapes is a bug.
 from __future__ import annotations
 
 
+def describe_owner(path: str) -> str:
+    """What a sentence calls the owner of a fault: "node 'glow'", "input 'beauty'" for `inputs.beauty`.
+
+    Several nodes, whose work is one pass, stand with commas between: "glow, grade" is "nodes 'glow' and 'grade'".
+    """
+    *others, last = (f"'{name}'" for name in path.split(", "))
+    if others:
+        return f"nodes {', '.join(others)} and {last}"
+    group, slash, name = path.rpartition("/")
+    for end in ("input", "output"):
+        if name.startswith(f"{end}s."):
+            return f"{end} '{group}{slash}{name[len(end) + 2 :]}'"
+    return f"node {last}"
+
+
 class HalationError(Exception):
     """One sentence that names the file, node and value and says what to do.
 
-    `node` is the node at fault as a path through groups, such as `glow/bloom` or `inputs.beauty`, where it is known.
+    `node` is the node at fault as a path through groups, such as `glow/bloom` or `inputs.beauty`, where it is known;
+    for a pass that does the work of several nodes their paths with commas between.
     """
 
     exit_code = 1
@@ -65,12 +81,15 @@ class DeviceError(HalationError):
 
 
 class ShaderError(DeviceError):
-    """A driver refused a shader. `node`, `file` and `line` say where; line 0 stands for the whole file."""
+    """A driver refused a shader. `node`, `file` and `line` say where; line 0 stands for the whole file.
+
+    `node` is empty where no node asked for the file yet.
+    """
 
     def __init__(self, node: str, file: str, line: int, fault: str) -> None:
         self.file, self.line, self.fault = file, line, fault
         place = f"{file}, line {line}" if line else file
-        super().__init__(f"node '{node}': {place}: {fault}", node=node)
+        super().__init__(f"{describe_owner(node)}: {place}: {fault}" if node else f"{place}: {fault}", node=node)
 
 
 class RenderError(HalationError):

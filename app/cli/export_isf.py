@@ -41,7 +41,7 @@ def export_isf(
     shader. If a node cannot be part of a shader, the command lists each such node with the reason.
     """
     from ..compiler.isf import export_isf as export_shader
-    from ..errors import GraphError, UsageError
+    from ..errors import GraphError, UsageError, describe_owner
     from ..inputs.lazy_provider import LazyResourceProvider
 
     if as_json and output is None:
@@ -58,7 +58,7 @@ def export_isf(
     target = _choose_port(opened_graph, node)
     shader = export_shader(opened_graph, target, LazyResourceProvider(sandbox), size=parsing.parse_size(size))
     if shader.reasons:
-        reasons = [f"{_name_owner(owner)} {why}" for owner, why in shader.reasons]
+        reasons = [f"{describe_owner(owner) if owner else 'it'} {why}" for owner, why in shader.reasons]
         for line in reasons[1:] if len(reasons) > 1 else ():
             print_note(f"{graph}: {line}")
         more = f" (the first of {len(reasons)} reasons)" if len(reasons) > 1 else ""
@@ -89,9 +89,3 @@ def _choose_port(graph: Graph, node: str) -> Port:
         names = ", ".join(graph.outputs) or "none"
         raise UsageError(f"a shader has one output, and the outputs of this graph are {names}: choose one with --node")
     return Port(OUTPUTS, next(iter(graph.outputs)))
-
-
-def _name_owner(owner: str) -> str:
-    if not owner:
-        return "it"
-    return f"input '{owner.removeprefix('inputs.')}'" if owner.startswith("inputs.") else f"node '{owner}'"

@@ -150,10 +150,11 @@ def render_node(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     """The first image that a node makes of the sample, else its data made visible, in display colors."""
     from halation.nodes import Kind
 
-    from .specimen import CANVAS, sample_graph, show_on_sample
+    from .specimen import CANVAS, name_specimen, sample_graph, show_on_sample
 
     graph = show_on_sample(node, sample)
-    outputs = renderer.render(graph)
+    with name_specimen(node):
+        outputs = renderer.render(graph)
     name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(outputs)))
     if graph.outputs[name].kind is Kind.NUMBER:
         from ..media.comparison.contact_sheet import make_caption, show_light

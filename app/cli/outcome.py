@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-from ..errors import HalationError, InputError
+from ..errors import HalationError, InputError, describe_owner
 
 USAGE = 2
 INTERRUPTED = 130
@@ -100,12 +100,8 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
 def _name_reader(fault: HalationError) -> str:
     """The sentence of an error; of a picture that cannot be read, also the input or node that reads it."""
     sentence = str(fault)
-    if not isinstance(fault, InputError) or not fault.node or f"'{fault.node}'" in sentence:
-        return sentence
-    from ..graph import INPUTS
-
-    name = fault.node.removeprefix(f"{INPUTS}.")
-    return f"{'node' if name == fault.node else 'input'} '{name}': {sentence}"
+    owner = describe_owner(fault.node) if isinstance(fault, InputError) and fault.node else ""
+    return sentence if owner.partition(" ")[2] in sentence else f"{owner}: {sentence}"
 
 
 def flush_output(code: int) -> int:

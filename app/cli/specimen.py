@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -10,6 +11,7 @@ from typing import Any
 from halation.nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
 
 from ..compiler import NULL, Plan, Request, Target, compile_graph
+from ..errors import ShaderError
 from ..graph import Graph, Input, Output, Port, Settings
 from ..inputs.lazy_provider import LazyResourceProvider
 from ..resources.picture import Picture
@@ -91,7 +93,17 @@ def plan_node(node: type[Node], size: Size, target: Target = NULL) -> Plan:
         if not socket.single:
             pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
     targets = {name: Port(NODE, name) for name in drawable_outputs(node)}
-    return compile_graph(graph, Request(targets, pictures), _SamplePictures(size), target=target)
+    with name_specimen(node):
+        return compile_graph(graph, Request(targets, pictures), _SamplePictures(size), target=target)
+
+
+@contextmanager
+def name_specimen(node: type[Node]) -> Generator[None]:
+    """Errors of shaders name the type of the node inside this context: nobody knows its id in a graph made for it."""
+    try:
+        yield
+    except ShaderError as error:
+        raise ShaderError(node.id, error.file, error.line, error.fault) from None
 
 
 def show_on_sample(node: type[Node], sample: Path) -> Graph:

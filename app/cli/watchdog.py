@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..errors import DeviceError, HalationError, RenderError
+from ..errors import DeviceError, HalationError, RenderError, describe_owner
 from ..resources.machine import has_memory_limit, machine_memory, resident_memory
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Watchdog:
 
     def _fault(self, sentence: str) -> DeviceError:
         nodes = self._beat.partition(" ")[2]
-        return DeviceError(f"node '{nodes}': its code {sentence}", node=nodes)
+        return DeviceError(f"{describe_owner(nodes)}: its code {sentence}", node=nodes)
 
 
 def needs_watchdog(graph: Graph) -> bool:

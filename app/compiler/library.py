@@ -16,6 +16,7 @@ from msgspec import field
 
 from ..errors import ShaderError
 from ..glsl import GlslFunction, Text, parse
+from ..graph.names import did_you_mean
 from ..resources.record import Record
 from ..resources.working_space import WorkingSpace
 
@@ -53,7 +54,7 @@ class Library(Record, frozen=True):
     _derived: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset(
-        {"_closures", "_light", "_used", "_uniforms", "_digests", "_lines", "_larger"}
+        {"_closures", "_light", "_words", "_uniforms", "_digests", "_lines", "_derived"}
     )
 
     def with_texts(self, texts: Iterable[Text]) -> Library:
@@ -167,9 +168,13 @@ class Library(Record, frozen=True):
         return self._derived[key]
 
     def _find_text(self, name: str, asker: str) -> Text:
+        """A file, or a ShaderError that names who asked: what reads files does not know it."""
         if name not in self.texts:
             raise self._describe_missing_file(name, asker)
-        return self.texts[name]
+        try:
+            return self.texts[name]
+        except ShaderError as error:
+            raise ShaderError(asker, error.file, error.line, error.fault) from None
 
     def _describe_missing_file(self, name: str, asker: str) -> ShaderError:
         """The error about a file that is not there; of a plug-in most often because its wheel was made without it."""
@@ -187,7 +192,8 @@ class Library(Record, frozen=True):
         for include, line in text.includes.items():
             circle = include in (*trail, name)
             if circle or include not in self.texts:
-                fault = "goes in a circle" if circle else "names no shader file"
+                hint = "" if circle else did_you_mean(include, self.texts)
+                fault = "goes in a circle" if circle else f"names no shader file{hint}"
                 raise ShaderError(asker, text.file, line, f'#include "{include}.glsl" {fault}')
             self._include(include, asker, (*trail, name), texts)
         texts[name] = text
@@ -241,7 +247,7 @@ class ShaderFolder(Mapping[str, Text]):
         for function in text.all_functions:
             if not function.name.startswith(f"{namespace}_"):
                 fault = f"the function '{function.name}' of a plug-in must begin with '{namespace}_'"
-                raise ShaderError(name, text.file, function.line, fault)
+                raise ShaderError("", text.file, function.line, fault)
         return text
 
     def __iter__(self) -> Iterator[str]:

@@ -206,6 +206,8 @@ def examine(graph: Graph, request: Request, provider: ResourceProvider, target: 
     """Raise the errors of `compile_graph` in half of its time: no program is written."""
     library = graph_library(graph, provider)
     program = lower(graph, request, library, provider).program
+    for op in program.ops:
+        library.closure(op.files, op.owner)
     passes, precision = rewrite_passes(program, fuse(program, target), target, library), target.precision
     texels = choose_formats(program, passes, target, precision, request.halves)
     plan_tiling(program, passes, texels, library, target, precision, request.halves)

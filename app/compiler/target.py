@@ -47,6 +47,11 @@ class Target(Record, frozen=True):
         """How many pictures one pass may read."""
         return self.max_images - 1 if self.loads_images else self.max_samplers
 
+    @property
+    def name_in_sentences(self) -> str:
+        """The name of the renderer; where a plan is made without one, "a device"."""
+        return "a device" if self.renderer == NULL.renderer else self.renderer
+
 
 NULL = Target("none", 430, software=True, why="planned without a device")
 """A target for plans that nothing runs."""

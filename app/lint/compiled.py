@@ -187,7 +187,7 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
     except InputError as fault:
         world.faults.setdefault(str(fault), "")
     except HalationError as fault:
-        yield fault.exit_code, Problem(fault.node, "", str(fault), _rule(fault))
+        yield fault.exit_code, Problem(fault.node.partition(", ")[0], "", str(fault), _rule(fault))
     if world.faults:
         places = _places(graph)
         for sentence, path in world.faults.items():

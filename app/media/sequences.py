@@ -8,7 +8,6 @@ Only the one folder is ever listed.
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 import time
@@ -26,6 +25,7 @@ from msgspec import Struct
 
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
+from ..resources.input_files import find_similar_name
 from ..resources.provider import FrameFile
 from ..resources.sandbox import Sandbox
 from .pictures.thumbnail import list_readable_endings
@@ -173,8 +173,8 @@ def check_has_files(sequence: FrameSequence, sandbox: Sandbox) -> None:
     if not _is_folder(folder or "."):
         raise InputError(f"{text}: no file has such a name; its folder is missing too")
     names, sought = _list_folder(folder, sandbox=sandbox), text[len(folder) :]
-    near = [*difflib.get_close_matches(sought, _rank_patterns(names), 1), *difflib.get_close_matches(sought, names, 1)]
-    hint = f"; did you mean '{near[0]}'?" if near else ": check it"
+    guess = find_similar_name(sought, _rank_patterns(names)) or find_similar_name(sought, names)
+    hint = f"; did you mean '{guess}'?" if guess else ": check it"
     raise InputError(f"{text}: no file has such a name{hint}")
 
 

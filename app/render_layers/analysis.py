@@ -71,11 +71,6 @@ class RenderAnalysis:
         best = best_claims(self.passes, role)
         return best[0].layer if len(best) == 1 else None
 
-    def layers_by_rank(self, role: Role) -> tuple[Layer, ...]:
-        """All layers of a cryptomatte, by rank."""
-        passes = [item for item in self.passes if item.role is role]
-        return tuple(item.layer for item in sorted(passes, key=lambda item: item.rank))
-
     @property
     def roles(self) -> tuple[Role, ...]:
         """The roles that have a layer, in the order of the layers; those that somebody chose one for come last."""

@@ -10,6 +10,7 @@ import difflib
 import hashlib
 import os
 import stat
+from collections.abc import Iterable
 from io import BufferedReader
 from pathlib import Path
 
@@ -122,7 +123,24 @@ def _describe_missing(path: Path) -> str:
     try:
         if not path.parent.is_dir():
             return "there is no such file; its folder is missing too"
-        guess = difflib.get_close_matches(path.name, (item.name for item in path.parent.iterdir()), 1)
+        guess = find_similar_name(path.name, (item.name for item in path.parent.iterdir()))
     except (OSError, ValueError):
         return "no file can have such a name: check it"
-    return f"there is no such file; did you mean '{guess[0]}'?" if guess else "there is no such file: check the name"
+    return f"there is no such file; did you mean '{guess}'?" if guess else "there is no such file: check the name"
+
+
+def find_similar_name(name: str, names: Iterable[str]) -> str:
+    """The most similar of the names of files, for a suggestion; "" if none is similar.
+
+    What stands before the first dot must be similar, in capitals or not: all names of a folder of pictures may end
+    alike, and then `nope.exr` looks like each of them.
+    """
+    names_by_stem: dict[str, list[str]] = {}
+    for candidate in names:
+        names_by_stem.setdefault(_find_stem(candidate), []).append(candidate)
+    stems = difflib.get_close_matches(_find_stem(name), names_by_stem, 1)
+    return difflib.get_close_matches(name, names_by_stem[stems[0]], 1, 0.0)[0] if stems else ""
+
+
+def _find_stem(name: str) -> str:
+    return name.partition(".")[0].casefold()

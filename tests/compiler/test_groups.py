@@ -250,5 +250,5 @@ def test_more_outputs_than_the_device_writes_at_once_is_an_error(plan, limits):
     from halation.errors import DeviceError
     from msgspec import structs
 
-    with pytest.raises(DeviceError, match=r"node 'c': none writes 1 pictures at once, not 2"):
+    with pytest.raises(DeviceError, match=r"node 'c': a device writes 1 of its outputs at once, not 2"):
         plan(replace(GENERATOR, settings=SETTINGS), target=structs.replace(NULL, **limits))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from halation import document
+from halation.cli.specimen import plan_node
 from halation.compiler import load_library
 from halation.errors import ShaderError
 from halation.graph import Graph, Port, Unknown, problems
@@ -173,8 +174,17 @@ def test_functions_of_shaders_have_its_name_in_front(site: Site) -> None:
     assert load_library().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
     shader.write_text("\nvec4 dim(vec4 image, float factor) { return image * factor; }\n")
     forget()
-    with pytest.raises(ShaderError, match=r"acme_tone/shaders/tone/dim.glsl.*'dim'.*must begin with 'acme_tone_'"):
-        load_library().function("acme_tone/tone/dim", "acme_tone_dim", "test")
+    with pytest.raises(ShaderError) as caught:
+        load_library().function("acme_tone/tone/dim", "acme_tone_dim", "fade")
+    assert caught.value.node == "fade"
+    place = "node 'fade': acme_tone/shaders/tone/dim.glsl, line 2: "
+    assert str(caught.value) == f"{place}the function 'dim' of a plug-in must begin with 'acme_tone_'"
+
+
+def test_a_node_of_the_catalogue_is_named_by_its_type(site: Site) -> None:
+    site.install("acme-tone", "1.0")
+    with pytest.raises(ShaderError, match=r"^node 'acme_tone\.dim': acme_tone/shaders/tone/dim\.glsl: there is no"):
+        plan_node(catalogue()["acme_tone.dim"], (64, 36))
 
 
 def test_a_wheel_without_shaders_says_what_it_lacks(site: Site) -> None:

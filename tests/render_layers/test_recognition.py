@@ -193,7 +193,7 @@ def test_real_renders(name: str) -> None:
     assert all(item.role for item in found.passes) and found.rivals == {}
     crypto = [item for item in found.passes if item.role is Role.CRYPTOMATTE_OBJECT]
     assert [item.grounds for item in crypto] == [RoleGrounds.HEADER] * 3
-    assert [layer.name[-2:] for layer in found.layers_by_rank(Role.CRYPTOMATTE_OBJECT)] == ["00", "01", "02"]
+    assert sorted((item.rank, item.layer.name[-2:]) for item in crypto) == [(0, "00"), (1, "01"), (2, "02")]
 
 
 # --- without a known renderer -------------------------------------------------------------------------------------

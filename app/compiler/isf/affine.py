@@ -1,7 +1,7 @@
-"""What the numbers of a lowered graph depend on: found by lowering it again with other values.
+"""Finds how the numbers of a lowered graph follow a control, by lowering the graph again with other values.
 
-A control that only changes numbers, each of them evenly, becomes an input of what is exported. No node has to say how
-its values are used for that.
+The package says why. Numbers are fitted by straight lines (`fit_slopes`), sizes by fractions of the picture's size
+(`find_length_formula`).
 """
 
 from __future__ import annotations
@@ -18,15 +18,20 @@ from ..areas import Neighborhood
 from ..ir import LoweredProgram, PictureShape, UniformConstant
 
 TOLERANCE = 1e-5
+"""Relative difference that counts as rounding. Chosen by judgement: constants are computed in double precision and
+stored as floats of 24 bits (6e-8), and sums of ten terms lose another digit."""
+
 MAX_FACTOR = 4096
-"""Buffers may be so many times smaller than the picture, along each side."""
+"""How many times smaller than the picture a buffer may be along a side: a pyramid of twelve halvings, which ends at one
+pixel for 4096 pixels."""
 
 
 @dataclass(frozen=True)
 class Knob:
-    """A number that the graph depends on. `text` is what it is in the shader, `rest` what it is in the graph.
+    """A number that the graph depends on. `text` is its GLSL in the shader, `rest` its value in the graph.
 
-    Samples are `step` apart from `base`, which lies beside the rest: a node that does nothing there would not be seen.
+    Samples are taken at `base` and in steps of `step` from it. `base` lies beside `rest`: at its value in the graph a
+    node may do nothing, so that its numbers are not in the program.
     """
 
     name: str
@@ -36,11 +41,11 @@ class Knob:
     step: float
     samples: int = 2
     resizes: bool = False
-    """True for what changes the sizes of pictures, as formulas say."""
+    """True for the width and the height, which may change the sizes of pictures."""
 
     @property
     def far(self) -> float:
-        """A value that is none of the samples, but for a switch."""
+        """A value far from the samples, where the fit is checked; of a switch, which has two values, the other one."""
         return self.base + self.step * (1.0 if self.samples == 1 else 5.0)
 
 
@@ -53,7 +58,7 @@ LoweringFunction = Callable[[Point], LoweredProgram | None]
 
 @dataclass
 class Anatomy:
-    """A program taken apart: what it is made of, its numbers, its sizes, and where the numbers of a constant begin."""
+    """A program taken apart: its structure, its numbers, its sizes, and where the numbers of each constant begin."""
 
     skeleton: object
     numbers: list[float] = field(default_factory=list[float])
@@ -62,7 +67,7 @@ class Anatomy:
 
 
 def take_apart(program: LoweredProgram) -> Anatomy:
-    """Take a program apart."""
+    """The structure, numbers and sizes of a program."""
     parts = Anatomy(None)
     parts.skeleton = (*(_walk(op, parts) for op in program.ops), tuple(program.outputs.items()))
     return parts
@@ -78,7 +83,7 @@ def _walk(item: Any, parts: Anatomy) -> object:
         parts.sizes.append(item.size)
         return item.channels, item.data, item.size == (1, 1)
     if isinstance(item, Neighborhood):
-        return Neighborhood  # it matters for parts of a picture alone, which a shader of this format never makes
+        return Neighborhood  # only tiles need it, and a shader of this format always makes the whole picture
     if isinstance(item, Struct):
         excluded = item.compare_exclude if isinstance(item, Record) else ()
         names = (name for name in item.__struct_fields__ if name not in excluded)
@@ -136,7 +141,7 @@ class LinearModel:
 
 
 def fit_slopes(lower_at: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
-    """How fast every number grows with a knob; None if what is computed changes, or numbers do not grow evenly."""
+    """How fast every number grows with a knob; None if the structure changes or a number follows no straight line."""
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):
         program = lower_at({knob.name: knob.base + step * knob.step})
@@ -158,9 +163,9 @@ def are_close(numbers: Sequence[float], references: Sequence[float]) -> bool:
 
 
 def find_length_formula(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
-    """A length as a formula of the picture's, written `{}`, that holds for all samples; None if there is none.
+    """A formula for the length of a buffer, with `{}` for that of the picture; None if none fits all samples.
 
-    Lengths are constant, or a fraction of the picture's, rounded somehow.
+    A length is constant, equal to the picture's, or a fraction of it, rounded up, down or to the nearest.
     """
     if len(set(lengths)) == 1 and len(set(canvas)) > 1:
         return write_literal(lengths[0])
@@ -180,6 +185,6 @@ def find_length_formula(canvas: Sequence[int], lengths: Sequence[int]) -> str | 
 
 
 def write_literal(number: float) -> str:
-    """A number as GLSL 1.20 has it."""
+    """A number as a float literal of GLSL 1.20."""
     text = f"{number:.9g}"
     return text if any(letter in text for letter in ".en") else f"{text}.0"

@@ -1,4 +1,4 @@
-"""Controls of a graph as inputs of a shader, and as knobs."""
+"""Controls of a graph as inputs of a shader, and as the knobs that `affine` measures."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Section = dict[str, Any]
 
 @dataclass(frozen=True)
 class IsfControl:
-    """A control, what it turns, and its knobs, one for each component."""
+    """A control with the value that it sets, its entry in the head of the shader, and a knob for each component."""
 
     name: str
     value: Value
@@ -26,7 +26,7 @@ class IsfControl:
     knobs: tuple[Knob, ...]
 
     def value_at(self, point: Mapping[str, float]) -> Plain:
-        """The value where knobs are as `point` says."""
+        """The value of the control at a point."""
         parts = tuple(point.get(knob.name, knob.rest) for knob in self.knobs)
         if self.value.length > 1:
             return parts
@@ -34,7 +34,7 @@ class IsfControl:
 
 
 def make_identifier(name: str, used_names: Iterable[str]) -> str:
-    """A name for GLSL that is not taken."""
+    """The name as a GLSL identifier that is not in use yet."""
     plain = _ODD.sub("_", name).strip("_") or "value"
     plain = f"x{plain}" if plain[0].isdigit() or plain.startswith(("gl_", "isf_", "IMG_")) else plain
     candidate, number = plain, 1
@@ -45,7 +45,7 @@ def make_identifier(name: str, used_names: Iterable[str]) -> str:
 
 
 def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfControl], list[str]]:
-    """The controls that may become inputs; and sentences on those that cannot."""
+    """The controls that can become inputs, and a sentence on each of the others."""
     names, controls, notes = set(used_names), list[IsfControl](), list[str]()
     for name, control in graph.controls.items():
         target = control.target
@@ -97,6 +97,7 @@ def _make_control(shader_name: str, name: str, label: str, value: Value, rest: P
 def _make_knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
     if value.type == "bool":
         return Knob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
+    # A part of the range that no node has as a special value: at round values nodes may do nothing.
     step = 1.0 if value.type == "int" else (high - low) * 0.0371
     step = -step if rest + 6.0 * step > min(high, value.maximum) else step
     return Knob(name, text, rest, rest + step, step)

@@ -27,8 +27,14 @@ from .passes import find_obstacles
 from .writing import IsfWriter
 
 MAX_PASSES = 64
+"""Passes that a shader may take. The format has no limit, but hosts compile all passes as one program. Of the 28
+presets that can be exported none takes more than 39."""
+
 MAX_PICTURES = 16
+"""Pictures and buffers that a shader may read: OpenGL promises so many samplers to a fragment shader."""
+
 SIZE: Size = (1280, 720)
+"""The size of the picture where neither the user nor the graph names one."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +48,7 @@ class IsfExport:
 
 @dataclass(frozen=True)
 class _BoundProvider:
-    """The world beyond the graph, where every bound input is a picture of the size that is wanted."""
+    """A provider for which the picture of every bound input has the size of the export."""
 
     provider: ResourceProvider
     size: Size
@@ -71,16 +77,16 @@ class _BoundProvider:
 def export_isf(
     graph: Graph, target: Port, provider: ResourceProvider, *, size: Size | None = None, doc: str = ""
 ) -> IsfExport:
-    """Write what `target` shows of a graph as one shader. Raises the errors of compiling a graph.
+    """Write the output `target` of a graph as one shader. Raises the errors of compiling a graph.
 
-    Its pictures become those of the shader, and its controls inputs where they change nothing but numbers, evenly.
-    `size` is that of the picture where something holds for one size only.
+    Image inputs of the graph become pictures of the shader. Controls become inputs of the shader if they change
+    nothing but numbers, along straight lines. `size` is the size of the picture, for what cannot follow it.
     """
     return _IsfExporter(graph, target, provider, size or graph.settings.size or SIZE).export(doc)
 
 
 class _IsfExporter:
-    """The work in progress."""
+    """Exports one output of a graph: its pictures, its controls, and the notes so far."""
 
     def __init__(self, graph: Graph, target: Port, provider: ResourceProvider, size: Size) -> None:
         self.graph, self.target, self.provider, self.size = graph, target, provider, size

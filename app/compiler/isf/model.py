@@ -1,4 +1,4 @@
-"""Which numbers of a graph its controls, its frame and its size change, and how."""
+"""Finds which numbers of a program the controls, the frame and the size change, and holds the controls that do more."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from .affine import Anatomy, Knob, LinearModel, Point, are_close, find_length_fo
 WIDTH, HEIGHT, FRAME = "width", "height", "frame"
 
 SizeFormulas = Mapping[Size, tuple[str, str]]
-"""Sizes of pictures as formulas of the whole one's, which is written `{}`."""
+"""Sizes of pictures as formulas of the size of the exported picture, which is written `{}`."""
 
 
 @dataclass
 class IsfModel:
-    """A program, and what its numbers and sizes are in a shader. `held` are the knobs that it does not follow."""
+    """A program with its numbers and sizes as formulas. `held_knobs` are the knobs that it does not follow."""
 
     program: LoweredProgram
     model: LinearModel
@@ -27,7 +27,7 @@ class IsfModel:
     held_knobs: list[str] = field(default_factory=list[str])
 
     def write_constant(self, item: UniformConstant) -> tuple[str, ...] | None:
-        """The numbers of a constant as GLSL; None for what is always the same."""
+        """The numbers of a constant as GLSL; None if no knob changes them."""
         place = self.model.base.places.get(id(item))
         if place is None:
             return None
@@ -41,13 +41,13 @@ class IsfModel:
 
     @property
     def used_knobs(self) -> set[str]:
-        """The knobs that change something."""
+        """The knobs that change some number."""
         return {name for name in self.model.slopes if _matters(self.model, name)}
 
 
 @dataclass
 class ModelSearch:
-    """The work in progress: knobs that do not fit in are held at what they have in the graph, one after the other."""
+    """Fits knobs; one that does not fit is held at its value in the graph, and the search starts again without it."""
 
     lower_at: Callable[[Point], LoweredProgram]
     knobs: dict[str, Knob]
@@ -55,7 +55,7 @@ class ModelSearch:
     held_knobs: list[str] = field(default_factory=list[str])
 
     def find_model(self) -> IsfModel:
-        """Hold as few knobs as can be. Raises the errors of compiling at the values of the graph."""
+        """Fit as many knobs as possible. Raises the errors of compiling the graph at its own values."""
         while True:
             try:
                 program = self.lower_at(self._find_base())
@@ -90,7 +90,7 @@ class ModelSearch:
             del self.knobs[held_name]
 
     def _fit_slopes(self, model: LinearModel) -> str:
-        """Find the slopes; the name of the first knob that has none."""
+        """Fit each knob alone; the name of the first knob that does not fit, or ""."""
         for name, knob in self.knobs.items():
             slopes = fit_slopes(self._try_lower, model.base, knob)
             if slopes is None:
@@ -99,7 +99,7 @@ class ModelSearch:
         return ""
 
     def _fit_products(self, model: LinearModel) -> str:
-        """Find products of two knobs; the name of a knob that does not fit in with the others, if one does not."""
+        """Fit products of two knobs and check the result far away; the name of a knob that does not fit, or ""."""
         names = [name for name in model.slopes if _matters(model, name)]
         for at, first in enumerate(names):
             for second in names[at + 1 :]:
@@ -117,13 +117,16 @@ class ModelSearch:
         return "" if not names or (numbers is not None and are_close(numbers, model.predict(point))) else names[-1]
 
     def _find_numbers(self, model: LinearModel, point: Point) -> list[float] | None:
-        """The numbers at a point; None where something else is computed."""
+        """The numbers at a point; None if the structure of the program is another one there."""
         program = self._try_lower(point)
         sample = take_apart(program) if program else None
         return sample.numbers if sample is not None and sample.skeleton == model.base.skeleton else None
 
     def _find_size_formulas(self, base: Anatomy) -> SizeFormulas | None:
-        """The sizes of all pictures as formulas; None if they have none."""
+        """The sizes of all pictures as formulas; None if some size has none.
+
+        The steps differ by odd numbers, so that a formula that rounds wrongly fails at one of them.
+        """
         steps = (0, 37, 91, 192)
         samples: list[Anatomy] = []
         for step in steps:

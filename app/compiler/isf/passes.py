@@ -1,4 +1,4 @@
-"""Passes of a lowered graph as functions of one shader."""
+"""Writes the passes of a program as functions of one shader, and finds what a shader cannot do."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
 
 
 class IsfNames(ShaderNames):
-    """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
+    """Names in a shader of the format: pictures are read by functions, uniforms are set at the start of the pass."""
 
     write_constant: Callable[[UniformConstant], tuple[str, ...] | None] = lambda item: None
     write_size: Callable[[Uniform], tuple[str, str] | None] = lambda size: None
@@ -35,7 +35,7 @@ class IsfNames(ShaderNames):
     """The frame that FRAMEINDEX counts from."""
     readers: Mapping[Ref, str] = field(default_factory=dict[Ref, str])
     settings: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
-    """Type, name and GLSL of what is set."""
+    """Type, name and GLSL of each number that is set at the start of the pass."""
 
     def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
         name = name or f"u{len(self.settings)}"
@@ -68,7 +68,7 @@ class IsfNames(ShaderNames):
 def find_obstacles(
     program: LoweredProgram, passes: tuple[PassGroup, ...], pictures: Mapping[Ref, str]
 ) -> Iterator[tuple[str, str]]:
-    """Why a graph cannot be written as one shader: nodes, and sentences about them."""
+    """Why a graph cannot be written as one shader: a node and a sentence about it for each reason."""
     for fused in passes:
         for index in fused.members:
             yield from (

@@ -1,4 +1,4 @@
-"""The text of a shader that does what a lowered graph does."""
+"""Writes the text of a shader: the functions of all passes, their buffers, and `main`."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
 
 @dataclass
 class IsfWriter:
-    """The work in progress: passes drawn so far, by the buffers that they fill."""
+    """Writes one shader: the passes so far, and the buffers that they fill."""
 
     model: IsfModel
     library: Library
@@ -36,7 +36,7 @@ class IsfWriter:
     """The pass that reads a picture last."""
 
     def write(self, first: int) -> tuple[str, list[Section]]:
-        """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
+        """The GLSL, and the entry PASSES of the head. `first` is the frame that FRAMEINDEX counts from."""
         program = self.model.program
         passes_alone = fuse(program, NULL, gathers=False)
         passes = [(fused, output) for fused in passes_alone for output in range(len(fused.writes))]
@@ -81,7 +81,7 @@ class IsfWriter:
         self.targets.append({"TARGET": self.buffers[ref], "FLOAT": True, **lengths})
 
     def _choose_buffer(self, lengths: Section) -> str:
-        """A buffer of this size that nobody reads any more, or another one: hosts read 16 pictures at most."""
+        """A buffer of this size that no later pass reads, or a new one: a shader reads `MAX_PICTURES` at most."""
         pass_number = len(self.targets)
         used_buffers = {name for ref, name in self.buffers.items() if self.last_readers.get(ref, -1) >= pass_number}
         buffer_sizes = {
@@ -92,7 +92,7 @@ class IsfWriter:
         return next(free, f"buffer{len(buffer_sizes) + 1}")
 
     def _write_display(self, last: Ref) -> None:
-        """The last pass is the picture."""
+        """Make the last pass write the picture, in display values and with straight alpha."""
         newest = next(reversed(self.buffers), None)
         if newest != last:
             self.calls.append(f"gl_FragColor = read_{self._find_name(last)}({_PIXEL});")
@@ -102,7 +102,7 @@ class IsfWriter:
         self.calls[-1] += " gl_FragColor = display_straight(gl_FragColor);"
 
     def _write_canvas(self, size: Size) -> str:
-        """The size of the whole picture, seen from a pass of this size."""
+        """The size of the exported picture, as GLSL in a pass whose buffer has this size."""
         if size == self.size:
             return "RENDERSIZE"
         whole = next((str(target["TARGET"]) for target in self.targets if "WIDTH" not in target), "")
@@ -119,7 +119,7 @@ class IsfWriter:
         return f"int({across.format('@halation_canvas.x')})", f"int({down.format('@halation_canvas.y')})"
 
     def _write_display_functions(self) -> list[str]:
-        """Between light and the display values of the format."""
+        """The functions that convert between light and the display values of the format."""
         needed, lines = frozenset({"display_straight", "from_codes"}), list[str]()
         for text in reversed(self.library.closure(("lib/isf",), "export")):
             used = text.only(needed)
@@ -135,6 +135,6 @@ class IsfWriter:
 
 
 def _write_reader(name: str, template: str) -> list[str]:
-    """A function that reads one pixel of a picture; rows of ours run from the top."""
+    """A function that reads one pixel of a picture. Rows count from the top in Halation, from the bottom in ISF."""
     read = f"IMG_PIXEL({name}, vec2(float(at.x) + 0.5, IMG_SIZE({name}).y - float(at.y) - 0.5))"
     return [f"vec4 read_{name}(ivec2 at) {{ return {template.format(read)}; }}"]

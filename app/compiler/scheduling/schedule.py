@@ -9,7 +9,7 @@ from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ...errors import DeviceError
+from ...errors import DeviceError, describe_owner
 from ...graph import Port
 from ..codegen.emit import EmittedProgram, emit
 from ..fusion.fuse import PassGroup
@@ -164,7 +164,7 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
     most = target.max_images if as_images else target.max_targets
     if count > most:
         raise DeviceError(
-            f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
+            f"{describe_owner(op.owner)}: {target.name_in_sentences} writes {most} of its outputs at once, not {count}; "
             "link fewer of its outputs",
             node=op.owner,
         )

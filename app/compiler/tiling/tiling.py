@@ -15,7 +15,7 @@ from types import MappingProxyType
 from halation.nodes import Size
 from msgspec.structs import replace
 
-from ...errors import DeviceError
+from ...errors import DeviceError, describe_owner
 from ..areas import Region
 from ..explain import format_bytes
 from ..fusion.fuse import PassGroup
@@ -107,8 +107,8 @@ def _find_excess(
         size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
-                f"node '{owner}': {_format_size(size)} pixels is more than the {target.max_size} that "
-                f"{target.renderer} can hold on a side"
+                f"{describe_owner(owner)}: {_format_size(size)} pixels is more than the {target.max_size} that "
+                f"{target.name_in_sentences} can hold on a side"
             )
     if not target.memory:
         return ""
@@ -151,9 +151,9 @@ def _check_whole_pictures(program: LoweredProgram, passes: Sequence[PassGroup], 
             for size in sizes:
                 if max(size) > target.max_size:
                     raise DeviceError(
-                        f"node '{op.owner}': it may need all {_format_size(size)} pixels of a picture for one of its "
-                        f"own, so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a "
-                        "side; render smaller with --scale or --size",
+                        f"{describe_owner(op.owner)}: it may need all {_format_size(size)} pixels of a picture for one "
+                        f"of its own, so they cannot be made in parts, and {target.name_in_sentences} holds "
+                        f"{target.max_size} on a side; render smaller with --scale or --size",
                         node=op.owner,
                     )
     for port in program.memories:
@@ -256,7 +256,7 @@ class _StagePlanner:
             within = f"within {format_bytes(memory)} its" if memory else "its"
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
-                f"node '{owner}': {within} {_format_size(size)} pixels can only be made in tiles of "
+                f"{describe_owner(owner)}: {within} {_format_size(size)} pixels can only be made in tiles of "
                 f"{_format_size(tile)}, which takes too long; {more} smaller with --scale or --size",
                 node=owner,
             )
@@ -337,12 +337,13 @@ class _StagePlanner:
                 f"{format_bytes(nbytes)} of pictures must be held at once, but only {format_bytes(memory)} may be used"
             )
             raise DeviceError(
-                f"node '{owner}': {shortage}; give more with --memory, or render smaller with --scale or --size",
+                f"{describe_owner(owner)}: {shortage}; give more with --memory, or render smaller with --scale or "
+                "--size",
                 node=owner,
             )
         raise DeviceError(
-            f"node '{owner}': for a few pixels it needs more than the {self.target.max_size} that "
-            f"{self.target.renderer} can hold on a side; render smaller with --scale or --size",
+            f"{describe_owner(owner)}: for a few pixels it needs more than the {self.target.max_size} that "
+            f"{self.target.name_in_sentences} can hold on a side; render smaller with --scale or --size",
             node=owner,
         )
 

@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
-from ...errors import DeviceError, InputError, RenderError
+from ...errors import DeviceError, InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
@@ -161,7 +161,7 @@ class Executor:
                 self._costs.record_time(plan, render_pass, time.perf_counter() - started)
             if error := self.device.take_error():
                 raise RenderError(
-                    f"node '{', '.join(render_pass.nodes)}': {self.device.target.renderer} reports {error}",
+                    f"{describe_owner(', '.join(render_pass.nodes))}: {self.device.target.renderer} reports {error}",
                     node=render_pass.nodes[-1],
                 )
         except BaseException:

@@ -14,7 +14,7 @@ from msgspec import Struct
 
 from ...compiler import Surface
 from ...compiler.plan import Depth
-from ...errors import DeviceError
+from ...errors import DeviceError, describe_owner
 from ..device import Device, DeviceTexture
 
 TextureKind = tuple[int, int, int, Depth]
@@ -166,7 +166,7 @@ class TexturePool:
                 handle = self._try_create(kind)
         if handle is None:
             raise DeviceError(
-                f"node '{surface.label}': the device has no room for {surface.nbytes / 2**20:.0f} MiB more "
+                f"{describe_owner(surface.label)}: the device has no room for {surface.nbytes / 2**20:.0f} MiB more "
                 f"({self.allocated / 2**20:.0f} MiB are in use); render smaller with --scale or --size, or with "
                 "--precision half"
             )

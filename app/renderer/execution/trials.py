@@ -23,7 +23,7 @@ from typing import Any
 from msgspec import Struct, field
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Shader
-from ...errors import DeviceError
+from ...errors import DeviceError, describe_owner
 from ...resources.machine import machine_memory, resident_memory
 from ...resources.render_choices import DEFAULT_TIMEOUT
 
@@ -53,11 +53,6 @@ class TrialProcess:
         self._idle_memory = 0
         self._tasks = SimpleQueue[Callable[[], object] | None]()
         self._thread: Thread | None = None
-
-    @property
-    def thread_id(self) -> int:
-        """The system's number of the thread that the process belongs to; 0 before anything was tried."""
-        return (self._thread.native_id or 0) if self._thread else 0
 
     def start(self) -> None:
         """Have the process ready."""
@@ -161,7 +156,7 @@ class TrialProcess:
                 self._end_process()
                 if not sentence:
                     raise CancelledError
-                return DeviceError(f"node '{nodes}': its code {sentence}: make it smaller", node=nodes)
+                return DeviceError(f"{describe_owner(nodes)}: its code {sentence}: make it smaller", node=nodes)
 
 
 def _explain(code: int, nodes: str) -> DeviceError | None:
@@ -170,7 +165,8 @@ def _explain(code: int, nodes: str) -> DeviceError | None:
         return None
     name = signal.Signals(-code).name
     return DeviceError(
-        f"node '{nodes}': its code has ended the process ({name}) that compiled it: make it simpler", node=nodes
+        f"{describe_owner(nodes)}: its code has ended the process ({name}) that compiled it: make it simpler",
+        node=nodes,
     )
 
 
