@@ -164,8 +164,8 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
     most = target.max_images if as_images else target.max_targets
     if count > most:
         raise DeviceError(
-            f"{describe_owner(op.owner)}: {target.name_in_sentences} writes {most} of its outputs at once, not {count}; "
-            "link fewer of its outputs",
+            f"{describe_owner(op.owner)}: {target.name_in_sentences} writes {most} of its outputs at once, not "
+            f"{count}; link fewer of its outputs",
             node=op.owner,
         )
 
