@@ -171,7 +171,9 @@ class FrameRenderer:
         return self._memories[begin, frame - 1]
 
     def _find_last_planned(self, begin: int, frame: int) -> int:
-        """The last frame before `frame` whose memories are known; `begin` if nothing is remembered, else one before it.
+        """The last frame from `begin` on and before `frame` whose memories are known; without one, `begin - 1`.
+
+        `begin` if it remembers nothing, as no frame after it does then.
 
         Raises UsageError for a frame too far from where its history begins.
         """
@@ -183,10 +185,7 @@ class FrameRenderer:
                 f"frame {frame}: node '{node}' remembers earlier frames, so {frame - begin:,} frames come before it, "
                 f"and at most {MAX_LEAD_FRAMES:,} can: set the pre-roll of the graph, or name a nearer frame"
             )
-        at = frame - 1
-        while (begin, at) not in self._memories:
-            at -= 1
-        return at
+        return next((at for at in range(frame - 1, begin - 1, -1) if (begin, at) in self._memories), begin - 1)
 
 
 def _find_carried_surfaces(plan: Plan, following: Plan) -> tuple[int, ...]:

@@ -76,7 +76,7 @@ def test_a_long_history_is_planned_and_run_in_steps(preview, engine, monkeypatch
         plans.append((begin, frame) not in reel._plans)
         return plan(reel, begin, frame)
 
-    monkeypatch.setattr(FrameRenderer, "_plan", count_plans)
+    monkeypatch.setattr(FrameRenderer, "_plan_from", count_plans)
     preview.want(graph, PORTS, frame=50)
     while preview.busy:
         passes, planned = engine.runner.counters.passes, sum(plans)
