@@ -80,7 +80,7 @@ def inspector(ui: Ui) -> Screens:
     )
     ui.session.apply(ReplaceGraph("Add", ui.session.graph.add("curves", Tint()).add("lamps", lamps)))
     for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves", "lamps"):
-        ui.session.select([id])
+        ui.session.select(ElementId(id))
         ui.wait(3)
         yield f"inspector_{id}"
     for name, keys in (
@@ -90,7 +90,7 @@ def inspector(ui: Ui) -> Screens:
         ("several", ["grade", "vignette"]),
         ("nothing", []),
     ):
-        ui.session.select(keys)
+        ui.session.select([ElementId(key) for key in keys])
         ui.wait(3)
         yield f"inspector_{name}"
     ui.session.bind("beauty", str(SAMPLES / "neon.exr"))
