@@ -4,7 +4,8 @@ float fxaa_tone(vec4 image) { return display_tone(image); }
 
 float fxaa_near(int x, int y) { return tone_at(pixel + ivec2(x, y)); }
 
-// How far each step of the search goes, in pixels: presets 12, 29 and 39 of the original; 0 ends it.
+// The length of each step of the search along an edge, in pixels: presets 12, 29 and 39 of FXAA 3.11 (Lottes 2011). 0
+// ends the search.
 float fxaa_stride(int quality, int i) {
     const float low[12] = float[](1.0, 1.5, 2.0, 4.0, 12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     const float medium[12] = float[](1.0, 1.5, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 2.0, 4.0, 8.0);
@@ -12,13 +13,14 @@ float fxaa_stride(int quality, int i) {
     return quality == QUALITY_LOW ? low[i] : quality == QUALITY_MEDIUM ? medium[i] : high[i];
 }
 
-// How far along the edge its step ends, and how much the tone there differs from the edge's own.
+// Where the search along the edge ends: the distance, and the difference between the tone there and the tone of the
+// edge.
 vec2 fxaa_end(vec2 from, vec2 along, float edge_tone, float enough, int quality) {
     float away = fxaa_stride(quality, 0), differs = 0.0;
     for (int i = 1; i < 12 && fxaa_stride(quality, i) > 0.0; ++i) {
         differs = tone_near(from + away * along) - edge_tone;
         if (abs(differs) >= enough) break;
-        away += fxaa_stride(quality, i);  // behind the last, longest step nothing is read
+        away += fxaa_stride(quality, i);  // after the last step, which is the longest, nothing is read
     }
     return vec2(away, differs);
 }
@@ -38,7 +40,7 @@ vec4 fxaa(int quality, float subpixel, float threshold, float threshold_dark) {
                          + abs(south_west + south_east - 2.0 * south);
     bool level = across_rows >= across_columns;
 
-    // The edge runs between this pixel and the neighbor that differs most.
+    // The edge runs between this pixel and the neighbor whose tone differs most.
     float before = level ? north : west, after = level ? south : east;
     bool is_before = abs(before - here) >= abs(after - here);
     vec2 along = level ? vec2(1.0, 0.0) : vec2(0.0, 1.0), toward = (is_before ? -1.0 : 1.0) * along.yx;
@@ -48,7 +50,7 @@ vec4 fxaa(int quality, float subpixel, float threshold, float threshold_dark) {
     vec2 left = fxaa_end(on_edge, -along, edge_tone, enough, quality);
     vec2 right = fxaa_end(on_edge, along, edge_tone, enough, quality);
 
-    // Only the end toward which the edge cuts into this pixel moves it.
+    // The pixel is shifted only if the edge cuts into this pixel at its nearer end.
     vec2 end = left.x < right.x ? left : right;
     bool cuts = (end.y < 0.0) != (here - edge_tone < 0.0);
     float shift = cuts ? 0.5 - end.x / (left.x + right.x) : 0.0;

@@ -6,8 +6,9 @@ vec3 smaa_tones(vec4 image) { return srgb_encode(max(straight(finite(image)).rgb
 float smaa_step(ivec2 a, ivec2 b) { return abs(tone_at(a) - tone_at(b)); }
 float smaa_color_step(ivec2 a, ivec2 b) { return largest(abs(tones_at(a) - tones_at(b))); }
 
-// Of the steps to the left and up, those that are edges: not too faint, and no far stronger step beside.
-// `after` are the steps to the right and down, `before` those one pixel farther left and up.
+// Whether there is an edge at the left (x) and at the top (y) of a pixel: the step of tone there is above the
+// threshold, and no neighboring step is `contrast` times as large (local contrast adaptation, Jimenez et al. 2012).
+// `steps` are to the left and up, `after` to the right and down, `before` one pixel farther left and up.
 vec2 smaa_found(vec2 steps, vec2 after, vec2 before, float threshold, float contrast) {
     vec2 strong = max(steps, max(after, before));
     vec2 least = max(vec2(threshold), max(strong.x, strong.y) / contrast);
@@ -32,24 +33,26 @@ vec2 smaa_color_edges(float threshold, float contrast) {
     );
 }
 
-// Whether an edge lies left of a pixel (axis 0) or above it (axis 1).
+// True if there is an edge at the left of a pixel (axis 0) or at its top (axis 1).
 bool smaa_edge(ivec2 at, int axis) { return edges_at(at)[axis] > 0.5; }
 
-// What lies below and above the axis under the line between two points, from x to x + 1.
+// The areas below (x) and above (y) the axis that a line between two points encloses, from x to x + 1.
 vec2 smaa_area(vec2 from, vec2 to, float x) {
     float first = max(x, from.x), last = min(x + 1.0, to.x);
     if (first >= last) return vec2(0.0);
     vec2 y = from.y + (vec2(first, last) - from.x) / (to.x - from.x) * (to.y - from.y);
     vec2 above = max(y, 0.0), below = max(-y, 0.0), area = 0.5 * vec2(below.x + below.y, above.x + above.y);
-    if (y.x * y.y < 0.0) area *= area / (0.5 * abs(y.x - y.y));  // two triangles
+    if (y.x * y.y < 0.0) area *= area / (0.5 * abs(y.x - y.y));  // the line crosses the axis: two triangles
     return (last - first) * area;
 }
 
-// Short bumps would all but vanish: up to this length they are drawn stronger.
+// Makes the areas of short U shapes larger, since they are hardly visible otherwise. From a length of 32 pixels on they
+// stay as they are. As in the area texture of the SMAA authors.
 vec2 smaa_bump(vec2 area, float size) { return mix(sqrt(0.5 * area), area, min(size / 32.0, 1.0)); }
 
-// An edge along x with `left` and `right` pixels beside this one. Where other edges leave its ends upward or downward,
-// the true line starts half a pixel up or down. Edges to both sides are what the other end's edge is not.
+// Areas of an edge along x that goes on for `left` and `right` pixels beside this one. `up` and `down` say whether
+// edges leave its two ends upward or downward: there the true line starts half a pixel up or down. An end with edges on
+// both sides takes the direction opposite to the other end.
 vec2 smaa_line(float left, float right, bvec2 up, bvec2 down) {
     float size = left + right + 1.0;
     vec2 end = 0.5 * (vec2(up) - vec2(down));
@@ -62,7 +65,7 @@ vec2 smaa_line(float left, float right, bvec2 up, bvec2 down) {
     return first + last;
 }
 
-// How far an edge that lies on the `axis` side of pixels goes one way, until another crosses or touches it.
+// The length of an edge at the `axis` side of pixels in one direction, until another edge crosses or touches it.
 int smaa_far(int axis, ivec2 along, bool forward, int reach) {
     ivec2 side = 1 - along, way = forward ? along : -along, at = pixel;
     for (int away = 0; away < reach; ++away) {
@@ -73,7 +76,7 @@ int smaa_far(int axis, ivec2 along, bool forward, int reach) {
     return reach;
 }
 
-// The parts of this pixel and of the one across the edge that belong to the other's color.
+// The parts of this pixel and of the pixel across the edge that take the color of the other one.
 vec2 smaa_straight(int axis, int reach, float corner_rounding) {
     ivec2 along = axis == 1 ? ivec2(1, 0) : ivec2(0, 1), side = 1 - along;
     int left = smaa_far(axis, along, false, reach), right = smaa_far(axis, along, true, reach);
@@ -82,7 +85,7 @@ vec2 smaa_straight(int axis, int reach, float corner_rounding) {
     bvec2 down = bvec2(smaa_edge(first, cross_axis), smaa_edge(last, cross_axis));
     bvec2 up = bvec2(smaa_edge(first - side, cross_axis), smaa_edge(last - side, cross_axis));
     vec2 area = smaa_line(float(left), float(right), up, down);
-    // A crossing edge that goes on for another pixel is a corner of the picture, not a stair of a slanted line.
+    // A crossing edge that is longer than one pixel is a corner of an object, not a stair of a slanted line.
     vec2 nearer = vec2(left <= right, right <= left);
     nearer *= (1.0 - corner_rounding) / (nearer.x + nearer.y);
     vec2 down_on = vec2(smaa_edge(first + side, cross_axis), smaa_edge(last + side, cross_axis));
@@ -90,11 +93,11 @@ vec2 smaa_straight(int axis, int reach, float corner_rounding) {
     return area * (1.0 - vec2(dot(nearer, down_on), dot(nearer, up_on)));
 }
 
-// Where the upright part of a stair lies that continues the edge above `at` one way.
+// The pixel at whose left side the stair goes on, from the edge above `at` in one direction.
 ivec2 smaa_upright(ivec2 at, ivec2 way) { return at + ivec2(max(way.x, 0), min(way.y, 0)); }
 
-// How many equal stairs of one pixel an edge above this pixel has one way, and how it goes on after them: 1 for an edge
-// upright, 2 for one level; 0 if the end was not found.
+// The number of stairs of one pixel that follow the edge above this pixel in one direction, and how the edge goes on
+// after them: 1 vertical, 2 horizontal, 3 both, 0 neither, or not found within `reach`.
 ivec2 smaa_stairs(ivec2 way, int reach) {
     ivec2 at = pixel;
     for (int away = 0; away < reach; ++away) {
@@ -106,10 +109,10 @@ ivec2 smaa_stairs(ivec2 way, int reach) {
     return ivec2(reach, 0);
 }
 
-// The integral of a ramp that is clamped to 0 and 1.
+// The integral of a ramp that is clamped to 0..1.
 float smaa_ramp(float x) { return x <= 0.0 ? 0.0 : x >= 1.0 ? x - 0.5 : 0.5 * x * x; }
 
-// The part of the unit square about `center` to the right of a rising line.
+// The part of the unit square around `center` that lies to the right of a rising line.
 float smaa_right_of(vec2 from, vec2 to, vec2 center) {
     vec2 d = to - from, away = center - from;
     float steep = max(d.x, d.y), slope = min(d.x, d.y) / steep;
@@ -117,12 +120,14 @@ float smaa_right_of(vec2 from, vec2 to, vec2 center) {
     return (smaa_ramp(middle + 0.5 * slope) - smaa_ramp(middle - 0.5 * slope)) / slope;
 }
 
-// Where the line through stairs that rise to the right starts or ends, as `stairs` go on there. It may be known only to
-// be one of two places. The pixel below the first stair's edge is that about (1.5, 0.5).
+// Where the line through rising stairs starts and ends, depending on how the edge goes on there. Where that is
+// ambiguous there are two candidates, chosen by `one`, and the areas are averaged. The pixel below the first stair has
+// its center at (1.5, 0.5).
 vec2 smaa_start(int on, bool one) { return on == 1 || (on != 2 && !one) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
 vec2 smaa_end(int on, bool one) { return on == 2 || (on != 1 && !one) ? vec2(1.0, 0.0) : vec2(on == 0 ? 0.0 : 1.0); }
 
-// Both directions of stairs through an edge above this pixel: `rise` is -1 if they rise to the right.
+// The areas of the diagonal through the edge above this pixel. `rise` is -1 for stairs that rise to the right, 1 for
+// stairs that fall.
 vec2 smaa_diagonal(int rise, int reach) {
     ivec2 before = smaa_stairs(ivec2(-1, -rise), reach), after = smaa_stairs(ivec2(1, rise), reach);
     if (before.x + after.x < 3) return vec2(0.0);
@@ -137,8 +142,8 @@ vec2 smaa_diagonal(int rise, int reach) {
     return rise < 0 ? area : area.yx;
 }
 
-// For the edge above, then the one to the left: the share of this pixel, and of the one across the edge, that belongs to
-// the other.
+// How much of this pixel and of the pixel across the edge takes the color of the other one: xy for the edge at the top,
+// zw for the edge at the left.
 vec4 smaa_weights(int reach, int diagonal, float corner_rounding) {
     vec2 here = edges_at(pixel), above = vec2(0.0), left = vec2(0.0);
     bool sloped = false;
@@ -151,7 +156,7 @@ vec4 smaa_weights(int reach, int diagonal, float corner_rounding) {
     return vec4(above, left);
 }
 
-// Mixes with neighbors in rows or in columns, on whichever side the edges cut off more.
+// Mixes a pixel with its neighbors in its row or in its column, whichever has the larger weights.
 vec4 smaa() {
     vec4 here = weights_at(pixel), color = image_at(pixel);
     float right = weights_at(pixel + ivec2(1, 0)).w, below = weights_at(pixel + ivec2(0, 1)).y;

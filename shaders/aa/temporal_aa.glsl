@@ -3,18 +3,19 @@
 #include "lib/geometry.glsl"
 #include "lib/resampling.glsl"
 
-// Samples are mixed as c / (1 + luminance): that is the same as to weigh them by 1 / (1 + luminance) (Karis 2014).
-const float temporal_aa_most = 65504.0;  // no sample is brighter
-const float temporal_aa_rounding = 1e-3;  // where a channel is flat, rounding must not hold the others
+// Samples are mixed as c / (1 + luminance). This is the same as giving each the weight 1 / (1 + luminance) (Karis
+// 2014), which keeps small bright lights from flickering.
+const float temporal_aa_most = 65504.0;  // the largest half float: samples are clamped to it
+const float temporal_aa_rounding = 1e-3;  // least deviation: rounding noise in a flat channel must not hide the past
 
-const float temporal_aa_moving = 0.25;  // where pixels move, what is read between them softens: a shorter past is sharper
+const float temporal_aa_moving = 0.25;  // least share of the new frame in motion: reads between pixels blur
 
-// Luma, orange and green (YCoCg, Malvar and Sullivan 2003).
+// RGB to YCoCg: luma, orange-blue and green-magenta (Malvar and Sullivan 2003).
 vec3 temporal_aa_mixed(vec3 rgb) {
     return vec3(dot(rgb, vec3(0.25, 0.5, 0.25)), 0.5 * (rgb.r - rgb.b), dot(rgb, vec3(-0.25, 0.5, -0.25)));
 }
 
-// A sample as it is mixed, and alpha.
+// A pixel in the form in which samples are mixed, with its alpha.
 vec4 temporal_aa_sample(vec4 image, bool weigh_light) {
     vec4 safe = clamp(finite(image), -temporal_aa_most, temporal_aa_most);
     vec3 rgb = safe.rgb;
@@ -33,7 +34,8 @@ vec4 temporal_aa(vec4 blended, bool weigh_light) {
     return finite(vec4(rgb, blended.a));
 }
 
-// The nearest of 3 x 3 pixels: its edge is smooth only if all that it touches moves with it.
+// The pixel of 3 x 3 that is nearest to the camera. Its motion is used, so that the antialiased edge moves with the
+// object in front.
 ivec2 temporal_aa_front() {
     ivec2 front = pixel;
     float nearest = nearness(depth_at(pixel));
@@ -45,7 +47,7 @@ ivec2 temporal_aa_front() {
     return front;
 }
 
-// True if what is seen here was seen around `place` in the frame before.
+// True if the surface of this pixel was visible near `place` in the frame before.
 bool temporal_aa_known(vec2 place, float tolerance) {
     float near = nearness(depth_at(pixel));
     for (int i = 0; i < 9; ++i) {
@@ -59,7 +61,8 @@ float temporal_aa_weight(float away, int kernel) {
     return kernel == KERNEL_LANCZOS ? lanczos_weight(away, 3.0) : cubic_weight(away, 0.0, 0.5);
 }
 
-// The past between pixels; as it is where nothing moves. `brightest` is raised to what is read.
+// The frame before at a place between pixels, resampled; exact at pixel centers. `brightest` rises to the largest
+// luminance that is read.
 vec4 temporal_aa_past(vec2 place, int kernel, inout float brightest) {
     int reach = kernel == KERNEL_LANCZOS ? 3 : 2;
     ivec2 corner = ivec2(floor(place - 0.5));
@@ -96,15 +99,17 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     }
     vec4 mean = sum / 9.0, reach = gamma * sqrt(max(squares / 9.0 - mean * mean, 0.0));
     reach = max(reach, temporal_aa_rounding * max(abs(mean.x), 1.0));
-    // Towards the mean until all channels are within reach, so that no color appears that was in neither.
+    // The past is moved toward the mean until all channels are within reach. All channels move together, so that no new
+    // color appears.
     vec4 off = temporal_aa_past(place, kernel, brightest) - mean, over = abs(off) / reach;
     float farthest = max(max(over.x, over.y), max(over.z, over.w));
     share = mix(share, max(share, temporal_aa_moving), min(2.0 * length(motion), 1.0));
     vec4 mixed = mix(mean + off / max(farthest, 1.0), now, share);
-    // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of, and not negative.
+    // Weighted light close to 1 stands for almost infinite light. So the result is never brighter than the brightest
+    // sample that was read, and never negative.
     vec3 rgb = max(temporal_aa_rgb(mixed), darkest);
     mixed.xyz = temporal_aa_mixed(rgb * min(1.0, brightest / max(luminance(rgb), 1e-6)));
-    // Where everything around is empty, the past adds no coverage.
+    // Where the whole neighborhood is transparent, the past adds no coverage.
     mixed.w = squares.w == 0.0 ? 0.0 : clamp(mixed.w, 0.0, 1.0);
     return mixed;
 }

@@ -1,16 +1,17 @@
-// Pixels are counted along one axis. The picture may start `shift` pixels before the result does.
+// Reads pixel `i` of the row or column that is blurred. The picture may start `shift` pixels before the result.
 vec4 box_blur_pixel(int axis, int i) {
     return image_at(axis == 0 ? ivec2(i, pixel.y) : ivec2(pixel.x, i));
 }
 
-// The mean of every block of `stride` pixels.
+// The mean of each block of `stride` pixels along the axis.
 vec4 box_blur_blocks(int axis, int first, int stride) {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < stride; ++i) sum += box_blur_pixel(axis, first + pixel[axis] * stride + i) / float(stride);
     return sum;
 }
 
-// The row of blocks that comes closest to the box; then what it lacks or has too much at both ends.
+// A box blur from means of blocks: sum the blocks that cover the box best, then add or subtract single pixels at both
+// ends. So a wide box costs few reads.
 vec4 box_blur(int axis, int shift, int whole, float part, int stride, int count, int lead) {
     int first = pixel[axis] - whole, end = pixel[axis] + whole + 1;
     int block = (first + lead + stride / 2) / stride;

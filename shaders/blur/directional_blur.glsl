@@ -1,4 +1,5 @@
-// Midpoint rule over the line. What spreads toward the line's direction comes from the opposite one.
+// Averages samples along a line (midpoint rule). A picture that is blurred toward one direction reads in the opposite
+// one.
 vec4 directional_blur(float angle, float spread, float shift) {
     vec2 line = spread * vec2(cos(angle), -sin(angle));
     int count = max(int(ceil(spread)), 1);

@@ -1,8 +1,9 @@
-// Puts two pixels in order, every channel on its own.
+// Sorts two pixels, each channel for itself.
 #define ORDER(a, b) { vec4 low = min(v[a], v[b]); v[b] = max(v[a], v[b]); v[a] = low; }
 
-// Brings the lowest of the first n pixels to the front and the highest to the end; both can be forgotten if these are
-// more than half of all. A macro, because a known n lets the loops unroll and the pixels stay in registers.
+// Moves the minimum of the first n pixels to the front and the maximum to the end. While n is more than half of all
+// pixels, neither can be the median, and both are dropped (Smith 1996, median by forgetful selection). This is a macro
+// so that n is a constant: loops unroll and pixels stay in registers.
 #define ENDS(n) for (int i = 1; i < n; ++i) ORDER(0, i) for (int i = 1; i < n - 1; ++i) ORDER(i, n - 1)
 
 #define SIDE3(i) image_at(pixel + ivec2((i) % 3, (i) / 3) - 1)

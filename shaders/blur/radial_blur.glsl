@@ -1,6 +1,6 @@
-const int radial_blur_most = 512;  // samples: more than the longest streak of a 4K picture at usual values
+const int radial_blur_most = 512;  // most samples per pixel: longer than the longest streak of a 4K picture
 
-// Midpoint rule over the arc or the line that the pixel stands in the middle of.
+// Averages samples along an arc or a radial line that has the pixel in its middle (midpoint rule).
 vec4 radial_blur(int kind, float zoom, float angle, vec2 center) {
     vec2 middle = center * vec2(extent), away = vec2(pixel) + 0.5 - middle;
     float spread = length(away) * (kind == KIND_ZOOM ? zoom : angle);

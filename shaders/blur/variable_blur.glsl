@@ -1,8 +1,8 @@
 #include "lib/finite.glsl"
 
-const float variable_blur_step = 1.587401;  // 2^(2/3): how many times the variance of the next finer rung
+const float variable_blur_step = 1.587401;  // 2^(2/3): the variance of a blur divided by that of the next finer one
 
-// The part of a Gaussian beyond x, on both sides (Abramowitz and Stegun 1964, 7.1.26).
+// The part of a normal distribution outside of -x..x (Abramowitz and Stegun 1964, 7.1.26).
 float variable_blur_beyond(float x) {
     x *= sqrt(0.5);
     float t = 1.0 / (1.0 + 0.3275911 * x);
@@ -10,7 +10,8 @@ float variable_blur_beyond(float x) {
     return t * fit * exp(-x * x);
 }
 
-// Of a blur's weights: below one pixel, the Gaussian is integrated over each.
+// The variance of the weights of a blur. Below one pixel they are the Gaussian integrated over each pixel, which is not
+// sigma squared.
 float variable_blur_variance(float sigma) {
     if (sigma >= 1.0) return sigma * sigma;
     float sum = 0.0;
@@ -18,7 +19,8 @@ float variable_blur_variance(float sigma) {
     return sum;
 }
 
-// Where a pixel stands on the ladder: 0 is the whole sigma, `last` the finest blur, and the picture itself follows.
+// The position of a pixel on the ladder of blurs: 0 is the full sigma, `last` the finest blur, `last` + 1 the picture
+// itself.
 float variable_blur_rung(float field, float sigma, float full, int last) {
     float amount = finite(field);
     if (amount <= 0.0) return float(last + 1);
@@ -28,8 +30,8 @@ float variable_blur_rung(float field, float sigma, float full, int last) {
     return clamp(log2(full / variance) / log2(variable_blur_step), 0.0, float(last));
 }
 
-// The weights of a rung and the two next finer ones. Two would do for the variance; how much to add of what keeps both
-// sum and variance, so that the shape comes nearest to a Gaussian, is by least squares in the plane.
+// The weights of a blur and of the two next finer ones. Two blurs can give the wanted variance; the third makes the
+// shape of the mixture closest to a Gaussian. 0.5355 is the amount with the least squared error over the plane.
 vec3 variable_blur_weights(float t, bool shaped) {
     const float ratio = 1.0 / variable_blur_step, nearest = 0.5355;
     float share = (1.0 - pow(ratio, t)) / (1.0 - ratio);
@@ -41,7 +43,8 @@ vec4 variable_blur_sharp(vec4 image, float at, int last) {
     return max(at - float(last), 0.0) * finite(image);
 }
 
-// Adds a rung. The finest two, and the finest and the picture, are so near that two will do.
+// Adds a blur of the ladder. Between the two finest blurs, and between the finest and the picture, two weights are
+// accurate enough.
 vec4 variable_blur(vec4 sum, vec4 soft, float at, int rung, int last) {
     int above = min(int(at), last), away = rung - above;
     if (away < 0 || away > 2) return sum;

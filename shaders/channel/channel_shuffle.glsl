@@ -1,7 +1,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// All four values have the same choices, so the names of one serve for all.
+// All four values have the same choices, so this function uses the names of one of them.
 float channel_shuffle_pick(int choice, vec4 image, vec4 other) {
     if (choice == RED_RED) return image.r;
     if (choice == RED_GREEN) return image.g;

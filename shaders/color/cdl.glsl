@@ -6,7 +6,7 @@ float cdl_power(float light, float power) { return light > 0.0 ? pow(light, max(
 
 vec4 cdl(vec4 image, int style, vec4 slope, vec4 offset, vec4 power, float saturation) {
     image = finite(image), slope = finite(slope), offset = finite(offset), power = finite(power);
-    // The linear part works premultiplied: transparent pixels stay black.
+    // Slope and offset work on premultiplied color, so that transparent pixels stay black.
     vec4 color = straight(vec4(image.rgb * slope.rgb + image.a * offset.rgb, image.a));
     bool limited = style == STYLE_ASC;
     if (limited) color.rgb = clamp(color.rgb, 0.0, 1.0);

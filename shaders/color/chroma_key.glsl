@@ -1,13 +1,13 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// How far the channel exceeds what the other two allow.
+// How much the screen's channel exceeds the limit that the other two channels set.
 float chroma_key_excess(vec3 rgb, int channel, int limit) {
     float one = rgb[(channel + 1) % 3], two = rgb[(channel + 2) % 3];
     return rgb[channel] - (limit == LIMIT_AVERAGE ? 0.5 * (one + two) : max(one, two));
 }
 
-// What the channels have of a color's light, each compared to the gray of the same sum.
+// The part of each channel in the sum of all three: color without brightness.
 vec3 chroma_key_chromaticity(vec3 rgb) {
     vec3 light = max(rgb, 0.0);
     return light / max(light.r + light.g + light.b, 1e-6);
@@ -20,7 +20,7 @@ void chroma_key(
     image = finite(image);
     vec3 back = finite(screen.rgb);
     int channel = back.g >= back.r && back.g >= back.b ? 1 : back.b >= back.r ? 2 : 0;
-    float empty;  // how much of the pixel is screen
+    float empty;  // the part of the pixel that shows the screen
     if (method == METHOD_DISTANCE) {
         float away = distance(chroma_key_chromaticity(image.rgb), chroma_key_chromaticity(back));
         empty = 1.0 - away / max(finite(tolerance), 1e-6);
@@ -30,7 +30,7 @@ void chroma_key(
     }
     float cover = (1.0 - clamp(finite(empty), 0.0, 1.0) - finite(black)) / max(finite(white) - finite(black), 1e-6);
     cover = clamp(finite(cover), 0.0, 1.0);
-    // The pixel without the screen; then the light that the screen still casts on it.
+    // Subtract the screen, then the light that the screen throws on the subject (spill).
     vec3 subject = image.rgb - (1.0 - cover) * back;
     subject[channel] -= finite(spill) * max(chroma_key_excess(subject, channel, limit), 0.0);
     result = finite(vec4(cover > 0.0 ? max(subject, min(image.rgb, 0.0)) : vec3(0.0), cover * image.a));

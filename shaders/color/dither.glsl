@@ -4,10 +4,11 @@
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
 
-// Where the pattern of a channel or frame starts: the R2 sequence (Roberts 2018) in 64ths, far from those before.
+// The offset of the pattern for a channel or frame: steps of the R2 sequence (Roberts 2018) in 64ths, so that each
+// offset is far from those before.
 ivec2 dither_start(int number) { return ivec2(number) * ivec2(48, 36); }
 
-// Bayer's matrix by its bits: x ^ y and y in turn, the lowest ones counting most.
+// The 8 x 8 Bayer matrix, computed from bits: x ^ y and y alternate, and the lowest bits of the place count most.
 float dither_bayer(ivec2 cell) {
     int rank = 0;
     for (int bit = 0; bit < 3; ++bit) {
@@ -25,7 +26,7 @@ float dither_threshold(int pattern, ivec2 cell, int channel) {
 
 float dither_level(float light, int space, float steps, float threshold) {
     float code = (space == SPACE_DISPLAY ? srgb_encode(light) : light) * steps;
-    // A code that is whole but for rounding is a level already.
+    // A code that is a whole number up to rounding errors is at a level already: it must not be moved to the next one.
     if (abs(code - round(code)) < 1e-3) code = round(code);
     code = ceil(code - threshold) / steps;
     return finite(space == SPACE_DISPLAY ? srgb_decode(code) : code);

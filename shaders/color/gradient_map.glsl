@@ -3,7 +3,7 @@
 #include "lib/curve.glsl"
 #include "lib/finite.glsl"
 
-const float GRADIENT_MAP_DARKEST = 1e-5;  // the eye's own floor: no light has a logarithm
+const float GRADIENT_MAP_DARKEST = 1e-5;  // least luminance: 0 has no logarithm
 
 float gradient_map_scaled(float light, int scale) {
     if (scale == SCALE_STOPS) return log2(max(light, GRADIENT_MAP_DARKEST));
@@ -16,7 +16,7 @@ vec4 gradient_map(
     image = finite(image);
     vec4 color = straight(image);
     float first = gradient_map_scaled(low, scale), span = gradient_map_scaled(high, scale) - first;
-    span = abs(span) < 1e-6 ? 1e-6 : span;  // one step instead of a slope
+    span = abs(span) < 1e-6 ? 1e-6 : span;  // equal ends: a step
     float t = clamp((gradient_map_scaled(luminance(color.rgb), scale) - first) / span, 0.0, 1.0);
     vec4 painted = ramp_at(ramp, reverse ? 1.0 - t : t, smoothed);
     float alpha = painted.a * color.a;

@@ -8,7 +8,7 @@ vec3 hue_saturation_perceptual(vec3 rgb, float turn, float saturation) {
     return from_oklab(vec3(lab.x, wheel * lab.yz * saturation));
 }
 
-// A rotation about the gray axis (Rodrigues), then the gray that brings luminance back.
+// Rotates the color around the gray axis (Rodrigues' formula), then adds gray so that the luminance stays.
 vec3 hue_saturation_luminance(vec3 rgb, float turn, float saturation) {
     const vec3 gray = vec3(0.57735027);
     vec3 turned = rgb * cos(turn) + cross(gray, rgb) * sin(turn) + gray * dot(gray, rgb) * (1.0 - cos(turn));
@@ -16,7 +16,7 @@ vec3 hue_saturation_luminance(vec3 rgb, float turn, float saturation) {
     return mix(vec3(luminance(rgb)), turned, saturation);
 }
 
-// No color is stronger than one whose smallest channel is 0.
+// Saturation is limited to the value at which the smallest channel becomes 0.
 vec3 hue_saturation_hsv(vec3 rgb, float turn, float saturation) {
     const float circle = 6.28318531;
     float high = largest(rgb), spread = high - smallest(rgb);

@@ -10,7 +10,7 @@ vec4 levels(
     vec4 color = straight(finite(image));
     black = finite(black), white = finite(white), gamma = finite(gamma), low = finite(low), high = finite(high);
     float span = white - black;
-    span = abs(span) < 1e-6 ? 1e-6 : span;  // one step instead of a slope
+    span = abs(span) < 1e-6 ? 1e-6 : span;  // equal ends: a step
     // Transparent pixels stay black.
     float covered = color.a > ALPHA_NONE ? 1.0 : 0.0;
     vec3 code = space == SPACE_DISPLAY ? srgb_encode(color.rgb) : color.rgb;

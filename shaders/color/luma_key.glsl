@@ -9,7 +9,7 @@ float luma_key_light(vec3 rgb, int measure) {
     return luminance(rgb);
 }
 
-// 1 where `inside` is not negative, falling to 0 at -softness.
+// 1 where `inside` is at least 0, and a ramp down to 0 at -softness.
 float luma_key_ramp(float inside, float softness) {
     return inside >= 0.0 ? 1.0 : clamp(1.0 + inside / max(softness, 1e-9), 0.0, 1.0);
 }

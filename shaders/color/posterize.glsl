@@ -2,7 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// Halves round up, on every device.
+// floor(x + 0.5), since round() may round halves either way, depending on the device.
 float posterize_level(float light, int space, float steps) {
     float code = space == SPACE_DISPLAY ? srgb_encode(light) : light;
     code = floor(code * steps + 0.5) / steps;

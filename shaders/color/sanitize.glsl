@@ -1,6 +1,6 @@
 #include "lib/finite.glsl"
 
-// The sound values of one channel around a pixel, on average.
+// The mean of the finite values of a channel in the 3 x 3 pixels around.
 float sanitize_around(int channel) {
     float sum = 0.0, count = 0.0;
     for (int y = -1; y <= 1; ++y)

@@ -4,7 +4,7 @@
 
 const float split_toning_gray = 0.18;
 
-// A tint as factors that leave the luminance of gray alone.
+// A tint as factors for the channels that keep the luminance of gray.
 vec3 split_toning_tint(vec4 color) {
     vec3 rgb = max(finite(color.rgb), 0.0);
     float light = luminance(rgb);
@@ -19,7 +19,8 @@ vec4 split_toning(vec4 image, vec4 shadows, vec4 highlights, float balance, floa
     float bright = smoothstep(-0.5, 0.5, stops / max(finite(range), 0.01));
     vec3 tint = mix(split_toning_tint(shadows), split_toning_tint(highlights), bright);
     vec3 toned = finite(color.rgb * mix(vec3(1.0), tint, finite(amount)));
-    // Colors lose or gain light in a tint. No tint takes more of it than blue has: 1 / 0.0722 is 13.9.
+    // Restore the luminance that a color lost or gained by the tint. 14 is the largest possible loss, that of pure
+    // blue: 1 / 0.0722 = 13.9.
     color.rgb = toned * clamp(light / max(luminance(toned), 1e-12), 0.0, 14.0);
     return finite(premultiplied(color));
 }

@@ -1,12 +1,13 @@
 #include "lib/finite.glsl"
 #include "lib/working.glsl"
 
-const float white_balance_daylight = 6504.0;  // correlated color temperature of D65
-const float white_balance_offset = 0.0032647;  // how far D65 lies from the Planckian locus: its Duv
-const float white_balance_unit = 1.0 / 3000.0;  // Duv of one step of tint, as in Adobe's raw converter
-const float white_balance_darkest = 0.02;  // of a cone: no eye takes darker light for white
+const float white_balance_daylight = 6504.0;  // correlated color temperature of D65, in kelvin
+const float white_balance_offset = 0.0032647;  // distance of D65 from the Planckian locus in CIE 1960 uv (Duv)
+const float white_balance_unit = 1.0 / 3000.0;  // Duv of one step of tint, as in Adobe Camera Raw
+const float white_balance_darkest = 0.02;  // least response of a cone: darker light cannot be balanced to white
 
-// Matrices are written by rows and multiplied from the left. Rec.709 and D65 to XYZ: IEC 61966-2-1.
+// Matrices are written by rows and multiplied from the left. Rec.709 with D65 to XYZ: IEC 61966-2-1. Bradford: Lam
+// 1985. CAT16: Li et al. 2017.
 const mat3 WHITE_BALANCE_XYZ = mat3(
     0.4124564, 0.3575761, 0.1804375,
     0.2126729, 0.7151522, 0.0721750,
@@ -23,8 +24,9 @@ const mat3 WHITE_BALANCE_CAT16 = mat3(
     -0.002079, 0.048952, 0.953127
 );
 
-// What the cones see of a light of luminance 1. Black bodies in CIE 1960 uv are quotients of two polynomials, within
-// 8e-5 from 1000 K to 15000 K (Krystek 1985); their slope turned upright points to green.
+// The response of the cones to light of luminance 1, of a black body that `tint` moves toward green or magenta. Black
+// bodies in CIE 1960 uv are quotients of two polynomials, accurate to 8e-5 from 1000 K to 15000 K (Krystek 1985). The
+// normal of that curve points to green.
 vec3 white_balance_cones(float kelvin, float tint, mat3 to_cones) {
     vec3 powers = vec3(1.0, kelvin, kelvin * kelvin), rising = vec3(0.0, 1.0, 2.0 * kelvin);
     mat2x3 over = mat2x3(0.860117757, 1.54118254e-4, 1.28641212e-7, 0.317398726, 4.22806245e-5, 4.20481691e-8);

@@ -1,7 +1,7 @@
 #include "lib/finite.glsl"
 #include "lib/spectrum.glsl"
 
-// Red is thrown outward, so a pixel finds its red light further in.
+// The lens shifts red outward, so a pixel reads its red light nearer to the center.
 vec4 chromatic_aberration(int shape, float amount, float angle, int samples, vec2 center) {
     vec2 at = vec2(pixel) + 0.5;
     float unit = 0.5 * float(extent.y);

@@ -1,4 +1,4 @@
-// `start` is the pixel of the image that the first pixel shows; the box is left, top, right, bottom.
+// `start` is the pixel of the image that the first pixel of the result shows; `box` is left, top, right, bottom.
 vec4 crop(vec2 start, vec4 box, float softness) {
     ivec2 source = pixel + ivec2(start);
     vec2 at = vec2(source) + 0.5;

@@ -4,8 +4,8 @@
 
 const float crt_circle = 6.28318531;
 
-// The average of a cosine over `width` turns, at this phase in turns. Turns of less than two pixels would beat with
-// the pixels: they fade out before.
+// The mean of a cosine over `width` turns around a phase, both in turns. Periods shorter than two pixels would cause
+// moire, so they fade out before: the fade starts at 0.45 turns for a pixel.
 float crt_cosine(float phase, float width) {
     if (width >= 0.5) return 0.0;
     float half_turn = 0.5 * crt_circle * width, fade = min(10.0 - 20.0 * width, 1.0);
@@ -23,7 +23,7 @@ vec4 crt(
     source.x += jitter * (2.0 * hash3(ivec3(int(floor(line)), frame, 0), uvec3(0u)).x - 1.0);
     vec4 light = image_near(source), late = image_near(source - vec2(chroma_delay, 0.0));
     vec3 rgb = luminance(light.rgb) + late.rgb - luminance(late.rgb);
-    // Brightest in the middle of a line. The division keeps the average.
+    // Scan lines are brightest in their middle. The division keeps the mean brightness.
     rgb *= (1.0 - 0.5 * scanlines * (1.0 + crt_cosine(line, lines / float(extent.y)))) / (1.0 - 0.5 * scanlines);
     if (mask != MASK_NONE) {
         float stripe = at.x / triad;

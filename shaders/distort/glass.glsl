@@ -2,16 +2,17 @@
 #include "lib/noise.glsl"
 #include "lib/spectrum.glsl"
 
-const float glass_steepest = 1e3;  // keeps wild surfaces within what a pixel position can hold
+const float glass_steepest = 1e3;  // keeps the slopes of wild surfaces finite
 
-// How far the view moves behind a surface of this slope.
+// The offset at which the picture is seen through a surface of this slope (Snell's law).
 vec2 glass_shift(vec2 slope, float thickness, float index) {
     slope = clamp(slope, -glass_steepest, glass_steepest);
     vec3 ray = refract(vec3(0.0, 0.0, -1.0), normalize(vec3(-slope, 1.0)), 1.0 / max(index, 1.0));
     return thickness * ray.xy / -ray.z;
 }
 
-// `light` is the index of refraction for green, and how much larger it is for blue than for red.
+// The picture through a surface. `light.x` is the index of refraction for green, `light.y` the difference between blue
+// and red.
 vec4 glass_through(vec2 slope, float thickness, vec2 light, int samples) {
     vec2 at = vec2(pixel) + 0.5;
     if (samples == 1) return image_near(at + glass_shift(slope, thickness, light.x));
@@ -25,7 +26,7 @@ vec4 glass_through(vec2 slope, float thickness, vec2 light, int samples) {
     return finite(sum / total);
 }
 
-// Past the border the glass goes on as it ended, whatever the edge of the picture is.
+// Beyond the border the surface continues with its last pixels, whatever edge mode the picture has.
 float glass_surface(ivec2 p) { return surface_at(clamp(p, ivec2(0), surface_size - 1)); }
 
 vec4 glass(float relief, float thickness, vec2 light, int samples) {

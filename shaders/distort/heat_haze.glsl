@@ -1,9 +1,9 @@
 #include "lib/finite.glsl"
 #include "lib/noise.glsl"
 
-const float heat_haze_reach = 65536.0;  // past any picture; keeps wild masks within what a pixel position can hold
+const float heat_haze_reach = 65536.0;  // more pixels than any picture has: keeps wild masks within the range of int
 
-// `rise` and `change` are per frame.
+// `rise` is in pixels per frame, `change` in periods of the noise per frame.
 vec4 heat_haze(float amount, vec2 swirl, float rise, float change, int seed) {
     vec2 at = vec2(pixel) + 0.5;
     vec3 place = vec3((at + vec2(0.0, rise * float(frame))) / swirl, change * float(frame));

@@ -1,16 +1,16 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
-const float lens_distortion_nowhere = 1e6;  // in focal lengths: outside of every picture
+const float lens_distortion_nowhere = 1e6;  // in focal lengths: a place outside of every picture
 
-// Where the lens shows a point, both in focal lengths from the axis (Brown and Conrady).
+// Where the lens shows a point (Brown 1966, Conrady 1919). Both are distances from the axis in focal lengths.
 vec2 lens_distortion_bend(vec2 p, vec3 radial, vec2 tangential) {
     float r2 = dot(p, p);
     return p * (1.0 + r2 * (radial.x + r2 * (radial.y + r2 * radial.z)))
          + 2.0 * p.x * p.y * tangential + (r2 + 2.0 * p * p) * tangential.yx;
 }
 
-// How it changes with the point, by columns.
+// The derivative of lens_distortion_bend(), by columns.
 mat2 lens_distortion_slope(vec2 p, vec3 radial, vec2 tangential) {
     float r2 = dot(p, p), scale = 1.0 + r2 * (radial.x + r2 * (radial.y + r2 * radial.z));
     float rise = 2.0 * (radial.x + r2 * (2.0 * radial.y + r2 * 3.0 * radial.z));
@@ -21,8 +21,9 @@ mat2 lens_distortion_slope(vec2 p, vec3 radial, vec2 tangential) {
     );
 }
 
-// The inverse by Newton's method, from the middle outward so that it stays on the branch that the lens shows. Beyond
-// where a bend turns back, which is not `far` from the axis, nothing is seen.
+// The inverse of lens_distortion_bend(), by Newton's method. The target moves from the center to `seen` in four steps,
+// so that the solution stays on the inner branch. `far` is the radius at which the curve of the distortion turns back:
+// nothing is visible beyond it.
 vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential, float far) {
     const int steps = 4, refinements = 4;
     vec2 p = vec2(0.0);
@@ -49,7 +50,7 @@ vec2 lens_distortion_source(
 vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center, float far) {
     vec2 at = vec2(pixel) + 0.5;
     vec2 here = lens_distortion_source(at, direction, radial, tangential, focal, zoom, center, far);
-    // The slope at the point is as good as differences, and the inverse is costly.
+    // The derivative gives the footprint of the pixel. Differences would need the costly inverse at more places.
     vec2 p = direction == DIRECTION_DISTORT ? (here - center) / focal : (at - center) / (focal * zoom);
     mat2 slope = lens_distortion_slope(p, radial, tangential);
     if (direction == DIRECTION_DISTORT) slope = inverse(slope);

@@ -2,9 +2,9 @@
 #include "lib/footprint.glsl"
 #include "lib/noise.glsl"
 
-const float noise_warp_reach = 65536.0;  // past any picture; keeps wild masks within what a pixel position can hold
+const float noise_warp_reach = 65536.0;  // more pixels than any picture has: keeps wild masks within the range of int
 
-// Which way every pixel moves, at most 1 far along each axis.
+// The direction in which each pixel moves, within -1..1 along each axis.
 vec2 noise_warp_ways(int kind, float wave, int octaves, float gain, float evolution, float speed, int seed) {
     vec3 place = vec3((vec2(pixel) + 0.5) / wave, evolution + speed * float(frame));
     vec2 sum = vec2(0.0);

@@ -1,6 +1,6 @@
 #include "lib/finite.glsl"
 
-// What one square covers; squares at the far edges are cut off by the picture.
+// The color of one square. Squares at the right and bottom edges are cut off by the picture.
 vec4 pixelate_square(vec2 side, int sampling) {
     vec2 first = vec2(pixel) * side, last = min(first + side, vec2(image_size));
     if (sampling == SAMPLING_CENTER) return image_at(ivec2(floor(0.5 * (first + last))));

@@ -3,18 +3,18 @@
 
 const float polar_circle = 6.28318531;
 
-// Around and outward, in parts of a turn and of the radius.
+// Angle as a part of a turn, and distance as a part of the radius.
 vec2 polar_of(vec2 at, float radius, float rotation, vec2 center) {
     vec2 away = at - center;
     float far = length(away), angle = far > 0.0 ? atan(away.y, away.x) - rotation : 0.0;
     return vec2(fract(angle / polar_circle), far / radius);
 }
 
-// The width joins its other end, the height does not.
+// Wraps the picture around the center: its left and right sides join, its bottom is the rim.
 vec4 polar_wrap(float radius, float rotation, vec2 center, bool empty) {
     vec2 at = vec2(pixel) + 0.5, size = vec2(image_size);
     float far = max(distance(at, center), 0.5);
-    // A pixel spans this much of a circle and of the radius. Both are known without differences, which the seam breaks.
+    // The part of the circle and of the radius that a pixel spans. Differences would be wrong at the seam.
     int n = footprint_samples(vec2(size.x / (polar_circle * far), 0.0), vec2(0.0, size.y / radius));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {

@@ -9,7 +9,7 @@ float resize_weight(float x, int kernel) {
     return kernel == KERNEL_MITCHELL ? cubic_weight(x, 1.0 / 3.0, 1.0 / 3.0) : cubic_weight(x, 0.0, 0.5);
 }
 
-// Along one axis; `shrink` is how many pixels of the image a result pixel spans.
+// Resamples along one axis. `shrink` is how many pixels of the image one pixel of the result spans.
 vec4 resize(int axis, float shrink, int kernel) {
     bool box = kernel == KERNEL_BOX;
     float center = (float(pixel[axis]) + 0.5) * shrink, width = max(shrink, 1.0);
@@ -20,7 +20,7 @@ vec4 resize(int axis, float shrink, int kernel) {
     float total = 0.0;
     for (int i = int(floor(low)); i < int(ceil(high)); ++i) {
         at[axis] = i;
-        // A box counts each pixel by how much of it lies within.
+        // The box filter weighs each pixel by the part of it that lies inside.
         float weight = box ? min(float(i) + 1.0, high) - max(float(i), low)
                            : resize_weight((float(i) + 0.5 - center) / width, kernel);
         sum += weight * image_at(at);

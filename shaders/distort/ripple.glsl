@@ -1,7 +1,8 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
-// A wave is its amplitude, wavelength, phase and reach.
+// Where a pixel reads. `wave` holds the amplitude, the wavelength, the phase, and the distance at which the wave fades
+// to 1 / e.
 vec2 ripple_source(vec2 at, int shape, int motion, float angle, vec2 center, vec4 wave) {
     const float circle = 6.28318531;
     vec2 away = at - center, along = vec2(cos(angle), sin(angle));

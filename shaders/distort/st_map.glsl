@@ -1,7 +1,7 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
-// Past the border the map goes on as it ended, whatever the edge of the picture is.
+// Beyond the border the map continues with its last pixels, whatever edge mode the picture has.
 vec2 st_map_at(ivec2 p) { return finite(st_raw(clamp(p, ivec2(0), st_size - 1))); }
 
 vec2 st_map_source(vec2 at, int origin) {

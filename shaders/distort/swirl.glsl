@@ -1,7 +1,7 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
-// Turned back to where the light comes from.
+// Where a pixel reads: the swirl turns light by `angle`, so the pixel turns back.
 vec2 swirl_source(vec2 at, float angle, float radius, vec2 center) {
     vec2 away = at - center;
     float turn = -angle * exp(-dot(away, away) / (radius * radius));

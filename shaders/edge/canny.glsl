@@ -1,11 +1,11 @@
 #include "lib/display.glsl"
 
 const float canny_none = 0.0, canny_weak = 0.5, canny_strong = 1.0;
-const float canny_tan22 = 0.41421356;  // half of 45 degrees: between two of the four directions
+const float canny_tan22 = 0.41421356;  // tan(22.5 degrees): the border between two of the four directions
 
 float canny_tone(vec4 image) { return display_tone(image); }
 
-// Sobel, scaled so that a step of 1 along a row or column reads 1.
+// The Sobel gradient, scaled so that a step of 1 along a row or column gives 1.
 vec2 canny_gradient() {
     float falling = tone_at(pixel + ivec2(1, 1)) - tone_at(pixel - ivec2(1, 1));
     float rising = tone_at(pixel + ivec2(1, -1)) - tone_at(pixel + ivec2(-1, 1));
@@ -15,7 +15,8 @@ vec2 canny_gradient() {
     ) / 4.0;
 }
 
-// A pixel is on a ridge if both neighbors across the edge are weaker. Of two alike, along rows and columns, one stays.
+// Thins edges: a pixel counts if both neighbors across the edge are weaker (non-maximum suppression, Canny 1986). Of
+// two equal neighbors one stays.
 float canny_ridge(float low, float high) {
     vec2 here = gradient_at(pixel), size = abs(here);
     float strength = length(here);
@@ -29,7 +30,8 @@ float canny_ridge(float low, float high) {
     return strength > high ? canny_strong : canny_weak;
 }
 
-// Weak pixels that a strong one reaches over at most three others become strong. Rows of the 7 x 7 window are bits.
+// Hysteresis: weak pixels become strong if at most three weak pixels lie between them and a strong one. The rows of a 7
+// x 7 window are bits of integers.
 float canny_follow() {
     float here = state_at(pixel);
     if (here != canny_weak) return here;

@@ -1,12 +1,12 @@
 #include "lib/display.glsl"
 #include "lib/structure.glsl"
 
-const float difference_of_gaussians_reach = 3.0;    // sigmas: 99.7 % of a Gaussian
-const float difference_of_gaussians_samples = 64.0; // to either side at most; wider blurs take them farther apart
+const float difference_of_gaussians_reach = 3.0;    // in sigmas: 99.7 % of a Gaussian lie within
+const float difference_of_gaussians_samples = 64.0; // most samples to either side; for wider blurs they spread
 
 float difference_of_gaussians_tone(vec4 image) { return display_tone(image); }
 
-// Sobel, scaled so that a step of 1 along a row or column reads 1.
+// The structure tensor of the Sobel gradient, which is scaled so that a step of 1 along a row or column gives 1.
 vec3 difference_of_gaussians_changes() {
     float falling = tone_at(pixel + ivec2(1, 1)) - tone_at(pixel - ivec2(1, 1));
     float rising = tone_at(pixel + ivec2(1, -1)) - tone_at(pixel + ivec2(-1, 1));
@@ -16,7 +16,7 @@ vec3 difference_of_gaussians_changes() {
     ) / 4.0);
 }
 
-// Both blurs at once, in the direction of most change.
+// Both blurs in one pass, along the direction of most change (flow-based DoG, Kyprianidis and Döllner 2008).
 vec2 difference_of_gaussians_across(float sigma, float ratio) {
     vec2 sigmas = max(sigma * vec2(1.0, ratio), 1e-3), across = structure_across(tensor_at(pixel));
     float reach = difference_of_gaussians_reach * sigmas.y, apart = max(1.0, reach / difference_of_gaussians_samples);
@@ -30,14 +30,16 @@ vec2 difference_of_gaussians_across(float sigma, float ratio) {
     return sum / total;
 }
 
-// The line's direction at a place, the way that it was followed so far; straight on where there is none.
+// The direction of the line at a place, with the sign that continues `before`; `before` itself where the tensor has no
+// direction.
 vec2 difference_of_gaussians_onward(vec2 at, vec2 before) {
     vec2 across = structure_across(tensor_near(at)), along = vec2(-across.y, across.x);
     if (across == vec2(0.0)) return before;
     return dot(along, before) < 0.0 ? -along : along;
 }
 
-// Follows the line to both sides (line integral convolution), each step in the direction that its middle has.
+// Averages along the line to both sides (line integral convolution). Each step uses the direction in its middle
+// (midpoint method).
 vec2 difference_of_gaussians_along(float stroke) {
     float reach = difference_of_gaussians_reach * stroke, apart = max(1.0, reach / difference_of_gaussians_samples);
     vec2 across = structure_across(tensor_at(pixel)), sum = blurs_at(pixel);
@@ -64,7 +66,7 @@ float difference_of_gaussians_value(float fine, float coarse, int kind, float st
     return sharp >= epsilon ? 1.0 : 1.0 + tanh(max(phi * (sharp - epsilon), -20.0));
 }
 
-// Ink on paper is a tone, so it is turned into light; a difference is neither.
+// XDoG (Winnemöller et al. 2012) gives a display tone, which is converted to light; a difference is neither.
 vec4 difference_of_gaussians(vec4 image, float value, int kind) {
     float alpha = finite(image.a);
     return vec4(vec3(kind == KIND_XDOG ? srgb_decode(value) : value) * alpha, alpha);

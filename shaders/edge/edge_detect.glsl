@@ -1,14 +1,14 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// What a row beside the middle one weighs in the smoothing across a derivative. The three rows sum to 1.
+// The weight of the two outer rows when the derivative is smoothed across. All three rows sum to 1.
 float edge_detect_side(int operator) {
     return operator == OPERATOR_SOBEL ? 1.0 / 4.0 : operator == OPERATOR_SCHARR ? 3.0 / 16.0 : 1.0 / 3.0;
 }
 
 vec3 edge_detect_light(int x, int y) { return image_at(pixel + ivec2(x, y)).rgb; }
 
-// How the light changes across and down. A Laplacian has no direction: it comes back whole in `across`.
+// The change of light to the right and down. A Laplacian has no direction: all of it is in `across`.
 void edge_detect_change(int operator, out vec3 across, out vec3 down) {
     vec3 left = edge_detect_light(-1, 0), right = edge_detect_light(1, 0);
     vec3 above = edge_detect_light(0, -1), below = edge_detect_light(0, 1);

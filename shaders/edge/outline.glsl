@@ -9,7 +9,7 @@ vec2 outline_columns(int reach) { return contour_columns(seeds_at(pixel), reach)
 
 float outline_distance(int reach) { return contour_distance(columns_at(pixel), float(reach)); }
 
-// What of a pixel lies between two distances.
+// The part of a pixel that lies between two distances from the contour.
 float outline_line(float contour, float first, float last, float fade) {
     vec2 past = clamp((contour - vec2(first, last)) / fade + 0.5, 0.0, 1.0);
     return past.x - past.y;

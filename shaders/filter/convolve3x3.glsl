@@ -1,6 +1,6 @@
 #include "lib/finite.glsl"
 
-// Correlation: kernel[row][column] weighs the neighbor that it covers when the kernel is laid over the picture.
+// A correlation: kernel[row][column] weighs the neighbor at that place, without flipping.
 vec4 convolve3x3(mat3 kernel, float bias, bool filter_alpha) {
     vec4 sum = vec4(0.0);
     for (int row = 0; row < 3; ++row)

@@ -2,7 +2,8 @@
 
 float cryptomatte_nothing() { return 0.0; }
 
-// What of a pixel the ids cover, of two ranks: each is an id and its coverage. Ids are compared bit by bit.
+// Adds the coverage of the chosen ids. A picture holds two ranks: an id and its coverage, twice. Ids are compared bit
+// by bit (Cryptomatte specification 1.2).
 float cryptomatte_covered(float found, vec4 ranks, vec4 ids[16], int count) {
     uvec2 ours = floatBitsToUint(ranks.xz);
     for (int i = 0; i < count; ++i) {

@@ -5,7 +5,8 @@ vec3 curvature_place(float depth, vec4 rays[3]) {
     return is_surface(depth) ? camera_place(rays, camera_uv(pixel, extent), depth) : vec3(0.0);
 }
 
-// Half the trace of the shape operator: places move by `across` and `down`, their normals by the others.
+// Mean curvature: half the trace of the shape operator (do Carmo 1976). `across` and `down` are the steps of the
+// position, `turn_across` and `turn_down` those of the normal.
 float curvature_mean(vec3 across, vec3 down, vec3 turn_across, vec3 turn_down) {
     float e = dot(across, across), f = dot(across, down), g = dot(down, down), area = e * g - f * f;
     float l = dot(turn_across, across), n = dot(turn_down, down);
@@ -15,15 +16,17 @@ float curvature_mean(vec3 across, vec3 down, vec3 turn_across, vec3 turn_down) {
 
 bool curvature_inside(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, extent)); }
 
-// A step is a gap where it is more than twice as long as both next to it: across a fold, it is between the two.
+// True if there is a gap between two pixels: the step is more than twice as long as both steps beside it. The step
+// across a fold is between those two in length.
 bool curvature_gap(float before, float here, float after) {
     before = before < GEOMETRY_FAR ? before : 0.0;
     after = after < GEOMETRY_FAR ? after : 0.0;
     return here >= GEOMETRY_FAR || here > 2.0 * max(before, after);
 }
 
-// How place and normal change along a line of pixels: from one neighbor to the other, or from the one that no gap parts
-// from here. A normal that is mixed of several surfaces is good across a fold, but not beside a gap.
+// How position and normal change along a line of pixels: from one neighbor to the other, or from the pixel itself where
+// a gap is in between. A neighbor whose normal is a mixture of several surfaces is used across a fold, but not beside a
+// gap.
 bool curvature_change(ivec2 along, out vec3 way, out vec3 turn) {
     float steps[6];
     vec3 last = vec3(0.0);
@@ -54,7 +57,7 @@ float curvature_found(int reach) {
     return curvature_mean(across, down, turn_across, turn_down);
 }
 
-// On a surface that is seen along `forward`, the way to what lies so far beside it in the picture.
+// The vector on a surface, seen along `forward`, to the point that lies `beside` it in the picture.
 vec3 curvature_way(vec3 normal, vec3 beside, vec3 forward) {
     return beside - forward * (dot(normal, beside) / min(dot(normal, forward), -0.05));
 }

@@ -1,6 +1,6 @@
 #include "lib/geometry.glsl"
 
-// 1 where `inside` is not negative, falling to 0 at -softness.
+// 1 where `inside` is at least 0, and a ramp down to 0 at -softness.
 float depth_slice_ramp(float inside, float softness) {
     return inside >= 0.0 ? 1.0 : clamp(1.0 + inside / max(softness, 1e-9), 0.0, 1.0);
 }

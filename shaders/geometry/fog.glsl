@@ -1,16 +1,16 @@
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
-// (1 - exp(-x)) / x for x >= 0, by its series where the difference would lose digits.
+// (1 - exp(-x)) / x for x >= 0. Small x use the series, since the difference would lose digits.
 float fog_mean(float x) { return x < 0.05 ? 1.0 - x * (0.5 - x * (1.0 / 6.0 - x / 24.0)) : (1.0 - exp(-x)) / x; }
 
-// Of a layer that thins out upwards, between two heights, both in units of its thickness. Counted from the lower one,
-// whatever way we look, the exponential never overflows against another.
+// Optical depth of an exponential layer of fog between two heights, in units of its thickness. It is computed from the
+// lower height, for both directions of view, so that no exponential overflows.
 float fog_layer(float density, float way, float from, float to) {
     return density * way * exp(clamp(-min(from, to), -80.0, 80.0)) * fog_mean(min(abs(to - from), 80.0));
 }
 
-// The same from a height onwards for ever, rising by so much per unit of the way.
+// The same from a height to infinity. `rise` is the gain of height per unit of distance.
 float fog_layer_above(float density, float from, float rise) {
     return rise > 0.0 ? density * exp(clamp(-from, -80.0, 80.0)) / rise : GEOMETRY_NOTHING;
 }

@@ -1,20 +1,21 @@
 #include "lib/contour.glsl"
 #include "lib/geometry.glsl"
 
-// The angle between two unit vectors, exact for small ones too (Kahan 2006); from a surface to nothing it is 180.
+// The angle between two unit vectors, exact for small angles too (Kahan 2006). Between a surface and the background it
+// is 180 degrees.
 float geometry_edges_angle(vec3 a, vec3 b) {
     if (a == b) return 0.0;
     return a == vec3(0.0) || b == vec3(0.0) ? radians(180.0) : 2.0 * atan(length(a - b), length(a + b));
 }
 
-// How much 1 / depth bends from one neighbor to the other, as a part of the greatest of the three.
+// The second difference of 1 / depth, relative to the largest of the three. It is 0 on a plane.
 float geometry_edges_bend(float before, float here, float after) {
     float most = max(here, max(before, after));
     return most > 0.0 ? abs(before - 2.0 * here + after) / most : 0.0;
 }
 
-// The gap in depth, the fold in radians, and whether ids differ, along rows and columns. Across the picture's own
-// border there is nothing to compare with.
+// The gap in depth, the fold in radians, and 1 where ids differ, the largest of rows and columns. At the border of the
+// picture depth is not compared.
 vec3 geometry_edges_found() {
     float near = nearness(depth_at(pixel)), id = ids_at(pixel);
     vec3 normal = unit_normal(normal_at(pixel)), found = vec3(0.0);

@@ -2,7 +2,7 @@
 
 float id_mask_none() { return 0.0; }
 
-// Spans of numbers from x to y and from z to w.
+// Adds ids within ranges: from x to y, and from z to w.
 float id_mask_add(float ids, float found, vec4 spans[8]) {
     for (int i = 0; i < 8; ++i) {
         if (ids >= spans[i].x && ids <= spans[i].y) found = 1.0;

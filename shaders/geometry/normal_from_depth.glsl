@@ -24,11 +24,12 @@ vec3 normal_from_depth_place(const vec4 rays[3], ivec2 at) {
     return depth_at(at) * camera_ray(rays, camera_uv(at, extent));
 }
 
-// How place and normal change along an axis, from before to after; a side where another surface begins is left out.
+// How position and normal change along an axis, from one neighbor to the other. A neighbor on another surface is left
+// out.
 void normal_from_depth_change(const vec4 rays[3], ivec2 reach, out vec3 along, out vec3 turn) {
     vec3 place = normal_from_depth_place(rays, pixel), normal = normal_at(pixel);
     vec2 apart = vec2(reach) / vec2(extent);
-    // On the same surface, even beyond a crease, one of both is hardly off the tangent plane of the other.
+    // On the same surface, also across a crease, one of the two points is close to the tangent plane of the other.
     vec3 pace = camera_ray(rays, camera_uv(pixel, extent) + apart) - camera_ray(rays, camera_uv(pixel, extent));
     float most = depth_at(pixel) * length(pace);
     vec3 ends[2] = vec3[2](vec3(0.0), vec3(0.0)), turns[2] = vec3[2](vec3(0.0), vec3(0.0));
@@ -41,14 +42,14 @@ void normal_from_depth_change(const vec4 rays[3], ivec2 reach, out vec3 along, o
     along = ends[1] - ends[0], turn = turns[1] - turns[0];
 }
 
-// Half the trace of the shape operator, from the first and second fundamental forms (do Carmo 1976).
+// Mean curvature: half the trace of the shape operator, from the first and second fundamental forms (do Carmo 1976).
 float normal_from_depth_curvature(const vec4 rays[3], int reach) {
     if (normal_at(pixel) == vec3(0.0)) return 0.0;
     vec3 across, down, across_turn, down_turn;
     normal_from_depth_change(rays, ivec2(reach, 0), across, across_turn);
     normal_from_depth_change(rays, ivec2(0, reach), down, down_turn);
     float e = dot(across, across), f = dot(across, down), g = dot(down, down), area = e * g - f * f;
-    if (area <= 1e-6 * e * g) {  // one of the two has no neighbor: what bends along the other
+    if (area <= 1e-6 * e * g) {  // one axis has no neighbor: use the curvature along the other
         float size = e + g;
         return size > 0.0 ? finite((dot(across, across_turn) + dot(down, down_turn)) / size) : 0.0;
     }

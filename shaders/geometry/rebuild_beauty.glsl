@@ -3,7 +3,7 @@
 
 vec4 rebuild_beauty_none() { return vec4(0.0); }
 
-// Light is summed; alpha is the largest one.
+// Adds light; alpha is the largest of all.
 vec4 rebuild_beauty_light(vec4 total, vec4 light) {
     vec4 safe = finite(light);
     return finite(vec4(total.rgb + safe.rgb, max(total.a, safe.a)));

@@ -2,12 +2,13 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// The light that glows: eased in around the threshold, no brighter than the limit.
+// The light that glows: above the threshold with a soft knee, and not brighter than the limit.
 vec4 bloom_light(vec4 image, float threshold, float knee, float limit) {
     return bright_light(image, threshold, knee, limit);
 }
 
-// One step down: five overlapping boxes of 4 x 4 pixels, the middle one worth four of the others (Jimenez 2014).
+// Halves the size: five overlapping boxes of 4 x 4 pixels, the middle one with four times the weight of the others
+// (Jimenez 2014).
 vec4 bloom_shrink() {
     const float corners[6] = float[](1.0, 1.0, 2.0, 2.0, 1.0, 1.0);
     const float center[6] = float[](0.0, 1.0, 1.0, 1.0, 1.0, 0.0);
@@ -26,7 +27,8 @@ vec4 bloom_box(ivec2 first) {
     return sum / 16.0;
 }
 
-// The same boxes, each counting less the brighter it is, so that a lone bright pixel does not flash (Karis 2013).
+// Halves the size with the same boxes, each weighted by 1 / (1 + luminance), so that a single bright pixel does not
+// flicker (Karis 2013).
 vec4 bloom_shrink_steady() {
     vec4 sum = vec4(0.0);
     float total = 0.0;
@@ -45,9 +47,9 @@ vec4 bloom_row(ivec2 at, vec4 across) {
         + across.w * image_at(at + ivec2(3, 0));
 }
 
-// One step up: the tent [1 2 1] over bilinear samples of the smaller picture is four taps along each axis, in
-// mirrored order at odd pixels. `share` of it replaces the light of this level. No loops: so the last step shares the
-// pass of what reads it.
+// Doubles the size: the tent filter [1 2 1] on bilinear samples of the smaller picture, which is four taps along each
+// axis, in mirrored order for odd pixels. `share` of it replaces the light of this level. There are no loops, so that
+// the last step can join the pass that reads it.
 vec4 bloom_grow(float share) {
     const vec4 tent = vec4(1.0, 5.0, 7.0, 3.0) / 16.0;
     vec4 across = (pixel.x & 1) == 0 ? tent : tent.wzyx;

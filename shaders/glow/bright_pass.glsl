@@ -15,6 +15,6 @@ vec4 bright_pass(
     if (mode == MODE_EXPONENTIAL) kept = bright_exponential(bounded, threshold, max(finite(power), 0.0));
     if (mode == MODE_POWER) kept = bright_power(bounded, threshold, max(finite(power), 0.0));
     float share = kept / light * clamp(finite(mask), 0.0, 1.0);
-    // A power may leave what half floats hold.
+    // A power may exceed the range of half floats.
     return vec4(clamp(finite(safe.rgb * finite(share)), -65504.0, 65504.0), safe.a);
 }

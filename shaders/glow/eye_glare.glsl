@@ -2,17 +2,17 @@
 #include "lib/noise.glsl"
 #include "lib/spectrum.glsl"
 
-const float eye_glare_halo_end = 6.0;  // degrees that the table of the halo spans: all of it
+const float eye_glare_halo_end = 6.0;  // degrees that the table spans: the halo is dark beyond
 
-// How much of the terms f1, f2 and f3 there is by light, dim light and night (Spencer et al. 1995). What is left is f0,
-// the light that is not scattered.
+// The weights of the terms f1, f2 and f3 for photopic, mesopic and scotopic vision (Spencer et al. 1995). The rest is
+// f0, light that is not scattered.
 const vec3 eye_glare_shares[3] = vec3[](vec3(0.478, 0.138, 0.0), vec3(0.478, 0.138, 0.016), vec3(0.478, 0.207, 0.033));
 
 vec4 eye_glare_light(vec4 image) { return glare_light(image); }
 
 vec4 eye_glare_shrink(int factor) { return glare_shrunk(factor); }
 
-// The lenticular halo f3 per steradian for white light, by angle: a ring for every wavelength.
+// The lenticular halo f3 of white light by angle, per steradian: each wavelength makes a ring.
 vec4 eye_glare_halo() {
     float angle = (float(pixel.x) + 0.5) / float(extent.x) * eye_glare_halo_end;
     vec3 sum = vec3(0.0), white = vec3(0.0);
@@ -25,7 +25,7 @@ vec4 eye_glare_halo() {
     return vec4(sum / white, 0.0);
 }
 
-// What is scattered by an angle in degrees, per steradian.
+// The light scattered by an angle in degrees, per steradian.
 vec3 eye_glare_scattered(float angle, vec3 shares) {
     float away = angle + 0.02;
     vec3 halo = shares.z > 0.0 && angle < eye_glare_halo_end
@@ -33,7 +33,7 @@ vec3 eye_glare_scattered(float angle, vec3 shares) {
     return vec3(shares.x * 20.91 / (away * away * away) + shares.y * 72.37 / (away * away)) + shares.z * halo;
 }
 
-// The rays of the ciliary corona, 1 on average. Rays finer than pixels are left out.
+// The rays of the ciliary corona, as a factor with mean 1. Rays thinner than pixels fade out.
 float eye_glare_rays(vec2 way, float pixels, float rays) {
     float sum = 0.0, away = length(way);
     vec2 toward = way / away;
@@ -45,8 +45,9 @@ float eye_glare_rays(vec2 way, float pixels, float rays) {
     return 1.0 + rays * clamp(2.0 * sum, -1.0, 1.0);
 }
 
-// How much of the light of a pixel goes to another one, `cell` pixels of `pitch` degrees to a pixel of the kernel. Within
-// `fade` what is spread at full size goes over to a smaller one. Light that stays in its pixel is left out.
+// The part of a pixel's light that goes to another pixel. A pixel of the kernel covers `cell` pixels of `pitch`
+// degrees. Within `fade` the kernel at full size crosses over to the smaller one. Light that stays in its own pixel is
+// left out.
 vec4 eye_glare_kernel(int vision, float pitch, int cell, vec2 fade, float rays) {
     vec2 way = float(cell) * vec2(pixel - extent / 2);
     float away = length(way);
@@ -55,7 +56,7 @@ vec4 eye_glare_kernel(int vision, float pitch, int cell, vec2 fade, float rays) 
     float share = whole ? 1.0 : smoothstep(fade.x, fade.y, away);
     if (cell == 1 && !whole) share = 1.0 - share;
     if (share == 0.0) return vec4(0.0);
-    // Near the middle it is steep, and a pixel is many samples.
+    // Near the center the kernel is steep, so a pixel is the mean of many samples.
     int n = cell == 1 ? int(clamp(96.0 / away, 2.0, 64.0)) : 1;
     vec3 sum = vec3(0.0);
     for (int i = 0; i < n * n; ++i) {
@@ -67,7 +68,8 @@ vec4 eye_glare_kernel(int vision, float pitch, int cell, vec2 fade, float rays) 
     return vec4(kernel, dot(kernel, vec3(1.0 / 3.0)));
 }
 
-// Take back what the tents of a smaller size blur: to the second order, a third of a squared pixel.
+// Sharpens the kernel by the blur that enlarging with tents adds: a variance of 1/3 square pixel, corrected to second
+// order.
 vec4 eye_glare_sharpen() {
     vec4 around = kernel_at(pixel + ivec2(1, 0)) + kernel_at(pixel - ivec2(1, 0))
         + kernel_at(pixel + ivec2(0, 1)) + kernel_at(pixel - ivec2(0, 1));
@@ -78,7 +80,8 @@ vec4 eye_glare_grow(int factor) { return near_at(pixel) + far_near(glare_grown(f
 
 vec4 eye_glare_glow(vec4 image, vec4 glare, float strength) { return vec4(strength * glare.rgb, finite(image.a)); }
 
-// Every pixel gives away what it scatters within the picture; what would leave the picture stays.
+// Energy is conserved: a pixel loses the light that it scatters within the picture. Light that would leave the picture
+// stays.
 vec4 eye_glare(vec4 image, vec4 glare, float strength) {
     vec3 scattered = glare.rgb - glare.a * glare_light(image).rgb;
     return vec4(finite(image.rgb) + strength * scattered, finite(image.a));

@@ -1,7 +1,7 @@
 #include "lib/bright.glsl"
 #include "lib/shrinking.glsl"
 
-// The light that gets through the emulsion, layer by layer.
+// The light that passes through each color layer of the emulsion.
 vec4 film_halation_light(vec4 image, vec3 threshold, float knee, float limit) {
     vec4 safe = finite(image);
     vec3 light = clamp(safe.rgb, 0.0, limit);

@@ -4,16 +4,17 @@
 
 const int ghosts_most = 12;
 
-// From far out on the other side of the axis to the light's own side, in no order, so that any number is a mixture.
+// Magnifications of the ghosts: negative ones lie on the other side of the axis. Their order is mixed, so that any
+// number of them looks varied. Chosen by eye.
 const float ghosts_magnification[ghosts_most] =
     float[](-0.45, -1.0, 0.3, -1.8, -0.25, 0.55, -0.7, 1.4, -2.6, -0.35, 0.8, -1.3);
 
-// A bright color for the coating of ghost i; golden sections keep neighbors apart.
+// The color of the coating of ghost i. Steps of the golden ratio make neighbors differ.
 vec3 ghosts_coating(int i, float colors) {
     return mix(vec3(1.0), with_hue(vec3(0.2, 0.5, 1.0), fract(0.12 + 0.618034 * float(i))), colors);
 }
 
-// Lights fade out over a tenth of the height before they leave the picture, lest their ghosts be cut.
+// Lights fade out within a tenth of the height before they leave the picture, so that ghosts do not have hard edges.
 float ghosts_inside(vec2 at, vec2 size) {
     vec2 border = min(at, size - at);
     return smoothstep(0.0, 0.1 * size.y, min(border.x, border.y));
@@ -25,7 +26,7 @@ vec4 ghosts_light(vec4 image, float threshold, float knee, float limit) {
 
 vec4 ghosts_shrink() { return shrunk(2); }
 
-// One channel of the light at a position.
+// One channel of the light at a place.
 float ghosts_seen(vec2 at, int channel) {
     return image_near(at)[channel] * ghosts_inside(at, vec2(image_size));
 }
@@ -53,7 +54,7 @@ vec4 ghosts_enlarge() { return enlarged(2); }
 
 vec4 ghosts_dirt(vec4 image, vec4 dirt) { return clamp(finite(dirt), 0.0, 65504.0); }
 
-// Discs of dust out of focus, one to a cell: brighter at the rim, each of its own size and strength.
+// Out-of-focus discs of dust, one per cell, with random sizes and strengths; brighter at the rim.
 float ghosts_dust(vec2 at, uint seed) {
     vec3 place = hash3(ivec3(floor(at), 0), uvec3(seed)), look = hash3(ivec3(floor(at), 1), uvec3(seed));
     float size = mix(0.08, 0.35, look.x * look.x);
@@ -61,7 +62,7 @@ float ghosts_dust(vec2 at, uint seed) {
     return look.y * look.y * look.z * smoothstep(1.0, 0.85, far) * mix(0.6, 1.0, far);
 }
 
-// Smudges of wiped grease and dust of three sizes, 0..1, in heights of the picture.
+// Smudges of wiped grease and dust of three sizes, as values 0..1. Places are in heights of the picture.
 vec4 ghosts_smudges(vec4 image) {
     vec2 at = (vec2(pixel) + 0.5) / float(extent.y);
     vec2 wiped = mat2(0.8, 0.6, -0.6, 0.8) * at * vec2(3.0, 9.0);

@@ -4,7 +4,7 @@
 #include "lib/spectrum.glsl"
 
 const float kernel_glare_turn = 6.283185307179586;
-const float kernel_glare_nm = 550.0;  // the wavelength that the pattern of an iris is drawn for
+const float kernel_glare_nm = 550.0;  // nm: the wavelength for which the pattern of an iris is computed
 
 vec4 kernel_glare_light(vec4 image, float threshold, float knee, float limit) {
     return glare_light(threshold > 0.0 || limit < GLARE_BRIGHTEST ? bright_light(image, threshold, knee, limit) : image);
@@ -14,7 +14,8 @@ vec4 kernel_glare_shrink(int factor) { return glare_shrunk(factor); }
 
 vec4 kernel_glare_grow(int factor) { return small_near(glare_grown(factor)) / float(factor * factor); }
 
-// The kernel in another size: every pixel is the mean of what it covers, or between pixels where it covers less than one.
+// Resizes the kernel: each pixel is the mean of the area that it covers, or an interpolation where that is less than a
+// pixel.
 vec4 kernel_glare_fit() {
     vec2 scale = vec2(kernel_size) / vec2(extent), covered = 0.5 * max(scale, 1.0);
     vec2 middle = (vec2(pixel) + 0.5) * scale, low = middle - covered, high = middle + covered;
@@ -27,8 +28,8 @@ vec4 kernel_glare_fit() {
     return vec4(sum, 0.0);
 }
 
-// How bright light of one wavelength arrives behind a polygon of radius 1: the square of its Fourier transform, by the
-// divergence theorem a sum over the edges. 1 in the middle.
+// The diffraction pattern of a regular polygon of radius 1 for one wavelength: the square of its Fourier transform,
+// computed by the divergence theorem as a sum over the edges. It is 1 in the center.
 float kernel_glare_diffracted(vec2 k, int blades, float angle) {
     float part = kernel_glare_turn / float(blades), square = dot(k, k);
     float side = 2.0 * sin(0.5 * part), inner = cos(0.5 * part), area = 0.5 * float(blades) * sin(part);
@@ -43,7 +44,8 @@ float kernel_glare_diffracted(vec2 k, int blades, float angle) {
     return dot(sum, sum) / (square * square * area * area);
 }
 
-// The pattern of an iris, `pitch` to a pixel in units of the transform. `falloff` below 1 lifts its rays.
+// The diffraction pattern of an iris with `pitch` units of the transform per pixel. A `falloff` below 1 makes its rays
+// brighter.
 float kernel_glare_iris(float pitch, int blades, float angle, float falloff) {
     int n = int(clamp(ceil(pitch), 2.0, 8.0));
     float sum = 0.0;
@@ -54,7 +56,8 @@ float kernel_glare_iris(float pitch, int blades, float angle, float falloff) {
     return sum / float(n * n);
 }
 
-// White light: longer waves make a larger and fainter pattern. It fades toward a circle, where the kernel ends.
+// The pattern for white light: longer wavelengths give larger, fainter patterns. It fades out toward a circle within
+// the kernel's borders.
 vec4 kernel_glare_dispersed() {
     vec2 way = vec2(pixel - extent / 2), middle = 0.5 * vec2(iris_size);
     vec3 sum = vec3(0.0), white = vec3(0.0);
@@ -68,8 +71,8 @@ vec4 kernel_glare_dispersed() {
     return vec4(sum / white * (1.0 - smoothstep(0.2, 1.0, end)), 0.0);
 }
 
-// A kernel that keeps energy: as bright as 1 in sum, or 1 in each channel for one that is white. Its alpha is its
-// luminance: it spreads the light's alpha, 1, which tells how much of the kernel lies within the picture.
+// A kernel with sum 1, in luminance or in each channel. Its alpha is its luminance: convolved with the light's alpha,
+// which is 1, it gives the part of the kernel that lies within the picture.
 vec4 kernel_glare_normalized(vec4 kernel, vec4 sum, bool white) {
     float light = luminance(sum.rgb);
     vec3 even = light > 0.0 ? kernel.rgb / (white ? max(sum.rgb, 1e-20) : vec3(light)) : vec3(0.0);
@@ -78,7 +81,7 @@ vec4 kernel_glare_normalized(vec4 kernel, vec4 sum, bool white) {
 
 vec4 kernel_glare_glow(vec4 image, vec4 glare) { return vec4(glare.rgb, finite(image.a)); }
 
-// To mix, a pixel gives away what of its glare stays within the picture.
+// In the mode mix, a pixel loses the light that its glare spreads within the picture.
 vec4 kernel_glare(vec4 image, vec4 light, vec4 glare, float intensity, int mode) {
     vec3 taken = mode == MODE_MIX ? glare.a * light.rgb : vec3(0.0);
     return vec4(finite(image.rgb) + intensity * (glare.rgb - taken), finite(image.a));

@@ -4,7 +4,7 @@ vec4 star_light(vec4 image, float threshold, float knee, float limit) {
     return bright_light(image, threshold, knee, limit);
 }
 
-// Turns the picture about its middle, counterclockwise; bilinear, which unlike sharper filters makes no negative light.
+// Rotates the picture around its center, counterclockwise. Bilinear, since sharper filters make negative light.
 vec4 star_turn(float angle) {
     vec2 at = vec2(pixel) + 0.5 - 0.5 * vec2(extent);
     return image_near(mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * at + 0.5 * vec2(image_size));

@@ -7,9 +7,8 @@ vec4 streaks_light(vec4 image, float threshold, float knee, float limit) {
 
 vec4 streaks_shrink(int factor) { return shrunk(factor); }
 
-// The mean of four samples, each `fade` times as heavy as the one before. The pass after it takes four times the stride
-// and fade^4: as every number is written in digits to the base 4 in one way only, P passes are the geometric series of
-// 4^P samples.
+// The mean of four samples, each `fade` times the weight of the one before. The next pass has four times the stride and
+// fade^4. Each number has exactly one representation in base 4, so P passes give the geometric series of 4^P samples.
 vec4 streaks_pass(vec2 stride, vec3 fade) {
     vec3 sum = vec3(0.0), total = vec3(0.0), weight = vec3(1.0);
     for (int i = 0; i < 4; ++i) {

@@ -11,7 +11,7 @@ vec4 sun_beams_light(
 
 vec4 sun_beams_shrink(int factor) { return shrunk(factor); }
 
-// The mean of four samples, each `shrink` times as far from the source as the one before and `fade` times as heavy.
+// The mean of four samples, each `shrink` times as far from the source as the one before, with `fade` times its weight.
 vec4 sun_beams_pass(vec2 source, float shrink, float fade) {
     vec2 away = vec2(pixel) + 0.5 - source;
     vec4 sum = vec4(0.0);

@@ -2,8 +2,8 @@
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
 
-// Every seed and frame starts elsewhere in the table; the vector's parts far from the value, by steps of the R2 sequence
-// (Roberts 2018) in 64ths.
+// Each seed and frame starts at another place of the table. The two components of the vector start far from the value:
+// steps of the R2 sequence (Roberts 2018) in 64ths.
 void blue_noise(float size, int seed, bool animate, out vec4 result, out float value, out vec2 vector) {
     ivec2 cell = ivec2((vec2(pixel) + 0.5) / max(finite(size), 1.0));
     cell += ivec2(pcg3d(uvec3(uint(seed), animate ? uint(frame) : 0u, 0u)).xy & 63u);

@@ -9,7 +9,7 @@ void curl_noise(
     float height = 1.0, density = 1.0, total = 0.0;
     for (int octave = 0; octave < min(octaves, 16); octave++) {
         vec4 layer = simplex_slope(position * density, pcg3d(uvec3(uint(seed), uint(octave), 0u)));
-        float speed = height * density;  // the chain rule: finer layers are steeper
+        float speed = height * density;  // chain rule: the slope of a layer grows with its frequency
         sum += vec3(speed * layer.y, -speed * layer.x, height * layer.w);
         total += speed;
         height *= finite(gain);

@@ -20,7 +20,7 @@ vec3 noise_layers(
         if (fractal == FRACTAL_RIDGED || fractal == FRACTAL_TURBULENCE) layer = min(abs(layer * contrast), 1.0);
         if (fractal == FRACTAL_RIDGED) {
             layer = (1.0 - layer) * (1.0 - layer) * carried;
-            carried = min(2.0 * layer, 1.0);  // finer layers show on the ridges of coarser ones only
+            carried = min(2.0 * layer, 1.0);  // finer layers only on ridges of coarser ones (Musgrave 1994)
         }
         sum += strength * layer;
         total += strength;

@@ -1,6 +1,6 @@
 #include "lib/finite.glsl"
 
-// The direction of v as a fraction of a turn, clockwise on the screen.
+// The angle of v as a fraction of a turn, clockwise on the screen.
 float ramp_turn(vec2 v) { return v == vec2(0.0) ? 0.0 : atan(v.y, v.x) / 6.2831853; }
 
 void ramp(

@@ -1,7 +1,7 @@
-const float READ_RENDER_NOTHING = 1e10;  // the depth where nothing is
+const float READ_RENDER_NOTHING = 1e10;  // depth of the background
 const int READ_RENDER_RADIAL = 1, READ_RENDER_INVERSE = 2;
 
-// Planar depth of what a file holds. Radial depth is longer by the slant of the ray through the pixel.
+// Planar depth from the number in the file. Radial depth is measured along the ray through the pixel, which is longer.
 float read_render_depth(float stored, int kind, float scale, float offset, vec2 focal, vec2 center) {
     float depth = stored * scale + offset;
     if (kind == READ_RENDER_INVERSE) return depth > 0.0 ? 1.0 / depth : READ_RENDER_NOTHING;
@@ -10,14 +10,14 @@ float read_render_depth(float stored, int kind, float scale, float offset, vec2 
     return depth / sqrt(1.0 + dot(slant, slant));
 }
 
-// A normal whose axes are the camera's (x right, y up, z towards the viewer), in the world.
+// A normal in world space from a normal in camera space (x right, y up, z toward the viewer).
 vec3 read_render_normal(vec3 stored, vec3 scale, vec3 offset, vec3 right, vec3 down, vec3 ahead, float towards) {
     vec3 normal = stored * scale + offset;
-    if (dot(stored, stored) == 0.0) return vec3(0.0);  // nothing is there, whatever the encoding
+    if (dot(stored, stored) == 0.0) return vec3(0.0);  // background, in every encoding
     return normal.x * right - normal.y * down - towards * normal.z * ahead;
 }
 
-// Motion since the frame before and until the next. Where a file holds one of them, it stands for both.
+// Motion from the previous frame and to the next one. If a file holds only one of them, it is used for both.
 vec4 read_render_velocity(vec4 stored, vec4 scale, bool both, bool to_next) {
     vec4 velocity = stored * scale;
     if (!both) return velocity.xyxy;

@@ -1,4 +1,4 @@
-const float SCENE_NOTHING = 1e10;  // the depth where nothing is, as Blender writes it
+const float SCENE_NOTHING = 1e10;  // depth of the background, as Blender writes it
 
 vec3 scene_position(vec4 place) { return place.xyz; }
 float scene_depth(vec4 place) { return place.w > 0.0 ? place.w : SCENE_NOTHING; }
@@ -6,7 +6,7 @@ vec2 scene_uv(vec4 surface) { return surface.xy; }
 float scene_object(vec4 surface) { return surface.z; }
 float scene_material(vec4 surface) { return surface.w; }
 
-// A lamp from above at the camera's left, sky from above and a little light from everywhere.
+// A preview light: a lamp from the upper left of the camera, sky light from above, and a little ambient light.
 vec4 scene_color(vec4 albedo, vec3 normal, vec4 emission, vec3 eye) {
     vec3 left = normalize(cross(vec3(0.0, 0.0, 1.0), eye) + vec3(0.0, 1e-6, 0.0));
     vec3 lamp = normalize(0.7 * left - 0.6 * eye + vec3(0.0, 0.0, 0.9));

@@ -11,7 +11,7 @@ void worley(
     int feature, int metric, float size, float jitter, int seed, float evolution,
     out vec4 result, out float value, out vec3 cell
 ) {
-    // Farther out than a million cells, floats have no room left for places within one.
+    // Beyond a million cells, floats cannot resolve places within a cell.
     vec3 p = clamp(vec3((vec2(pixel) + 0.5) / max(finite(size), 1e-3), finite(evolution)), -1e6, 1e6);
     uvec3 stream = pcg3d(uvec3(uint(seed), 0u, 1u));
     float nearest = 1e9, second = 1e9;

@@ -1,12 +1,13 @@
 #include "lib/geometry.glsl"
 
-// Radii are in pixels of the picture that is drawn; they are below 0 nearer than the focus, and grow with the depth.
-// `lens`: how far the middle of a blade is from the axis, the area, both of an aperture of radius 1, and cat's eyes.
+// Radii are those of the circles of confusion, in pixels of the picture that is drawn. They grow with depth: negative
+// in front of the focus, positive behind it. `lens` holds the distance of a blade's middle from the axis, the area,
+// both for an aperture of radius 1, and the strength of cat's eye bokeh.
 
 const float depth_of_field_least = 0.5;    // a disc of this radius covers its own pixel only
-const float depth_of_field_seam = 0.85;    // from this part of the radius that is too large, levels cross over
-const float depth_of_field_slack = 1.015;  // pixels are squares: discs of them have not quite the area of discs
-const float depth_of_field_unseen = 0.05;  // weight of guessed light, relative to light that is seen
+const float depth_of_field_seam = 0.85;    // share of a level's largest radius at which its crossfade begins
+const float depth_of_field_slack = 1.015;  // discs of square pixels do not have exactly the area of discs
+const float depth_of_field_unseen = 0.05;  // weight of guessed light, relative to light that is visible
 
 // --- circles of confusion ---
 
@@ -21,7 +22,7 @@ float depth_of_field_radius(
     return clamp(clamp(finite(mask), 0.0, 1.0) * radius, -largest, largest);
 }
 
-// The light beyond the picture's border mirrors that within: it is as much.
+// Beyond its border the picture is mirrored, so that as much light comes in as goes out.
 ivec2 depth_of_field_fold(ivec2 at, ivec2 size) {
     at = max(at, -1 - at);
     return min(at, 2 * size - 1 - at);
@@ -29,8 +30,9 @@ ivec2 depth_of_field_fold(ivec2 at, ivec2 size) {
 
 float depth_of_field_coc(float radius) { return 2.0 * radius / proxy; }
 
-// Antialiased edges before what is farther carry light of both. `own` is that of the pixel's own surface further in, from
-// so many pixels, and `sharp` that of what is in focus beside it, before it. True at the edge of what is blurred.
+// At an antialiased edge a pixel mixes the light of two surfaces. `own` is the mean light of the pixel's own surface
+// away from the edge, over `owns` pixels, and `sharp` that of a surface in focus in front of it, over `sharps` pixels.
+// True at the edge of a blurred surface in front.
 bool depth_of_field_edge(out vec4 own, out float owns, out vec4 sharp, out float sharps) {
     float radii[25], here = radius_at(pixel);
     for (int i = 0; i < 25; ++i) radii[i] = radius_at(pixel + ivec2(i % 5, i / 5) - 2);
@@ -53,8 +55,9 @@ bool depth_of_field_edge(out vec4 own, out float owns, out vec4 sharp, out float
     return blurred && owns > 0.0;
 }
 
-// At the edge of what is sharp, its part of the pixel's light must not spread with the rest: it stays where it is. The
-// rest is clean. Edges of what is blurred would stay as a line around it: they take after their own surface.
+// Separates the light at the edge of a sharp surface: its share stays in place, or it would spread with the blur
+// behind. The rest is clean. At the edge of a blurred surface the pixel takes the light of its own surface, or a line
+// around the blurred one would stay.
 void depth_of_field_apart(out vec4 stays, out vec4 clean) {
     vec4 own, sharp;
     float owns, sharps;
@@ -68,11 +71,11 @@ void depth_of_field_apart(out vec4 stays, out vec4 clean) {
     clean = blurred ? own : image_at(pixel) - (is_hole(stays) ? vec4(0.0) : stays);
 }
 
-// True if a surface with one radius lies in front of one with another radius, and is blurred.
+// True if a surface with radius `other` lies in front of one with radius `here`, and is blurred.
 bool depth_of_field_hides(float other, float here) { return here - other >= 1.0 && abs(other) >= 1.0; }
 
-// The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges. What
-// edges gain, as those of a lamp behind something dark do, is taken from no other pixel.
+// The light that pixels at edges lose goes to the nearer surface beside them: small lamps consist mostly of edges.
+// Light that they gain, such as at a lamp behind a dark object, is taken from no other pixel.
 vec4 depth_of_field_whole() {
     const ivec2 beside[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
     float here = radius_at(pixel);
@@ -87,10 +90,10 @@ vec4 depth_of_field_whole() {
     return sum;
 }
 
-// The picture with the light that stayed. No light becomes negative.
+// Adds the light that stayed in place. No light becomes negative.
 vec4 depth_of_field_with(vec4 seen, vec4 kept) { return max(seen + kept, min(seen, 0.0)); }
 
-// --- levels: how a disc belongs to the size that it is made at ---
+// --- levels: large discs are made from smaller pictures ---
 
 float depth_of_field_rise(float radius, float edge) {
     return clamp((abs(radius) / edge - depth_of_field_seam) / (1.0 - depth_of_field_seam), 0.0, 1.0);
@@ -101,9 +104,9 @@ float depth_of_field_member(float radius, float side, float low, float high) {
     return depth_of_field_rise(radius, low) * (1.0 - depth_of_field_rise(radius, high));
 }
 
-// A level on one side of the focus, in blocks of pixels: its light; how much of each block belongs to it, the radius
-// there, in blocks, and how much is nearer. Averaging and interpolating spreads light too, by 0.354 square blocks along
-// each axis: discs are drawn so much smaller that their second moment is right.
+// One level of discs on one side of the focus, in blocks of pixels: its light, and in `extents` the part of the block
+// that belongs to it, the radius in blocks, and the part that is nearer. Averaging and interpolation blur as well, with
+// a variance of 0.354 square blocks along each axis, so discs are drawn smaller and keep their second moment.
 void depth_of_field_level(int block, float side, float low, float high, out vec4 light, out vec3 extents) {
     float count = 0.0, sum = 0.0, nearer = 0.0, whole = float(block * block);
     light = vec4(0.0);
@@ -124,7 +127,7 @@ void depth_of_field_level(int block, float side, float low, float high, out vec4
     extents.xy = vec2(count / whole, sqrt(max(squared, depth_of_field_least * depth_of_field_least)));
 }
 
-// --- tiles: how far to look ---
+// --- tiles: the search radius ---
 
 float depth_of_field_most_sharp(int tile, float sharpest) {
     float most = 0.0;
@@ -154,7 +157,7 @@ float depth_of_field_reach() {
 
 vec4 depth_of_field_nothing() { return vec4(0.0); }
 
-// How large an aperture must be to reach an offset; its corners lie on the circle.
+// The radius of the aperture at which its edge reaches an offset. The corners of a polygon lie on the circle.
 float depth_of_field_blades(int middle, int blades, float roundness, float rotation, vec2 stretch) {
     vec2 away = vec2(pixel - middle) * stretch;
     float reached = -1e9;
@@ -165,13 +168,14 @@ float depth_of_field_blades(int middle, int blades, float roundness, float rotat
     return mix(reached, length(away), roundness);
 }
 
-// Where the barrel cuts, as seen from a place: the aperture is what two discs have in common that lie so far apart.
+// How the lens barrel cuts the aperture at a place in the picture: the opening is the intersection of two discs at this
+// distance (cat's eye).
 vec2 depth_of_field_eye(vec3 lens, ivec2 at) {
     vec2 size = vec2(extent);
     return lens.z * (2.0 * vec2(at) + 1.0 - size) / length(size);
 }
 
-// The area of a disc of radius 1 around this pixel, and of one of any radius, with its soft rim.
+// The area of a disc of radius 1 at this pixel; and that of a disc of any radius with its soft rim.
 float depth_of_field_unit(vec3 lens) {
     float apart = min(length(depth_of_field_eye(lens, pixel)), 1.99);
     return lens.y * (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / radians(180.0);
@@ -179,7 +183,8 @@ float depth_of_field_unit(vec3 lens) {
 
 float depth_of_field_area(float unit, float radius) { return unit * (radius * radius + 1.0 / 12.0); }
 
-// How far inside a disc the pixel `away` from its middle lies. Near the camera the aperture is upside down.
+// How far a pixel, `away` from the center of a disc, lies inside it; negative outside. In front of the focus the
+// aperture appears upside down.
 float depth_of_field_inside(int aperture, vec3 lens, vec2 stretch, vec2 eye, ivec2 away, float radius) {
     vec2 offset = vec2(away) * stretch;
     float size = abs(radius), cut = size * (0.25 * size * dot(eye, eye) + abs(dot(offset, eye)));
@@ -190,16 +195,16 @@ float depth_of_field_inside(int aperture, vec3 lens, vec2 stretch, vec2 eye, ive
 
 float depth_of_field_cover(float inside) { return clamp(inside + 0.5, 0.0, 1.0); }
 
-// Half the width of a disc in a row of pixels.
+// Half the width of a disc in one row of pixels.
 int depth_of_field_chord(float reach, int row) {
     float outer = reach + 0.5;
     return int(sqrt(max(outer * outer - float(row * row), 0.0)));
 }
 
-// --- discs made at lower size ---
+// --- discs in smaller pictures ---
 
-// What scatters over a block: light, and how much of the block it covers. Beyond the focus, smaller discs are nearer,
-// and what they hide of a surface is taken to be like the rest of it.
+// The light that discs scatter over a block, and the part of the block that they cover. Behind the focus, smaller discs
+// are nearer; the parts of a surface that they hide are assumed to look like its visible parts.
 float depth_of_field_scattered(int tile, int aperture, vec3 lens, vec2 stretch, float side, out vec4 sum) {
     vec4 front = vec4(0.0), back = vec4(0.0);
     float fronts = 0.0, backs = 0.0, hidden = 0.0, reach = reach_at(pixel / tile), here = extents_at(pixel).y;
@@ -234,7 +239,8 @@ float depth_of_field_scattered(int tile, int aperture, vec3 lens, vec2 stretch, 
     return nearer + rest;
 }
 
-// What is nearer, and so larger, covers first; what more there is fills up, but no pixel is covered more than once.
+// Combines levels in front of the focus: larger discs are nearer and cover first; smaller ones fill up what is left. No
+// pixel is covered more than once.
 void depth_of_field_near(
     int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
 ) {
@@ -246,7 +252,7 @@ void depth_of_field_near(
     covers = min(before + depth_of_field_slack * covered, 1.0);
 }
 
-// Beyond the focus the larger discs are the farther ones.
+// Combines levels behind the focus: there the larger discs are farther away.
 void depth_of_field_far(
     int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
 ) {
@@ -259,7 +265,7 @@ void depth_of_field_far(
     covers = min(more + depth_of_field_slack * covered, 1.0);
 }
 
-// --- what is behind the near ---
+// --- what nearer surfaces hide ---
 
 float depth_of_field_kept(float radius, float finest) {
     return radius < 0.0 ? 1.0 - depth_of_field_rise(radius, finest) : 1.0;
@@ -279,7 +285,8 @@ void depth_of_field_kept_light(int block, float finest, out vec4 light, out floa
     weight /= float(block * block);
 }
 
-// Where nothing of it is seen, it is most like what is nearest; where that is too far away, like the picture itself.
+// Guesses what is hidden: a mean of visible pixels, weighted by nearness; where they are too far away, the picture
+// itself.
 vec4 depth_of_field_rest(int reach, float block) {
     float here = weight_at(pixel);
     if (here == 1.0) return light_at(pixel);
@@ -296,9 +303,9 @@ vec4 depth_of_field_rest(int reach, float block) {
 
 // --- the picture ---
 
-// What smaller discs scatter over a pixel: what is before it, its own surface, and what is behind, as sums of light and
-// of weights. `shares`: how much of the pixel's own disc its own surface takes, and what is behind in smaller and in
-// larger discs: where a surface ends, so much of what is behind it shows.
+// The light that small discs scatter over a pixel: from surfaces in front, from its own surface, and from behind, with
+// the sums of weights. `shares` is the part of the pixel's own disc that is taken by its own surface, by surfaces
+// behind with small discs, and by those with large discs: beyond the end of a surface, so much of the background shows.
 void depth_of_field_gathered(
     int tile, float finest, int aperture, vec3 lens, vec2 stretch, float reach, out vec4 front, out vec4 same,
     out vec4 behind, out vec3 weights, out vec3 shares
@@ -331,7 +338,7 @@ void depth_of_field_gathered(
     }
 }
 
-// All discs at full size.
+// All discs at full size, for small radii.
 vec4 depth_of_field_alone(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     float reach = reach_at(pixel / tile);
     if (reach <= depth_of_field_least) return image_at(pixel) + kept_at(pixel);
@@ -358,7 +365,7 @@ vec4 depth_of_field(int tile, float finest, int aperture, vec3 lens, vec2 stretc
     float fills = filled_near(at);
     vec4 beyond = fills > 0.0 ? backdrop / fills : vec4(0.0);
 
-    // A pixel whose own disc is small: its surface, and what is behind it as far as it shows.
+    // A pixel with a small disc: its surface, and the background where that is visible.
     vec4 small = vec4(0.0), large = vec4(0.0);
     if (layered < 1.0) {
         float far = fills > 0.0 ? shares.z : 0.0;
@@ -366,7 +373,7 @@ vec4 depth_of_field(int tile, float finest, int aperture, vec3 lens, vec2 stretc
         if (shares.y > 0.0) small += behind * (shares.y / weights.z);
         small /= shares.x + shares.y + far;
     }
-    // One whose own disc is large, so that it is in a layer: what else there is. Behind what is near, some is guessed.
+    // A pixel with a large disc, which is in a level: everything else. Behind a near surface some light is guessed.
     if (layered > 0.0) {
         float guessed = here < 0.0 ? depth_of_field_unseen : 0.0;
         float total = weights.y + weights.z + fills + guessed;

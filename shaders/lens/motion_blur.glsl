@@ -1,29 +1,29 @@
 #include "lib/blue_noise.glsl"
 #include "lib/geometry.glsl"
 
-// A path is kept as xy, from the frame before to now, and zw, from now to the frame after, in pixels; time 0 is now.
-// `times` are when the shutter opens and closes.
+// A path holds in xy the motion from the previous frame to this one, in zw from this one to the next, in pixels. Time 0
+// is this frame; `times` are when the shutter opens and closes.
 
-const float motion_blur_still = 1e-3;  // shorter paths are none
-const float motion_blur_apart = 50.0;  // what is nearer by 1 / 100 of the depth is fully in front
+const float motion_blur_still = 1e-3;  // pixels: shorter paths count as no motion
+const float motion_blur_apart = 50.0;  // a surface that is nearer by 1 / 100 of the depth is fully in front
 
-// The position at a time, on the parabola through the three positions.
+// The position at a time, on the parabola through the positions in three frames.
 vec2 motion_blur_place(vec4 path, float time) {
     return 0.5 * time * (path.xy + path.zw + time * (path.zw - path.xy));
 }
 
-// The length of the path while the shutter is open, before and after the frame.
+// The length of the path while the shutter is open.
 float motion_blur_length(vec4 path, vec2 times) {
     return length(motion_blur_place(path, times.x)) + length(motion_blur_place(path, times.y));
 }
 
 // --- antialiased edges ---
 
-// At an antialiased edge a pixel shows two surfaces. It counts as a piece of the nearer one: a layer is the nearness of
-// that, and how much of the pixel it covers, below 0 at edges. Everywhere else that is 1.
+// At an antialiased edge a pixel shows two surfaces, and counts as a part of the nearer one. A `layer` is the nearness
+// (1 / depth) of that surface, and how much of the pixel it covers: negative at edges, 1 everywhere else.
 
-// How near the two surfaces of an edge are; 0 where there is none. On surfaces nearness grows evenly, beside an edge by
-// far more than on the other side.
+// The nearness of the two surfaces at an edge; 0 where there is no edge. Nearness is linear on a plane; beside an edge
+// its step on one side is far larger than on the other.
 vec2 motion_blur_edge(float here) {
     const float steeper = 4.0;
     float jump = 0.0;
@@ -41,21 +41,23 @@ vec2 motion_blur_edge(float here) {
 
 ivec2 motion_blur_beside(int i) { return ivec2(i % 5, i / 5) - 2; }
 
-// How much one of the 5 x 5 pixels around counts: the nearest are most like this one.
+// The weight of one of the 5 x 5 pixels around: nearer pixels are more alike.
 float motion_blur_nearby(int i) {
     ivec2 away = motion_blur_beside(i);
     float square = float(away.x * away.x + away.y * away.y);
     return 1.0 / max(square * square, 1.0);
 }
 
-// Those of 5 x 5 pixels, as bits, whose neighbors are among them too; what lies beyond counts as if it were.
+// The pixels of a 5 x 5 set of bits whose four neighbors are in the set too; pixels outside of the 5 x 5 count as
+// members.
 uint motion_blur_inside(uint side) {
     uint across = (side << 1 | 0x0108421u) & (side >> 1 | 0x1084210u);
     uint down = (side << 5 | 0x000001fu) & (side >> 5 | 0x1f00000u);
     return side & across & down & ~(1u << 12);
 }
 
-// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge; none where there is no edge.
+// The pixels of 5 x 5 inside the nearer and the farther surface of an edge, without those at the edge; none where there
+// is no edge.
 uvec2 motion_blur_sides(vec2 bounds) {
     uint front = 0u;
     int count = bounds.x > 0.0 ? 25 : 0;
@@ -78,10 +80,10 @@ vec4 motion_blur_motion(uint side) {
     return total > 0.0 ? sum / total : velocity_at(pixel);
 }
 
-// Where renderers filter velocity as they do light, it tells how much the nearer surface covers: unlike colors, it is
-// much the same all over a surface.
+// Finds the coverage from the velocity, if the renderer filters velocity like color: velocity varies less over a
+// surface than color does.
 vec2 motion_blur_layer() {
-    const float slow = 0.5, hardly = 0.01;  // the least difference of motions in pixels; the least coverage
+    const float slow = 0.5, hardly = 0.01;  // least difference of motion, in pixels; least coverage
     float here = nearness(depth_at(pixel)), cover = 0.0;
     vec2 bounds = motion_blur_edge(here);
     uvec2 sides = motion_blur_sides(bounds);
@@ -93,14 +95,15 @@ vec2 motion_blur_layer() {
     return vec2(2.0 * here > bounds.x + bounds.y ? here : bounds.x, -cover);
 }
 
-// Velocities there are averages, and nothing moves like that: they are those of the same surface, one further in.
+// The velocity of a pixel at an edge is an average that no surface has. It is replaced by the velocity of the same
+// surface beside the edge.
 vec4 motion_blur_clean() {
     vec2 layer = layer_at(pixel), bounds = motion_blur_edge(nearness(depth_at(pixel)));
     uvec2 sides = motion_blur_sides(layer.y < 0.0 ? bounds : vec2(0.0));
     return motion_blur_motion(2.0 * layer.x > bounds.x + bounds.y ? sides.x : sides.y);
 }
 
-// The light of the layer: that of the pixel without what is nearest behind it.
+// The light of the nearer surface in a pixel: the pixel's light minus the share of the surface behind.
 vec4 motion_blur_front() {
     vec4 light = finite(image_at(pixel)), back = vec4(0.0);
     vec2 here = layer_at(pixel);
@@ -121,7 +124,7 @@ vec4 motion_blur_front() {
 
 // --- paths ---
 
-// How far along either axis a path leads from its place before it turns back, if it does while the shutter is open.
+// How far a path leads along either axis before it turns back while the shutter is open; 0 if it does not.
 float motion_blur_turn(vec4 path, vec2 times) {
     vec2 even = path.xy + path.zw, bend = path.zw - path.xy, far = vec2(0.0);
     for (int axis = 0; axis < 2; ++axis) {
@@ -131,7 +134,7 @@ float motion_blur_turn(vec4 path, vec2 times) {
     return max(far.x, far.y);
 }
 
-// The path of a pixel, shortened to `longest`, and so that no point of it is farther away than `reach`.
+// The path of a pixel, limited to the length `longest` and to the distance `reach` from the pixel.
 vec4 motion_blur_path(vec4 velocity, int path, vec2 times, float longest, float reach) {
     vec4 safe = is_finite(velocity) ? clamp(velocity, -1e5, 1e5) * proxy : vec4(0.0);
     if (path == PATH_STRAIGHT || safe.zw == vec2(0.0)) safe.zw = safe.xy;
@@ -143,7 +146,7 @@ vec4 motion_blur_faster(vec4 a, vec4 b, vec2 times) {
     return motion_blur_length(b, times) > motion_blur_length(a, times) ? b : a;
 }
 
-// The longest path of so many pixels along an axis.
+// The longest path of `count` pixels along an axis.
 vec4 motion_blur_fastest(int axis, int count, vec2 times) {
     ivec2 along = axis == 0 ? ivec2(1, 0) : ivec2(0, 1), first = pixel * (along * (count - 1) + 1);
     vec4 found = paths_at(first);
@@ -151,7 +154,7 @@ vec4 motion_blur_fastest(int axis, int count, vec2 times) {
     return found;
 }
 
-// The longest path of a tile and its neighbors; those at its corners count only if they point here (Guertin 2014).
+// The longest path of a tile and its neighbors; diagonal neighbors count only if their path points here (Guertin 2014).
 vec4 motion_blur_around(vec2 times) {
     vec4 found = tiles_at(pixel);
     for (int y = -1; y <= 1; ++y)
@@ -164,7 +167,8 @@ vec4 motion_blur_around(vec2 times) {
     return found;
 }
 
-// By how much paths of a tile differ from its longest, and those of its neighbors from the longest of all.
+// How much the paths within a tile differ from its longest one; then how much those of its neighbors differ from the
+// longest of all.
 float motion_blur_spread(int tile, vec2 times) {
     vec4 longest = tiles_at(pixel);
     float most = 0.0;
@@ -184,8 +188,8 @@ float motion_blur_variety(vec2 times) {
     return most;
 }
 
-// The part of its time that something spends on the stretch between two offsets, as far as its path leads there; it
-// counts as evenly run through.
+// The part of the shutter time that a surface spends between two offsets, if its path leads there. Its speed is taken
+// as constant.
 float motion_blur_share(vec4 path, vec2 times, vec2 from, vec2 to) {
     vec2 start = motion_blur_place(path, times.x), way = motion_blur_place(path, times.y) - start;
     float span = dot(way, way);
@@ -196,22 +200,22 @@ float motion_blur_share(vec4 path, vec2 times, vec2 from, vec2 to) {
     return abs(passed.y - passed.x) * max(1.0 - beside, 0.0);
 }
 
-// How much of what lies at one nearness is in front of what lies at another; half, if they are equally deep.
+// How much a surface at one nearness is in front of another one; half if they are equally deep.
 float motion_blur_before(float other, float here) {
     float near = max(other, here);
     return near > 0.0 ? clamp(0.5 + motion_blur_apart * (other - here) / near, 0.0, 1.0) : 0.5;
 }
 
-// How differently something moves than what gets so `far`, from how much their paths differ: 0 for parts of one surface,
-// 1 for what has nothing to do with each other.
+// How different two motions are, from the difference of their paths and the length `far` of one: 0 for parts of one
+// surface, 1 for unrelated surfaces.
 float motion_blur_unlike(float apart, float far) {
     return clamp(4.0 * apart / max(far, motion_blur_still) - 1.0, 0.0, 1.0);
 }
 
-// The samples of a path: stops at even times, from the first to the last.
+// The samples along a path, at equal steps of time from `first` to `last`.
 struct MotionBlurRun { vec4 path; float step, shift; bool sparse; int first, last; };
 
-// Steps of a pixel, so that nothing is missed, or longer ones, at random, if those are too many.
+// Steps of one pixel, so that no pixel is missed, or longer ones with a random start if those would be too many.
 MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
     vec2 middle = 0.5 * (path.xy + path.zw), bend = path.zw - path.xy;
     vec2 speed = max(abs(middle + times.x * bend), abs(middle + times.y * bend));
@@ -228,14 +232,14 @@ MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
 
 float motion_blur_time(MotionBlurRun run, int i) { return float(i) * run.step + run.shift; }
 
-// When the shutter is open while the path is at a stop.
+// The time span of one sample, within the shutter time.
 vec2 motion_blur_open(MotionBlurRun run, int i, vec2 times) {
     return clamp(motion_blur_time(run, i) + vec2(-0.5, 0.5) * run.step, times.x, times.y);
 }
 
-// The two pixels that a place on a path lies between: the first, the step to the second, and how far the place is on the
-// way there. They lie across the path, along which the place counts as in the middle of its pixel; where samples are
-// `sparse`, along it.
+// The two pixels between which a sample lies: the first, the step to the second, and the weight of the second. They lie
+// side by side across the path; along the path the sample counts as in the middle of its pixel. For `sparse` samples
+// they lie along the path.
 float motion_blur_between(MotionBlurRun run, int i, out ivec2 cell, out ivec2 side) {
     float time = motion_blur_time(run, i);
     vec2 at = vec2(pixel) + 0.5 - motion_blur_place(run.path, time);
@@ -251,13 +255,13 @@ float motion_blur_between(MotionBlurRun run, int i, out ivec2 cell, out ivec2 si
 
 bool motion_blur_outside(ivec2 at) { return any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, image_size)); }
 
-// Loops run as often as any pixel nearby needs them: a pixel that needs fewer has no stops left.
+// Empties a run that a pixel does not need. Its loop then ends at once, and the loop itself stays outside of a branch.
 MotionBlurRun motion_blur_only(bool wanted, MotionBlurRun run) {
     run.last = wanted ? run.last : run.first - 1;
     return run;
 }
 
-// If everything moves alike, this is exactly a box filter along the path.
+// Where all surfaces move alike, the result is exactly a box filter along the path.
 vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
@@ -275,7 +279,7 @@ vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
             total += spent;
         }
     }
-    // In even steps of time, pixels of a bent path are passed unevenly.
+    // On a curved path, equal steps of time pass pixels unevenly, so samples are interpolated.
     run = motion_blur_only(bent, run);
     for (int i = run.first; i <= run.last; ++i) {
         vec2 open = motion_blur_open(run, i, times);
@@ -287,7 +291,7 @@ vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
     return total > 0.0 ? sum / total : here;
 }
 
-// Compares the surface at a stop with the one of this pixel.
+// A sample, compared with the surface of this pixel.
 struct MotionBlurMet { vec4 light, path; float cover, before, after; };
 
 MotionBlurMet motion_blur_met(ivec2 cell, vec4 own, float far, float near, vec2 times) {
@@ -304,7 +308,7 @@ MotionBlurMet motion_blur_met(ivec2 cell, vec4 own, float far, float near, vec2 
 }
 
 vec4 motion_blur(vec2 times, int tile, int samples) {
-    const float certain = 4.0;  // how much what is seen behind a layer counts more than what is seen a pixel away
+    const float certain = 4.0;  // weight of light seen behind a layer in this pixel, relative to light one pixel away
     vec4 fast = around_at(pixel / tile), here = finite(image_at(pixel)), own = paths_at(pixel);
     float far = motion_blur_length(own, times), noise = blue_noise(pixel) - 0.5;
     bool still = motion_blur_length(fast, times) < 1.0;
@@ -313,9 +317,9 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
     MotionBlurRun run = motion_blur_run(own, times, samples, noise);
     vec4 box = motion_blur_box(motion_blur_only(alone && !still, run), times, here);
 
-    // Along the fastest motion around: what passes before this pixel, and what moves behind it.
+    // Along the fastest motion around: surfaces that pass in front of this pixel, and those that move behind it.
     vec4 front = vec4(0.0), moving = vec4(0.0);  // sums of light
-    float covers = 0.0, moves = 0.0;             // sums of the weights
+    float covers = 0.0, moves = 0.0;             // sums of weights
     MotionBlurRun passing = motion_blur_only(!alone && !still, motion_blur_run(fast, times, samples, noise));
     for (int i = passing.first; i <= passing.last; ++i) {
         ivec2 cell, side;
@@ -334,7 +338,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
         }
     }
 
-    // Along the pixel's own path: what it shows of itself, and of what is behind it.
+    // Along the pixel's own path: its own surface, and the background that this surface uncovers.
     vec4 same = vec4(0.0), behind = vec4(0.0);
     float stays = 0.0, bares = 0.0, nearby = 0.0;
     run = motion_blur_only(!alone && !still, run);
@@ -351,7 +355,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
             same += (1.0 - met.after) * share * met.light;
             stays += (1.0 - met.after) * share * met.cover;
             bares += share * (1.0 - (1.0 - met.after) * met.cover);
-            // A hidden surface is guessed from the nearest visible part of it.
+            // The hidden background is guessed from its nearest visible part.
             float weight = met.after * share / max(dot(away, away), 1.0);
             behind += weight * met.light;
             nearby += weight * met.cover;

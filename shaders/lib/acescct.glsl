@@ -1,5 +1,5 @@
-// The ACEScct curve (Academy S-2016-001): light from a millionth to 222 as 0..1, even in stops but for a toe. The curve
-// only: primaries stay.
+// The ACEScct curve (Academy S-2016-001): light from 0.000001 to 222 as codes from 0 to 1, logarithmic except near
+// black. It converts no primaries.
 
 float acescct_encode(float light) {
     return light <= 0.0078125 ? 10.5402377416545 * light + 0.0729055341958355 : (log2(light) + 9.72) / 17.52;

@@ -1,5 +1,5 @@
-// AgX (Troy Sobotka, 2022) as Blender 4 and 5 ship it: Eary Chow's Rec.2020 version, here as a formula instead of its
-// 3D table (AgX_LUT_Gen, AgXBaseRec2020.py). Matrices are written by rows and multiplied from the left.
+// AgX (Troy Sobotka, 2022) as in Blender 4 and 5: Eary Chow's Rec.2020 version, as a formula instead of its 3D table
+// (AgX_LUT_Gen, AgXBaseRec2020.py). Matrices are written by rows and multiplied from the left.
 #include "lib/color.glsl"
 
 const mat3 REC709_TO_REC2020 = mat3(
@@ -23,13 +23,13 @@ const mat3 AGX_OUTSET = mat3(
     -0.141329763, -0.110606643, 1.251936407
 );
 
-// Middle gray lies 10 stops above black and 6.5 below white, and comes out as it went in (power 2.4).
+// The range is 10 stops below middle gray and 6.5 above. Middle gray keeps its value (power 2.4).
 const float AGX_PIVOT = 10.0 / 16.5;
 const float AGX_GRAY = 0.489437090;  // 0.18 ^ (1 / 2.4)
 const float AGX_SLOPE = 2.4;
 
-// Jed Smith's sigmoid: straight at the pivot, bent with power 1.5 toward both ends. The reach makes it end at 0 and 1:
-// ((slope x)^-1.5 ((slope x / y)^1.5 - 1))^(-1 / 1.5) with x and y from the pivot to that end.
+// Jed Smith's sigmoid: linear at the pivot, bent with power 1.5 toward both ends. `reach` makes it end at 0 and 1:
+// ((slope x)^-1.5 ((slope x / y)^1.5 - 1))^(-1 / 1.5), with x and y the distances from the pivot to that end.
 float agx_sigmoid(float x) {
     float reach = x < AGX_PIVOT ? 0.565675607 : 0.715198286;
     float u = AGX_SLOPE * (x - AGX_PIVOT) / reach;
@@ -41,7 +41,7 @@ float agx_curve(float light) {
     return pow(max(agx_sigmoid((stops + 10.0) / 16.5), 0.0), 2.4);
 }
 
-// Scene-linear to display-linear, which is within 0..1 in Rec.709. The curves turn hues; 60 % of the turn is taken back.
+// Scene-linear to display-linear light, within 0..1 in Rec.709. The curves shift hues; 60 % of the shift is undone.
 vec3 agx(vec3 rgb) {
     vec3 scene = max(to_rec709(rgb) * REC709_TO_REC2020, 0.0) * AGX_INSET;
     vec3 formed = vec3(agx_curve(scene.r), agx_curve(scene.g), agx_curve(scene.b));

@@ -1,5 +1,5 @@
-// Blue noise: 64 x 64 thresholds that are as far as possible from their likes, by void and cluster (Ulichney 1993).
-// A test makes this table anew and compares. Four thresholds of 8 bits lie in a word, the first in its lowest bits.
+// Blue noise: 64 x 64 thresholds, neighbors as different as possible, by void and cluster (Ulichney 1993). A test
+// computes this table again and compares. A word holds four thresholds of 8 bits, the first in its lowest bits.
 const uint BLUE_NOISE[1024] = uint[1024](
     0x5eb90defu, 0x72158122u, 0xc4467e34u, 0x9950fe8au, 0x07d33b64u, 0x4bfd78deu, 0xc453299bu, 0x67d1a5fbu,
     0xbf8fda2au, 0xf9990cddu, 0x8d25c112u, 0x4af6c766u, 0x85d0389cu, 0x488eecb9u, 0xe56125fbu, 0x3c09588du,
@@ -131,7 +131,7 @@ const uint BLUE_NOISE[1024] = uint[1024](
     0x40f81db5u, 0x59c4806cu, 0xafd66b93u, 0x5d861c3au, 0xe45513d8u, 0xaed46f40u, 0x7ba63f0du, 0x62dab346u
 );
 
-// 0 < threshold < 1, each of 256 as often as any other; wraps around every 64 cells.
+// A threshold between 0 and 1. There are 256 of them, all equally frequent; the pattern repeats every 64 cells.
 float blue_noise(ivec2 cell) {
     uint index = uint(cell.y & 63) * 64u + uint(cell.x & 63);
     uint rank = (BLUE_NOISE[index >> 2u] >> (8u * (index & 3u))) & 255u;

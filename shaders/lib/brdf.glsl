@@ -1,29 +1,30 @@
-// How surfaces reflect light. Vectors have length 1: n the normal, h halfway between the ways to the eye and to the
-// light. nv, nl and vh are the cosines between them; alpha is the square of what artists call roughness.
+// Reflection of light at surfaces. Vectors have length 1: n is the normal, h is halfway between the directions to the
+// eye and to the light. nv, nl and vh are cosines between them; alpha is the square of the roughness.
 
 const float BRDF_PI = 3.14159265;
 
-// Schlick 1994.
+// Fresnel reflectance (Schlick 1994).
 vec3 fresnel(vec3 f0, float vh) {
     float x = clamp(1.0 - vh, 0.0, 1.0), x2 = x * x;
     return f0 + (1.0 - f0) * (x2 * x2 * x);
 }
 
-// The density of facets that face h: GGX (Walter et al. 2007). 1 - (n.h)^2 is had as |n x h|^2, in which nothing cancels out.
+// The GGX distribution of microfacets that face h (Walter et al. 2007). 1 - (n.h)^2 is computed as |n x h|^2, which
+// loses no digits.
 float ggx_facets(vec3 n, vec3 h, float alpha) {
     vec3 off = cross(n, h);
     float along = alpha * dot(n, h), size = along * along + dot(off, off);
     return alpha * alpha / (BRDF_PI * size * size);
 }
 
-// The share of facets that are seen and lit, over 4 nv nl: Smith's, with correlated heights (Heitz 2014).
+// The share of visible and lit microfacets, divided by 4 nv nl: Smith's height-correlated term (Heitz 2014).
 float ggx_visible(float nv, float nl, float alpha) {
     vec2 c = vec2(nv, nl), far = sqrt(c * c * (1.0 - alpha * alpha) + alpha * alpha);
     return 0.5 / (nl * far.x + nv * far.y);
 }
 
-// What the facets mirror of a sky of one color: MaterialX's fit of the integral, within 0.03 of it but where polish is
-// seen aslant.
+// The reflection of a uniform sky by the microfacets: MaterialX's fit of the integral, within 0.03 except for polished
+// surfaces at grazing angles.
 vec3 ggx_sky(vec3 f0, float nv, float alpha) {
     float x = nv, y = alpha, x2 = x * x, y2 = y * y;
     vec4 r = vec4(0.1003, 0.9345, 1.0, 1.0)
@@ -36,20 +37,21 @@ vec3 ggx_sky(vec3 f0, float nv, float alpha) {
     return f0 * parts.x + parts.y;
 }
 
-// Phong's lobe around the mirrored way to the eye, scaled so that it conserves energy (Lafortune and Willems 1994). For small alphas as
-// wide as that of facets; for the largest, its exponent is 1.
+// Phong's lobe around the mirrored view direction, scaled to conserve energy (Lafortune and Willems 1994). For a small
+// alpha it is as wide as the GGX lobe; at alpha 1 its exponent is 1.
 float phong_lobe(float rl, float alpha) {
     float power = 0.5 / (alpha * alpha) + 0.5;
     return (power + 2.0) / (2.0 * BRDF_PI) * pow(max(rl, 1e-9), power);
 }
 
-// What a ball of light lends a surface, in units of what it would from its middle: the cosine to it, but where the
-// horizon cuts it (Snyder 1996, as in Lagarde and de Rousiers 2014). `square` is the sine of its radius, squared.
+// The light that a spherical lamp throws on a surface, relative to a point lamp straight above: the cosine, except
+// where the horizon cuts the sphere (Snyder 1996, as in Lagarde and de Rousiers 2014). `square` is the squared sine of
+// its angular radius.
 float ball_cosine(float cosine, float square) {
     if (cosine * cosine >= square) return max(cosine, 0.0);
     float x = sqrt(1.0 / square - 1.0), sine = sqrt(1.0 - cosine * cosine), y = clamp(-x * cosine / sine, -1.0, 1.0);
     float t = sine * sqrt(1.0 - y * y) / x, t2 = t * t;
-    // t - atan(t), by its series where the difference would lose digits.
+    // t - atan(t), as a series where the difference would lose digits.
     float rest = t < 0.25 ? t * t2 * (1.0 / 3.0 - t2 * (0.2 - t2 * (1.0 / 7.0 - t2 * (1.0 / 9.0 - t2 / 11.0)))) : t - atan(t);
     return max((cosine * acos(y) + t - rest / square) / BRDF_PI, 0.0);
 }

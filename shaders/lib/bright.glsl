@@ -1,31 +1,30 @@
-// Selects bright light, and adds glow to a picture. The functions up to bright_power() answer with the light to keep,
-// from the luminance (or another measure) of a pixel.
+// Selects bright light, and adds glow to a picture. The functions up to bright_power() return the light to keep, from
+// the luminance (or another measure) of a pixel.
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-const float BRIGHT_NONE = 1e-5;  // a luminance to divide by instead of 0
+const float BRIGHT_NONE = 1e-5;  // least luminance to divide by
 
 float bright_hard(float light, float threshold) { return light > threshold ? light : 0.0; }
 
-// What lies above the threshold, eased in around it by a quadratic `knee` that is a part of the threshold.
+// Soft threshold: the light above it, with a quadratic transition whose width is `knee` times the threshold.
 float bright_soft(float light, float threshold, float knee) {
     float above = light - threshold, width = threshold * knee;
     float eased = clamp(above + width, 0.0, 2.0 * width);
     return max(eased * eased / (4.0 * width + 1e-5), above);
 }
 
-// Keeps all light far above the threshold, and little of the light below it.
+// Keeps all light far above the threshold and little of the light below it.
 float bright_exponential(float light, float threshold, float power) {
     return light * (1.0 - exp(-pow(light / max(threshold, BRIGHT_NONE), power)));
 }
 
-// Light times a power of itself: the threshold is what stays as it is.
+// Light times a power of light / threshold: light at the threshold stays as it is.
 float bright_power(float light, float threshold, float power) {
     return light * pow(light / max(threshold, BRIGHT_NONE), power);
 }
 
-// What glows of a picture, for nodes with a threshold of their own: soft, and no brighter than the limit. Hue and alpha
-// stay.
+// The light of a picture that glows: above a soft threshold, and not brighter than the limit. Hue and alpha stay.
 vec4 bright_light(vec4 image, float threshold, float knee, float limit) {
     vec4 safe = finite(image);
     float light = luminance(safe.rgb);
@@ -33,10 +32,10 @@ vec4 bright_light(vec4 image, float threshold, float knee, float limit) {
     return vec4(safe.rgb * (bright_soft(min(light, limit), threshold, knee) / light), safe.a);
 }
 
-// The glow alone, in the alpha of the picture that it belongs to.
+// The glow alone, with the alpha of its picture.
 vec4 glow_alone(vec4 image, vec3 glow) { return vec4(glow, finite(image.a)); }
 
-// Light on top of a picture: it covers nothing, so alpha stays.
+// Adds light to a picture. Light covers nothing, so alpha stays.
 vec4 with_glow(vec4 image, vec3 glow) {
     vec4 safe = finite(image);
     return vec4(safe.rgb + glow, safe.a);

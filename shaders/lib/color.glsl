@@ -6,7 +6,8 @@ float luminance(vec3 rgb) { return dot(rgb, LUMINANCE_WEIGHTS); }
 float largest(vec3 v) { return max(max(v.r, v.g), v.b); }
 float smallest(vec3 v) { return min(min(v.r, v.g), v.b); }
 
-// IEC 61966-2-1, with negative light mirrored so that both directions are inverse everywhere.
+// The sRGB curve (IEC 61966-2-1). Negative light is mirrored, so that encoding and decoding are inverse for all
+// numbers.
 float srgb_encode(float linear) {
     float light = abs(linear);
     return sign(linear) * (light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1.0 / 2.4) - 0.055);
@@ -28,7 +29,7 @@ float hue(vec3 rgb) {
     return (high == rgb.g ? 2.0 + (rgb.b - rgb.r) / spread : 4.0 + (rgb.r - rgb.g) / spread) / 6.0;
 }
 
-// The same largest and smallest channel with another hue.
+// The color with another hue; its largest and smallest channel stay.
 vec3 with_hue(vec3 rgb, float turn) {
     vec3 share = clamp(abs(fract(turn + vec3(0.0, 2.0, 1.0) / 3.0) * 6.0 - 3.0) - 1.0, 0.0, 1.0);
     return mix(vec3(smallest(rgb)), vec3(largest(rgb)), share);

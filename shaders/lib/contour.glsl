@@ -1,5 +1,6 @@
-// The contour of a mask, where it crosses one half. First every pixel learns the nearest row within its column that
-// holds a pixel of the mask (x) and one outside of it (y), by jump flooding (Rong and Tan 2006), exact along a line.
+// Distance to the contour of a mask, the line where it crosses 0.5. First each pixel finds the nearest row in its
+// column with a pixel inside the mask (x) and outside of it (y), by jump flooding (Rong and Tan 2006), which is exact
+// along a line.
 
 const float CONTOUR_NONE = -1.0;
 
@@ -14,27 +15,28 @@ vec2 contour_nearer(vec2 a, vec2 b, float row) {
     return vec2(contour_nearer(a.x, b.x, row), contour_nearer(a.y, b.y, row));
 }
 
-// From the nearest pixel of the other kind one step back, to a pixel of our own.
+// The step from the nearest pixel of the other kind back to a pixel of this kind.
 ivec2 contour_step(ivec2 way) {
     return abs(way.x) > abs(way.y) ? ivec2(sign(way.x), 0) : ivec2(0, sign(way.y));
 }
 
-// How far before the center of the nearest pixel of the other kind the contour lies: as its own coverage says, or if
-// that is whole, the coverage of the pixel one step back. Both count what the other kind covers.
+// How far before the center of the nearest pixel of the other kind the contour lies: from the coverage of that pixel,
+// or if it is covered fully, of the pixel one step back. Coverage is that of the other kind.
 float contour_before(float covered, float covered_back) {
     return covered < 1.0 ? covered - 0.5 : 0.5 + covered_back;
 }
 
 float contour_covered(float mask, bool kind) { return kind ? clamp(mask, 0.0, 1.0) : 1.0 - clamp(mask, 0.0, 1.0); }
 
-// One step of the flooding, in a pass that reads `seeds`: the rows found by the pixels so far above and below.
+// One step of jump flooding, in a pass that reads `seeds`: takes over the rows that the pixels `reach` above and below
+// have found.
 vec2 contour_columns(vec2 here, int reach) {
     vec2 above = seeds_at(pixel - ivec2(0, reach)), below = seeds_at(pixel + ivec2(0, reach));
     return contour_nearer(contour_nearer(here, above, float(pixel.y)), below, float(pixel.y));
 }
 
-// Distance to the contour, below 0 inside, `most` where it is farther, in a pass that reads `columns` and `mask`: the
-// nearest of what the columns found, ever farther along the row, until no column can hold anything nearer.
+// The distance to the contour, negative inside, at most `most`, in a pass that reads `columns` and `mask`. It walks
+// along the row, away from the pixel, until no column can hold a nearer row.
 float contour_distance(vec2 here, float most) {
     bool mine = here.x == float(pixel.y);
     float nearest = most * most;

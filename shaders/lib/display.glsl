@@ -1,9 +1,9 @@
-// The tones that a display is sent (sRGB), where steps look alike from dark to bright. Light above 1 goes on.
+// sRGB display values, in which steps look equal from dark to bright. Light above 1 continues on the same curve.
 #include "lib/alpha.glsl"
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// The brightness of a pixel on a display, without its alpha.
+// The display value of a pixel's luminance, without its alpha.
 float display_tone(vec4 c) { return srgb_encode(max(luminance(straight(finite(c)).rgb), 0.0)); }
 
 vec4 to_display(vec4 c) {

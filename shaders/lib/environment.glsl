@@ -1,9 +1,10 @@
-// Pictures of all that surrounds a scene, by longitude and latitude: up is at the top. With z up, x is in the middle
-// and y a quarter to the left, as in Blender; with y up, z is in the middle and x a quarter to the left, as in OpenEXR.
+// Environment pictures by longitude and latitude, up at the top. With z up, x is in the middle and y a quarter to the
+// left, as in Blender; with y up, z is in the middle and x a quarter to the left, as in OpenEXR.
 
 const float ENVIRONMENT_PI = 3.14159265;
 
-// Where a direction lies, as fractions of the picture; `turn` turns the surroundings counterclockwise, seen from above.
+// The place of a direction in the picture, as fractions of it. `turn` rotates the surroundings counterclockwise, seen
+// from above.
 vec2 environment_uv(vec3 way, bool y_up, float turn) {
     if (y_up) way = way.zxy;
     float longitude = way.xy == vec2(0.0) ? 0.0 : atan(way.y, way.x);
@@ -18,20 +19,20 @@ vec3 environment_way(vec2 uv, bool y_up, float turn) {
     return y_up ? way.yzx : way;
 }
 
-// The solid angle of a pixel in a row of such a picture.
+// The solid angle of a pixel in a row.
 float environment_angle(int row, ivec2 size) {
     float height = ENVIRONMENT_PI / float(size.y);
     float below = float(row) * height;
     return (cos(below) - cos(below + height)) * 2.0 * ENVIRONMENT_PI / float(size.x);
 }
 
-// The pixel that stands for one beyond the edge: around the world, and over a pole to its other side.
+// The pixel that continues the picture beyond its edge: around the world, and across a pole to its other side.
 ivec2 environment_texel(ivec2 at, ivec2 size) {
     if (at.y < 0 || at.y >= size.y) at = ivec2(at.x + size.x / 2, at.y < 0 ? -1 - at.y : 2 * size.y - 1 - at.y);
     return ivec2(at.x - size.x * int(floor((float(at.x) + 0.5) / float(size.x))), clamp(at.y, 0, size.y - 1));
 }
 
-// The four pixels around a direction, and how much each counts.
+// The four pixels around a direction, with their weights.
 struct Corners { ivec2 at[4]; vec4 weight; };
 
 Corners environment_corners(vec2 uv, ivec2 size) {

@@ -2,14 +2,14 @@
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
-// 1 straight on, 0 where it turns away, and on the background.
+// The cosine between the normal and the direction to the camera; 0 where the surface faces away, and on the background.
 float facing_one(ivec2 at, const vec4 rays[3]) {
     vec3 ray = camera_ray(rays, camera_uv(at, extent));
     return clamp(-dot(unit_normal(normal_at(at)), ray) / max(length(ray), 1e-9), 0.0, 1.0);
 }
 
-// Where normals of several surfaces are mixed, their mean may look anywhere: there, the mean of what the neighbors that
-// are of one surface say.
+// The same for the pixel that is drawn. Where antialiasing has mixed the normals of several surfaces, their mean is
+// unreliable, so the mean over those neighbors that show one surface is taken.
 float facing_found(const vec4 rays[3]) {
     float sum = 0.0, count = 0.0;
     if (is_mixed(normal_at(pixel)))

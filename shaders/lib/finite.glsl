@@ -1,5 +1,5 @@
-// NaN becomes 0 and infinity the largest half float, so that one bad pixel never spreads.
-// Bits are tested because drivers may assume that isnan() is always false.
+// Makes numbers finite: NaN becomes 0 and infinity the largest half float, so that one bad pixel does not spread. Bits
+// are tested, because drivers may assume that isnan() is always false.
 
 bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 bool is_finite(vec2 v) { return is_finite(v.x) && is_finite(v.y); }

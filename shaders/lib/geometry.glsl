@@ -1,20 +1,20 @@
-// The meaning of passes of data: depth is planar and positive, normals have length 1, and both say where nothing is.
+// Conventions of data: depth is planar and positive, normals have length 1, and both mark the background.
 #include "lib/finite.glsl"
 
-const float GEOMETRY_FAR = 1e9;       // deeper is background, which renderers write as 1e10 or infinity
-const float GEOMETRY_NOTHING = 1e10;  // the value that nodes write there
-const float GEOMETRY_LEAST = 0.1;     // a shorter normal is an average of hardly anything: background too
-const float GEOMETRY_WHOLE = 0.98;    // a shorter normal is an average of several surfaces
+const float GEOMETRY_FAR = 1e9;       // larger depths are background, which renderers write as 1e10 or infinity
+const float GEOMETRY_NOTHING = 1e10;  // the depth that nodes write for the background
+const float GEOMETRY_LEAST = 0.1;     // shorter normals count as background
+const float GEOMETRY_WHOLE = 0.98;    // shorter normals are averages of several surfaces (antialiasing)
 
 bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth < GEOMETRY_FAR; }
 
-// 1 / depth, which is affine on every plane, and 0 on the background.
+// 1 / depth, which is linear on every plane; 0 on the background.
 float nearness(float depth) { return is_surface(depth) ? 1.0 / depth : 0.0; }
 
-// Renderers write the origin as the position of the background.
+// True for a position on a surface: renderers write the origin for the background.
 bool is_place(vec3 position) { return is_finite(position) && position != vec3(0.0); }
 
-// Of length 1 where antialiasing has shortened it, 0 on the background.
+// The normal with length 1, which antialiasing may have shortened; 0 on the background.
 vec3 unit_normal(vec3 normal) {
     float size = is_finite(normal) ? length(normal) : 0.0;
     return size > GEOMETRY_LEAST && size < GEOMETRY_FAR ? normal / size : vec3(0.0);
@@ -23,8 +23,8 @@ vec3 unit_normal(vec3 normal) {
 // True where antialiasing has averaged the normals of several surfaces, and on the background.
 bool is_mixed(vec3 normal) { return length(normal) < GEOMETRY_WHOLE; }
 
-// By how much of itself nearness grows from a pixel to the next, from what it is one and two pixels before and after.
-// It is affine on planes: on the side where it bends far more than on the other, another surface begins.
+// The relative growth of nearness from one pixel to the next, from the pixels one and two steps before and after.
+// Nearness is linear on planes: the side where it bends far more than on the other belongs to another surface.
 float nearness_slope(float here, vec2 one, vec2 two) {
     const float most = 1e9, rounding = 1e-6;
     if (one.x <= 0.0 && one.y <= 0.0) return 0.0;

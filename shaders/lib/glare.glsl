@@ -1,23 +1,25 @@
-// Glare that is spread at a fraction of the picture's size: tents hand out light to fewer pixels and back, so that its
-// center and its sum stay wherever it is. The smaller picture has an apron of one pixel.
+// Glare at a fraction of the picture's size. Tent filters distribute light to fewer pixels and back, which keeps its
+// center and its sum. The smaller picture has a border of one more pixel on each side.
 
 #include "lib/finite.glsl"
 
-const float GLARE_BRIGHTEST = 65504.0;  // more would overflow in sums
+const float GLARE_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
 
-// Light to spread. Alpha becomes 1: spread with it, it says how much of the glare comes from within the picture.
+// The light to spread. Its alpha is 1: after spreading, alpha is the part of the glare that comes from within the
+// picture.
 vec4 glare_light(vec4 image) {
     return vec4(clamp(finite(image).rgb, -GLARE_BRIGHTEST, GLARE_BRIGHTEST), 1.0);
 }
 
-// Where the light that a smaller pixel collects begins, 2 * `factor` pixels along each axis, and its part of one of them.
+// The first of the 2 * `factor` pixels along each axis from which a smaller pixel collects light; and its share of one
+// of them.
 ivec2 glare_first(int factor) { return (pixel - 1) * factor - factor / 2; }
 float glare_share(ivec2 p, int factor) {
     vec2 share = 1.0 - abs((vec2(p) + 0.5) / float(factor) - 1.0);
     return share.x * share.y;
 }
 
-// The light of a smaller picture of `image`: sums, not averages. Outside lies black.
+// The light of `image` in a smaller picture: sums, not averages. Outside of the picture is black.
 vec4 glare_shrunk(int factor) {
     ivec2 first = glare_first(factor);
     vec4 sum = vec4(0.0);
@@ -26,5 +28,5 @@ vec4 glare_shrunk(int factor) {
     return sum;
 }
 
-// Where a pixel lies in the smaller picture.
+// The place of a pixel in the smaller picture.
 vec2 glare_grown(int factor) { return (vec2(pixel) + 0.5) / float(factor) + 1.0; }

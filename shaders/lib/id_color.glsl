@@ -3,7 +3,8 @@
 #include "lib/finite.glsl"
 #include "lib/hash.glsl"
 
-// Random, but never pale or dark, and well apart for the first eight ids; black for 0, which is no id.
+// A random color of an id, never pale or dark; the seeds give the first eight ids very different ones. Black for 0,
+// which is no id.
 vec3 id_color(float id) {
     if (id == 0.0) return vec3(0.0);
     vec3 chance = unit_float(pcg3d(uvec3(floatBitsToUint(id), 16u, 12u)));

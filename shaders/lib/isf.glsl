@@ -1,4 +1,4 @@
-// What stands around shaders that compute with straight display values.
+// Conversions around shaders of the Interactive Shader Format, which compute with straight display values.
 #include "lib/alpha.glsl"
 #include "lib/color.glsl"
 #include "lib/working.glsl"
@@ -8,7 +8,7 @@ vec4 display_straight(vec4 c) {
     return vec4(srgb_encode(to_rec709(c.rgb)), c.a);
 }
 
-// Such shaders may leave color where nothing covers: memory of a display keeps it, light that is added would show it.
+// Such shaders may leave color where alpha is 0. A display ignores it, but premultiplied light would show it.
 vec4 from_straight(vec4 c) {
     float alpha = clamp(c.a, 0.0, 1.0);
     return vec4(c.rgb * alpha, alpha);

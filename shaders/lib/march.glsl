@@ -1,26 +1,26 @@
-// Rays through the picture, against what the picture shows of the world (McGuire and Mara 2014). Along a ray, position in
-// the picture and nearness (1 / depth) are both affine in `at` = t / depth, t the distance from where the ray starts; on a
-// plane, nearness is affine in the position. So every pixel is a small plane that rays meet exactly, and no plane hides
-// itself. Cells of 4, 16 and 64 pixels say what they hold at most, so that rays leap over what is empty (Uludag 2014).
+// Rays through the picture, in screen space (McGuire and Mara 2014). Along a ray, the position in the picture and
+// nearness (1 / depth) are both linear in `at` = t / depth, where t is the distance from its start. On a plane,
+// nearness is linear in the position. So every pixel counts as a small plane, which rays meet exactly, and no plane
+// hides itself. Cells of 4, 16 and 64 pixels hold bounds, so that rays skip empty space (Uludag 2014).
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
 const int MARCH_LEVELS = 3;
-const float MARCH_LIFT = 1e-4;     // rays start by so much of the depth before the surface
-const float MARCH_NUDGE = 1e-3;    // pixels: beyond a border by so much, the next cell begins
-const float MARCH_INSIDE = 2.0;    // pixels, from the edge of something
+const float MARCH_LIFT = 1e-4;     // rays start in front of the surface by this part of the depth
+const float MARCH_NUDGE = 1e-3;    // pixels: a step beyond a border, into the next cell
+const float MARCH_INSIDE = 2.0;    // pixels: how far a ray moves into an object after it met its edge
 const float MARCH_ENDLESS = 1e18;
 
 struct March {
     vec2 from, pace;   // start position in pixels, and its change with `at`
     float near, gain;  // start nearness, and its change with `at`
     float at, last, nudge;
-    vec3 plane;        // what the pixel holds that it comes from, or nothing, and
-    vec2 middle;       // the middle of that pixel
+    vec3 plane;        // the plane of the last pixel, or 0, and
+    vec2 middle;       // the center of that pixel
     int level;         // cells have 4^level pixels to a side
-    float gap;         // how far behind what is seen it passes
-    bool endless;      // true if it is infinitely far at `last`
-    float sure;        // 1 where it met what is seen, less the deeper it came into something from the side
+    float gap;         // the distance of the ray behind the visible surface
+    bool endless;      // true if it is infinitely far away at `last`
+    float sure;        // confidence: 1 if it met a visible surface, less the deeper it entered an object from the side
 };
 
 float march_near(March ray, float at) { return ray.near + ray.gain * at; }
@@ -36,7 +36,8 @@ float march_leaves(March ray, vec2 low, vec2 high) {
     return min(way.x, way.y);
 }
 
-// A ray from what lies so deep at `uv`, as long as `reach` world units, or endless. It starts with the next pixel.
+// A ray from the surface at `uv` and `depth`, with the length `reach` in world units, or endless. It starts at the next
+// pixel.
 March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, vec2 size) {
     vec3 moved = vec3(dot(rows[0].xyz, way), dot(rows[1].xyz, way), dot(rows[2].xyz, way));
     March ray;
@@ -62,7 +63,7 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     return ray;
 }
 
-// The cell that contains the ray's end.
+// The cell that contains the end of the ray.
 ivec2 march_cell(March ray, ivec2 size) {
     vec2 ahead = ray.from + ray.pace * (ray.at + ray.nudge);
     return ivec2(clamp(floor(ahead), vec2(0.0), vec2(size - 1))) >> (2 * ray.level);
@@ -70,7 +71,7 @@ ivec2 march_cell(March ray, ivec2 size) {
 
 ivec2 march_cells(ivec2 size, int level) { return (size + (1 << (2 * level)) - 1) >> (2 * level); }
 
-// Where the picture of all surfaces keeps a cell: pixels as they are, and below them the larger cells, side by side.
+// The place of a cell in the picture `surfaces`: pixels at the top, below them the larger cells side by side.
 ivec2 march_texel(ivec2 cell, ivec2 size, int level) {
     for (int i = 1; i < level; ++i) cell.x += march_cells(size, i).x;
     return level > 0 ? cell + ivec2(0, size.y) : cell;
@@ -78,8 +79,9 @@ ivec2 march_texel(ivec2 cell, ivec2 size, int level) {
 
 float march_gap(float near, float surface) { return max(1.0 / max(near, 1e-30) - 1.0 / max(surface, 1e-30), 0.0); }
 
-// One cell further. `seen` is what it holds: the nearness in the middle of a pixel and by how much that grows to the right
-// and down, or the most and the least of a larger cell. True where the ray ends on something.
+// Advances the ray by one cell. `seen` is the content of the cell: for a pixel the nearness at its center and the
+// slopes to the right and down, for a larger cell the largest and the smallest nearness. True where the ray meets a
+// surface.
 bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
     const float rounding = 1e-6;
     vec2 low = vec2(cell << (2 * ray.level)), high = low + float(1 << (2 * ray.level));
@@ -107,18 +109,19 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             return true;
         }
         if (ahead < least) {
-            // It came in from the side, or from behind something nearer, if what is seen is suddenly another surface: by
-            // more than that and the ray itself may change within a pixel.
+            // The ray is behind the surface. It came from the side, or from behind a nearer object, if the surface
+            // changed suddenly: by more than the surface and the ray can change within a pixel.
             float gap = march_gap(near_now, now), step = abs(ray.gain) * ray.nudge / MARCH_NUDGE;
             float crack = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x) + step / (near_now * near_now);
             ray.sure = clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
-            // Where two pixels are each behind the plane of the other, there is an edge that bulges. It hides nothing of
-            // what is on its way out: planes just go on too far.
+            // If each of two pixels lies behind the plane of the other, there is a convex edge. It does not hide a ray
+            // that leaves it: the planes only extend too far.
             vec2 away = middle - ray.middle;
             bool bulges = seen.x < ray.plane.x + dot(away, ray.plane.yz) && ray.plane.x < seen.x - dot(away, seen.yz);
             if (bulges && after > ahead && gap <= 2.0 * crack) ray.sure = 0.0;
             if ((ray.gap == 0.0 || ray.gap > gap + crack) && ray.sure > 0.0) {
-                // Well within it, if it is not just a crease: between pixels, colors of two surfaces would mix.
+                // Move inside the object, unless it is just a crease: at its border, interpolated colors would mix two
+                // surfaces.
                 if (gap > crack) ray.at = min(ray.at + MARCH_INSIDE / MARCH_NUDGE * ray.nudge, ray.last);
                 return true;
             }
@@ -131,7 +134,7 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
     return false;
 }
 
-// The three draws of the picture of all surfaces. The first reads `depth`.
+// The three draws that make the picture `surfaces`. This one reads `depth`.
 vec3 march_planes() {
     float here = nearness(depth_at(pixel));
     if (here == 0.0) return vec3(0.0);
@@ -141,14 +144,15 @@ vec3 march_planes() {
         vec2 one = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
         vec2 two = vec2(nearness(depth_at(pixel - 2 * next)), nearness(depth_at(pixel + 2 * next)));
         slope[axis] = nearness_slope(here, one, two);
-        // What bends as much as it slopes to both sides is an edge, or thinner than pixels: then it faces the eye.
+        // A surface that bends as much as it slopes on both sides is an edge, or thinner than a pixel: it counts as
+        // facing the camera.
         vec2 bend = mix(abs(two - 2.0 * one + here), abs(one - here), equal(two, vec2(0.0))) / here;
         slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
     }
     return here * vec3(1.0, slope);
 }
 
-// The most and the least of what planes are anywhere in 4 x 4 pixels; the background counts as 0.
+// The largest and smallest nearness of the planes in 4 x 4 pixels; the background counts as 0.
 vec3 march_bounds() {
     vec2 found = vec2(0.0, 1e30);
     for (int i = 0; i < 16; ++i) {
@@ -180,8 +184,8 @@ vec3 march_surfaces() {
     return vec3(found, 0.0);
 }
 
-// Follows a ray through the picture of all `surfaces`, at most so many steps. True where it meets one of them, and where
-// it gets away to infinity in a pixel that shows nothing: then it is `endless` still.
+// Follows a ray through the picture `surfaces`, in at most `steps` steps. True where it meets a surface, and where it
+// reaches infinity at a background pixel: then it is still `endless`.
 bool march(inout March ray, ivec2 size, float thickness, int steps) {
     ray.plane = surfaces_at(ivec2(ray.from));
     for (int i = 0; i < steps && ray.at < ray.last; ++i) {
@@ -196,13 +200,13 @@ bool march(inout March ray, ivec2 size, float thickness, int steps) {
     return surfaces_at(ivec2(clamp(march_place(ray), vec2(0.0), vec2(size - 1)))).x <= 0.0;
 }
 
-// The normal, towards the camera, of the plane of a pixel.
+// The normal of the plane of a pixel, toward the camera.
 vec3 march_normal(const vec4 rows[3], ivec2 at, ivec2 size) {
     vec3 plane = surfaces_at(at);
     return plane.x > 0.0 ? camera_normal(rows, camera_uv(at, size), plane.yz / plane.x * vec2(size)) : vec3(0.0);
 }
 
-// A direction that leaves the plane of a pixel: where normals are smoothed, rays would hide below it.
+// Bends a direction out of the plane of a pixel: with smoothed normals, rays could start below the surface.
 vec3 march_out(vec3 way, vec3 plane) {
     const float least = 2e-3;
     return normalize(way + max(least - dot(way, plane), 0.0) * plane);

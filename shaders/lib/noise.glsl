@@ -1,12 +1,12 @@
-// Lattice noises. Every cell is hashed once and gives three independent noises, each within -1..1.
+// Lattice noises. Each cell is hashed once and gives three independent noises, each within -1..1.
 #include "lib/hash.glsl"
 
-// Far out, where floats have no fractions left, the lattice ends instead of overflowing.
+// The lattice ends where floats have no fractions left, before integers overflow.
 ivec3 lattice_cell(vec3 p) { return ivec3(floor(clamp(p, -1e9, 1e9))); }
 
 vec3 white_noise(vec3 p, uvec3 seed) { return hash3(lattice_cell(p), seed) * 2.0 - 1.0; }
 
-// Smooth to the second derivative (Perlin 2002, "Improving Noise").
+// Interpolation with continuous second derivative (Perlin 2002, "Improving Noise").
 vec3 quintic(vec3 t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 
 vec3 value_noise(vec3 p, uvec3 seed) {
@@ -19,7 +19,7 @@ vec3 value_noise(vec3 p, uvec3 seed) {
     return mix(near, far, t.z) * 2.0 - 1.0;
 }
 
-// The dot product with one of Perlin's twelve cube edges (four appear twice), picked by the top four bits.
+// The dot product with one of Perlin's twelve edges of a cube (four appear twice), chosen by the top four bits.
 float edge_gradient(uint bits, vec3 d) {
     uint h = bits >> 28u;
     float u = h < 8u ? d.x : d.y;
@@ -27,7 +27,7 @@ float edge_gradient(uint bits, vec3 d) {
     return ((h & 1u) == 0u ? u : -u) + ((h & 2u) == 0u ? v : -v);
 }
 
-// Perlin 2002, scaled by the largest value that it can reach: zero at every lattice point.
+// Gradient noise (Perlin 2002), divided by its largest possible value. It is zero at every lattice point.
 vec3 gradient_noise(vec3 p, uvec3 seed) {
     ivec3 cell = lattice_cell(p);
     vec3 inside = fract(p), t = quintic(inside);
@@ -43,8 +43,9 @@ vec3 gradient_noise(vec3 p, uvec3 seed) {
     return mix(near, far, t.z) * 0.9649214;
 }
 
-// The corners of the tetrahedron around p and the ways from them to p. Skewed along the diagonal, a tetrahedron is a path
-// from one corner of a cube to the opposite one, along the axis that p is farthest on first (Gustavson and McEwan 2022).
+// The corners of the tetrahedron around p, and the vectors from them to p. In a lattice skewed along the diagonal, a
+// tetrahedron is a path from one corner of a cube to the opposite one, along the axes in the order in which p is
+// farthest (Gustavson and McEwan 2022).
 void simplex_corners(vec3 p, out ivec3 cells[4], out vec3 away[4]) {
     p += (p.x + p.y + p.z) / 3.0;
     vec3 inside = fract(p);
@@ -58,15 +59,14 @@ void simplex_corners(vec3 p, out ivec3 cells[4], out vec3 away[4]) {
     }
 }
 
-// What a corner still counts at a place, to the fourth root: nothing where the next tetrahedron begins, so that three
-// derivatives are continuous.
+// The fourth root of a corner's weight: 0 from the next tetrahedron on, so that three derivatives are continuous.
 float simplex_reach(vec3 away) { return max(0.5 - dot(away, away), 0.0); }
 
-const float SIMPLEX_SCALE = 76.88075;  // one over the largest value that it could reach otherwise
-const float SIMPLEX_DENSITY = 0.5;  // tetrahedra to a cell: makes features about as large as those of gradient noise
-const float SIMPLEX_STEEPEST = 3.44793;  // the longest slope that simplex_noise could have within a plane of two axes
+const float SIMPLEX_SCALE = 76.88075;  // 1 / the largest value of the unscaled sum
+const float SIMPLEX_DENSITY = 0.5;  // tetrahedra per cell: features become about as large as those of gradient noise
+const float SIMPLEX_STEEPEST = 3.44793;  // the steepest slope of simplex_noise within a plane of two axes
 
-// Perlin 2001, with the edges and the range of gradient noise.
+// Simplex noise (Perlin 2001), with the gradients and the range of gradient noise.
 vec3 simplex_noise(vec3 p, uvec3 seed) {
     ivec3 cells[4];
     vec3 away[4];
@@ -81,7 +81,7 @@ vec3 simplex_noise(vec3 p, uvec3 seed) {
     return sum * SIMPLEX_SCALE;
 }
 
-// The first of the three simplex noises in w, its slope in xyz.
+// The first of the three simplex noises in w, its gradient in xyz.
 vec4 simplex_slope(vec3 p, uvec3 seed) {
     ivec3 cells[4];
     vec3 away[4];

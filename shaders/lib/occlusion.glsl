@@ -1,24 +1,26 @@
-// What surfaces see of the half space before them. Places are relative to the eye, so that far scenes keep digits.
+// How much of the hemisphere above a surface is open. Positions are relative to the camera, so that distant scenes keep
+// precision.
 #include "lib/blue_noise.glsl"
 #include "lib/camera.glsl"
 #include "lib/geometry.glsl"
 
 const float OCCLUSION_PI = 3.14159265;
 const float OCCLUSION_GOLDEN = 0.61803399;
-const float OCCLUSION_NEXT = 1.3;  // pixels: what lies nearer is the pixel itself (XeGTAO)
+const float OCCLUSION_NEXT = 1.3;  // pixels: nearer samples would be the pixel itself (XeGTAO)
 
-// A point of a surface, and the unit vector from it to the eye.
+// A point on a surface, and the unit vector from it to the camera.
 struct Seen { vec3 place, normal, view; vec2 uv; };
 
-// The half plane that contains the view vector and `along`, a unit vector across it, together with its opposite half.
+// The plane that contains the view vector and `along`, a unit vector perpendicular to it.
 struct Slice {
     vec3 along;
-    vec2 pace;    // pixels to a world unit along it
-    float tilt;   // the angle from the view to the normal within the slice
-    float share;  // the length of the normal within the slice
+    vec2 pace;    // pixels per world unit along it
+    float tilt;   // angle from the view to the normal within the slice
+    float share;  // length of the normal within the slice
 };
 
-// A normal that faces the eye: shading normals may turn away at rims, and where there is none, the view stands in.
+// A surface point with a normal that faces the camera: interpolated normals may face away at rims. Without a normal,
+// the view vector is used.
 Seen seen_at(const vec4 rays[3], vec2 uv, float depth, vec3 normal) {
     vec3 ray = camera_ray(rays, uv), view = -normalize(ray);
     normal = unit_normal(normal);
@@ -38,13 +40,13 @@ Slice slice_at(const vec4 rows[3], const vec4 rays[3], Seen seen, vec2 size, flo
     return Slice(along, pace, dot(within, along) < 0.0 ? -acos(lift) : acos(lift), share);
 }
 
-// The distance of neighboring pixels on a surface that faces the eye.
+// The distance between neighboring pixels on a surface that faces the camera.
 float pixel_pitch(const vec4 rays[3], float depth, vec2 size) {
     return depth * length(vec3(rays[0].x, rays[1].x, rays[2].x)) / size.x;
 }
 
-// The place at a position within a pixel whose depth is known in its middle. If that lies on the tangent plane at
-// `here`, so does all of the pixel: without this, flat surfaces would hide themselves by the rounding of positions.
+// The position of a point within a pixel whose depth is known at its center. If the center lies on the tangent plane at
+// `here`, the whole pixel does: otherwise flat surfaces would occlude themselves by rounding of positions.
 vec3 place_beside(const vec4 rays[3], Seen here, ivec2 other, vec2 at, vec2 size, float depth) {
     vec3 middle = camera_ray(rays, (vec2(other) + 0.5) / size), ray = camera_ray(rays, at / size);
     float off = abs(dot(here.normal, depth * middle - here.place)) / pixel_pitch(rays, depth, size);
@@ -52,15 +54,15 @@ vec3 place_beside(const vec4 rays[3], Seen here, ivec2 other, vec2 at, vec2 size
     return depth * mix(middle, along, clamp(2.0 - off, 0.0, 1.0));
 }
 
-// How much light an even sky sends through a slice between the view and an angle `to`, by the cosine to the normal
-// (Jimenez et al. 2016): the integral of cos(t - tilt) |sin t|.
+// The light from a uniform sky through a slice between the view and the angle `to`, weighted by the cosine to the
+// normal (Jimenez et al. 2016): the integral of cos(t - tilt) |sin t|.
 float slice_light(float tilt, float to) { return 0.25 * (cos(tilt) + 2.0 * to * sin(tilt) - cos(2.0 * to - tilt)); }
 
-// All that an open half space sends through it.
+// The light of a whole open hemisphere through a slice.
 float slice_whole(float tilt) { return cos(tilt) + tilt * sin(tilt); }
 
-// The angle up to which `part` of the light between the view and `to` passes: as if it went by sin^2, and one step of
-// Newton's, which leaves 0.002 of it on average.
+// The angle up to which `part` of the light between the view and `to` passes: an approximation by sin^2, then one step
+// of Newton's method. The mean error is 0.002 of the light.
 float slice_reach(float tilt, float to, float part) {
     float end = abs(to), lean = to < 0.0 ? -tilt : tilt, stretch = 1.0 + lean / (0.5 * OCCLUSION_PI);
     if (end < 1e-4) return 0.0;
@@ -70,8 +72,8 @@ float slice_reach(float tilt, float to, float part) {
     return to < 0.0 ? -angle : angle;
 }
 
-// The sum of the directions, along the slice and along the view, of that light between the view and an angle: the
-// integral of (sin t, cos t) cos(t - tilt) |sin t|.
+// The sum of the directions of that light, along the slice and along the view: the integral of (sin t, cos t) cos(t -
+// tilt) |sin t|.
 vec2 slice_direction(float tilt, float to) {
     return vec2(
         6.0 * sin(to - tilt) - sin(3.0 * to - tilt) - 3.0 * sin(to + tilt) + 8.0 * sin(tilt),
@@ -79,8 +81,9 @@ vec2 slice_direction(float tilt, float to) {
     ) / 12.0;
 }
 
-// Two numbers in 0..1 for the turn and the start of the steps of a pixel. `matched`: of every 4 x 4 pixels, each has
-// another point of a lattice (Korobov 1959), and those of a row lie evenly, for an average over just as many.
+// Two random numbers in 0..1 for the rotation and the start of the steps at a pixel. With `matched`, the 16 pixels of
+// every 4 x 4 have the points of a lattice (Korobov 1959), with rows evenly distributed, for an average over 4 x 4
+// pixels.
 vec2 occlusion_noise(ivec2 at, bool matched) {
     vec2 random = vec2(blue_noise(at), blue_noise(at + ivec2(48, 36)));
     if (!matched) return random;
@@ -88,7 +91,8 @@ vec2 occlusion_noise(ivec2 at, bool matched) {
     return (vec2(index, (7 * index) & 15) + random) / 16.0;
 }
 
-// How surely two pixels show the same surface: alike in turn, and on each other's tangent planes, in units of `apart`.
+// The weight by which two pixels show the same surface: similar normals, and each on the other's tangent plane within
+// `apart`.
 float same_surface(vec3 normal, vec3 other, vec3 way, float apart) {
     float off = max(abs(dot(way, normal)), abs(dot(way, other))) / apart;
     return clamp(2.0 - off, 0.0, 1.0) * clamp(3.0 * dot(normal, other) - 1.5, 0.0, 1.0);

@@ -1,5 +1,5 @@
-// OKLab (Ottosson 2020): lightness, then how red and how yellow, as even as the eye sees it. Scaling light by k scales
-// all three by the cube root of k, so premultiplied color may be turned and saturated as it is.
+// OKLab (Ottosson 2020): lightness, red-green and yellow-blue, perceptually uniform. Light times k is all three times
+// the cube root of k, so premultiplied color can be rotated and saturated directly.
 #include "lib/working.glsl"
 
 float signed_cbrt(float x) { return sign(x) * pow(abs(x), 1.0 / 3.0); }

@@ -1,8 +1,8 @@
-// Filters for resampling, by distance in pixels. None is normalized: divide by the sum of the weights that were used.
+// Filters for resampling, by distance in pixels. They are not normalized: divide by the sum of the weights.
 
 float triangle_weight(float x) { return max(1.0 - abs(x), 0.0); }
 
-// The cubics of Mitchell and Netravali (1988): B 0, C 1/2 is Catmull-Rom, B and C 1/3 theirs.
+// The cubic filters of Mitchell and Netravali (1988): B 0 and C 1/2 is Catmull-Rom, B and C 1/3 is Mitchell's.
 float cubic_weight(float x, float b, float c) {
     x = abs(x);
     if (x >= 2.0) return 0.0;
@@ -12,7 +12,7 @@ float cubic_weight(float x, float b, float c) {
     return dot(powers, x < 1.0 ? near : far) / 6.0;
 }
 
-// A sinc under the middle lobe of a wider one (Lanczos; Duchon 1979).
+// A sinc windowed by the main lobe of a wider sinc (Lanczos; Duchon 1979).
 float lanczos_weight(float x, float lobes) {
     const float pi = 3.14159265;
     if (abs(x) >= lobes) return 0.0;

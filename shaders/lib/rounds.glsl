@@ -1,3 +1,3 @@
-// How many rounds the loops of a user's code have made for this pixel: those that might not end are left at some point.
+// Counts the rounds of loops in a user's code for this pixel: a loop that may not end stops at a limit.
 
 int halation_rounds = 0;

@@ -1,4 +1,5 @@
-// The picture `image` at a fraction of its size and back, for pictures so soft that fewer pixels are enough.
+// Reduces the picture `image` to a fraction of its size and enlarges it again, for pictures so soft that fewer pixels
+// are enough.
 
 // The mean of the pixels that one smaller pixel covers.
 vec4 shrunk(int factor) {

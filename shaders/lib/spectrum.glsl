@@ -1,7 +1,8 @@
-// Light of many wavelengths for three primaries: tents that overlap. Divide sums by the sum of the responses.
+// Light of many wavelengths as three primaries. Divide sums by the sum of the responses.
 #include "lib/working.glsl"
 
-// What red, green and blue see at a place in the spectrum from -1, red light, to 1, blue light; alpha sees all alike.
+// The response of red, green and blue to a place in the spectrum, from -1 (red) to 1 (blue): overlapping tents. Alpha
+// responds equally to all.
 vec4 spectrum_response(float place) { return vec4(max(-place, 0.0), 1.0 - abs(place), max(place, 0.0), 1.0); }
 
 float spectrum_lobe(float nm, float middle, float below, float above) {
@@ -9,8 +10,8 @@ float spectrum_lobe(float nm, float middle, float below, float above) {
     return exp(-0.5 * t * t);
 }
 
-// The color that light of one wavelength has for the CIE 1931 observer (fits by Wyman, Sloan and Shirley 2013), cut
-// off where Rec.709 primaries cannot show it. Divide sums by the sum over 400 to 700 nm for white light.
+// The color of light of one wavelength for the CIE 1931 observer (fits by Wyman, Sloan and Shirley 2013), clipped to
+// Rec.709. For white light, divide by the sum over 400 to 700 nm.
 vec3 spectrum_color(float nm) {
     vec3 xyz = vec3(
         1.056 * spectrum_lobe(nm, 599.8, 37.9, 31.0) + 0.362 * spectrum_lobe(nm, 442.0, 16.0, 26.7)

@@ -1,5 +1,5 @@
-// Division of whole numbers with a result for every pair: by 0 it is 0. Nothing is ever divided by 0 or -1, since
-// a driver that divides the smallest int by -1 while it compiles ends the process. Floats are divided as always.
+// Integer division with a result for every pair: division by 0 is 0. The divisor is never 0 or -1, since a driver that
+// divides the smallest int by -1 while it compiles ends the process. Floats are divided as usual.
 
 int halation_quotient(int a, int b) { return b == 0 ? 0 : b == -1 ? -a : a / (b == 0 || b == -1 ? 1 : b); }
 int halation_remainder(int a, int b) { return a % (b == 0 || b == -1 ? 1 : b); }

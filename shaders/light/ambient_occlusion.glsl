@@ -3,8 +3,8 @@
 #include "lib/finite.glsl"
 #include "lib/occlusion.glsl"
 
-// Pictures of one `factor`-th of the size hold every such pixel: pixel p of theirs is pixel p * factor of depth. They
-// hold the mean direction of open sky, which is shorter the more it is spread, and in w how much of it is open.
+// Smaller pictures hold every `factor`-th pixel: their pixel p is pixel p * factor of depth. Their xyz is the mean
+// direction of open sky, which is shorter the wider the sky is spread; w is the open part.
 const vec4 AMBIENT_OCCLUSION_OPEN = vec4(0.0, 0.0, 0.0, 1.0);
 
 vec3 ambient_occlusion_normal(const vec4 rows[3]) {
@@ -24,7 +24,8 @@ Seen ambient_occlusion_seen(const vec4 rays[3], ivec2 at) {
     return seen_at(rays, camera_uv(at, depth_size), depth_at(at), normal_at(at));
 }
 
-// Slices through the view, each with a horizon to either side; `mode` says what is made of what rises above them.
+// Horizon-based methods: slices through the view vector, each with a horizon on both sides. `mode` is the formula: GTAO
+// (Jimenez et al. 2016), HBAO (Bavoil and Sainz 2008), or visibility bitmasks (Therrien et al. 2023).
 vec4 ambient_occlusion_horizons(
     int mode, const vec4 rows[3], const vec4 rays[3], int factor, int slices, int steps, float radius, float falloff,
     float thickness, bool matched
@@ -39,7 +40,7 @@ vec4 ambient_occlusion_horizons(
         Slice slice = slice_at(rows, rays, here, vec2(depth_size), OCCLUSION_PI * (float(s) + noise.x) / float(slices));
         vec2 next = OCCLUSION_NEXT * normalize(slice.pace);
         float tilt = slice.tilt, all = slice.share * slice_whole(tilt);
-        // Horizons are cosines to the view, ahead along the slice and behind: at first those of the surface itself.
+        // Horizons are cosines to the view, ahead along the slice and behind. They start at the surface itself.
         vec2 surface = cos(tilt + vec2(0.5, -0.5) * OCCLUSION_PI), horizon = surface, lost = vec2(0.0);
         float first = -slice_light(tilt, tilt - 0.5 * OCCLUSION_PI);
         uint sectors = 0u;
@@ -61,7 +62,7 @@ vec4 ambient_occlusion_horizons(
                     lost[side] += weight * (rise - horizon[side]);
                     horizon[side] = rise;
                 } else {
-                    // From the front to the back of what is there, in 32 sectors of as much light each.
+                    // The angles from the front to the back of the sample, in 32 sectors with equal light.
                     vec3 back = way - thickness * here.view;
                     vec2 ends = acos(clamp(vec2(rise, dot(back, here.view) / length(back)), -1.0, 1.0));
                     ends = side == 0 ? ends : -ends.yx;
@@ -101,13 +102,14 @@ vec4 ambient_occlusion_horizons(
     return finite(vec4(bent / whole, open / whole));
 }
 
-// Points in the ball around a place, in the half of it before the surface, or on a disc across the view.
+// Point-based methods: points in a ball around the surface (Crytek 2007), in the hemisphere above it, or on a disc
+// across the view (Alchemy, McGuire et al. 2011).
 vec4 ambient_occlusion_points(
     int mode, const vec4 rows[3], const vec4 rays[3], int factor, int points, float radius, float thickness,
     bool matched
 ) {
     const float second = 0.75487767;  // of the R2 sequence (Roberts 2018)
-    const float bias = 1e-4, least = 1e-2;  // alchemy's beta and epsilon, the latter in square radii
+    const float bias = 1e-4, least = 1e-2;  // Alchemy's beta and epsilon, the latter in squared radii
     ivec2 at = pixel * factor;
     if (!is_surface(depth_at(at))) return AMBIENT_OCCLUSION_OPEN;
     Seen here = ambient_occlusion_seen(rays, at);
@@ -129,7 +131,7 @@ vec4 ambient_occlusion_points(
         ivec2 other = ivec2(floor(clamp(uv, -1.0, 2.0) * vec2(depth_size)));
         whole += 1.0;
         if (deep <= 0.0 || ambient_occlusion_outside(other, depth_size)) {
-            // Outside of the picture, the surface goes on as it is.
+            // Outside of the picture, the surface is assumed to continue.
             if (mode == MODE_HEMISPHERE || mode == MODE_CRYTEK && lift > 0.0) open += 1.0, bent += way;
             continue;
         }
@@ -147,20 +149,20 @@ vec4 ambient_occlusion_points(
         }
         vec3 front = place_beside(rays, here, other, uv * vec2(depth_size), vec2(depth_size), depth);
         float behind = deep * (1.0 - 1e-5) - dot(rows[2].xyz, front);
-        // What lies within the surface itself is blocked however thin it is.
+        // A point below the surface is always blocked, however thin the surface is.
         float reach = lift < 0.0 ? 1.0 : clamp(2.0 - behind / max(thickness, 1e-9), 0.0, 1.0);
         float blocked = is_surface(depth) && behind > 0.0 ? reach : 0.0;
         open += 1.0 - blocked;
         bent += (1.0 - blocked) * way;
     }
     if (mode == MODE_ALCHEMY) open += whole, bent += whole * here.normal;
-    // The back half of a ball lies behind an open surface.
+    // Half of the ball is below an open surface, so the open points count twice.
     if (mode == MODE_CRYTEK) open *= 2.0, bent *= 2.0;
     return finite(vec4(bent, open) / whole);
 }
 
-// Means over 4 x 4 pixels (in 5 x 5, as the outermost count half) of the same surface: all of the pattern of noise.
-// Lone pixels, such as those of rims with the normals of two surfaces, are led by what is near them.
+// The mean over 4 x 4 pixels of the same surface, which is one period of the noise (5 x 5 pixels, the outermost with
+// half weight). Pixels without partners, such as rims with mixed normals, take the values of pixels nearby.
 vec4 ambient_occlusion_denoise(const vec4 rays[3], int factor) {
     const float enough = 4.0;
     ivec2 at = pixel * factor;
@@ -185,9 +187,10 @@ vec4 ambient_occlusion_denoise(const vec4 rays[3], int factor) {
     return finite((sum + lone * sum_near) / (total + lone * total_near));
 }
 
-// Between the pixels of the smaller picture, those of the same surface (Kopf et al. 2007); `lone` where there is none.
+// Interpolates the smaller picture, only from pixels of the same surface (Kopf et al. 2007); `lone` where there is
+// none.
 vec4 ambient_occlusion_between(const vec4 rays[3], int factor, vec4 lone) {
-    const float others = 1e-4;  // what pixels of other surfaces count, for want of any
+    const float others = 1e-4;  // weight of pixels of other surfaces, if there are no others
     float depth = depth_at(pixel), total = 0.0;
     if (!is_surface(depth)) return AMBIENT_OCCLUSION_OPEN;
     vec3 place = ambient_occlusion_place(rays, pixel), normal = normal_at(pixel);
@@ -219,7 +222,7 @@ vec3 ambient_occlusion_bent(vec4 open) {
     return size > 1e-6 ? open.xyz / size : vec3(0.0);
 }
 
-// With light that bounces on, which brightens the more the lighter the surfaces are (fit of Jimenez et al. 2016).
+// Adds light that bounces between surfaces, more for lighter surfaces (fit of Jimenez et al. 2016).
 vec4 ambient_occlusion(vec4 open, vec4 albedo, float power, bool multi_bounce) {
     float once = ambient_occlusion_value(open, power);
     if (!multi_bounce) return vec4(vec3(once), 1.0);

@@ -10,7 +10,8 @@ vec3 contact_shadows_normal(const vec4 rows[3], ivec2 at) {
     return is_finite(normal) && !is_mixed(normal) ? unit_normal(normal) : march_normal(rows, at, extent);
 }
 
-// The part of a light that a pixel sees. `to` is the way to a sun, the place of a lamp; `spread` is how wide it is.
+// The part of a light that a pixel sees. `to` is the direction to a sun, or the position of a lamp; `spread` is its
+// size, as the tangent of its angular radius.
 float contact_shadows_open(
     const vec4 rows[3], const vec4 rays[3], int light, vec3 to, float reach, float spread, float thickness, int count
 ) {
@@ -25,21 +26,21 @@ float contact_shadows_open(
     }
     if (dot(normal, to) <= 0.0) return 1.0;
     vec3 across = normalize(cross(to, abs(to.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
-    const vec2 lattice = vec2(0.75487767, 0.56984029);  // Roberts 2018
+    const vec2 lattice = vec2(0.75487767, 0.56984029);  // R2 sequence (Roberts 2018)
     vec2 noise = occlusion_noise(pixel, true);
     for (int i = 0; i < count; ++i) {
         vec2 random = fract(noise + float(i) * lattice);
         float turn = 2.0 * OCCLUSION_PI * random.x, away = spread * sqrt(random.y);
         vec3 way = normalize(to + away * (cos(turn) * across + sin(turn) * cross(to, across)));
         March ray = march_start(rows, uv, 1.0 / near, march_out(way, plane), reach, false, size);
-        // What is met at the far end of the way fades out, so that no shadow ends abruptly.
+        // Hits near the far end fade out, so that no shadow ends abruptly.
         bool met = march(ray, extent, thickness, 512);
         open += met ? 1.0 - ray.sure * clamp(3.0 - 3.0 * march_distance(ray) / reach, 0.0, 1.0) : 1.0;
     }
     return finite(open / float(count));
 }
 
-// Means over 4 x 4 pixels of the same surface: all of the pattern of noise.
+// The mean over 4 x 4 pixels of the same surface, which is one period of the noise.
 float contact_shadows_denoise(const vec4 rows[3], const vec4 rays[3]) {
     float depth = 1.0 / surfaces_at(pixel).x, sum = 0.0, total = 0.0;
     if (surfaces_at(pixel).x <= 0.0) return 1.0;

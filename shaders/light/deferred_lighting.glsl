@@ -5,17 +5,17 @@
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
 
-const int DEFERRED_LIGHTING_TILE = 16;            // pixels across
-const int DEFERRED_LIGHTING_BITS = 24;            // lights to a channel: as many as a float holds exactly
+const int DEFERRED_LIGHTING_TILE = 16;            // pixels along each side
+const int DEFERRED_LIGHTING_BITS = 24;            // lights per channel: the bits that a float holds exactly
 const float DEFERRED_LIGHTING_EVERYWHERE = 1e18;  // larger than every coordinate
-const float DEFERRED_LIGHTING_SMOOTH = 0.0016;    // the least alpha: highlights of lights without size stay finite
+const float DEFERRED_LIGHTING_SMOOTH = 0.0016;    // least alpha: keeps highlights of point lights finite
 
 struct LitSurface {
     vec3 place, normal, view, mirror, f0;
     float nv, alpha;
 };
 
-// The position in the world, and in w whether there is a surface.
+// The position in the world; w is 1 on surfaces, 0 on the background.
 vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool placed) {
     vec3 place = placed ? position : camera_place(rays, camera_uv(pixel, extent), depth);
     bool there = is_finite(place) && all(lessThan(abs(place), vec3(GEOMETRY_FAR)));
@@ -26,7 +26,7 @@ vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(row
 
 // --- tiles ---------------------------------------------------------------------------------------------------------
 
-// The corner of the box around all places of a tile that is lowest along every axis; with a side of -1, the highest.
+// The corner of a tile's bounding box with the lowest coordinates; with a `side` of -1, that with the highest.
 vec4 deferred_lighting_corner(float side) {
     vec3 least = vec3(DEFERRED_LIGHTING_EVERYWHERE);
     for (int y = 0; y < DEFERRED_LIGHTING_TILE; ++y)
@@ -37,7 +37,7 @@ vec4 deferred_lighting_corner(float side) {
     return vec4(side * least, 0.0);
 }
 
-// Which lights can reach a tile: bit b of channel c of the tile's texel k stands for light 24 (4 k + c) + b.
+// The lights that can reach a tile: bit b of channel c of the tile's texel k stands for light 24 (4 k + c) + b.
 vec4 deferred_lighting_tile(int count, int texels) {
     ivec2 tile = ivec2(pixel.x / texels, pixel.y);
     vec3 low = low_at(tile).xyz, high = high_at(tile).xyz;
@@ -58,7 +58,8 @@ vec4 deferred_lighting_tile(int count, int texels) {
 
 // --- light ---------------------------------------------------------------------------------------------------------
 
-// Add one light: what falls on the surface, and what it mirrors to the eye. A sun is a point one unit away.
+// Adds one light: the light that falls on the surface, and the light that it reflects to the camera. A sun is a point
+// at distance 1.
 void deferred_lighting_add(int model, int light, LitSurface at, inout vec3 fallen, inout vec3 mirrored) {
     vec4 origin = lights_at(ivec2(0, light)), glow = lights_at(ivec2(1, light));
     float size = max(glow.w, 0.0);
@@ -72,13 +73,14 @@ void deferred_lighting_add(int model, int light, LitSurface at, inout vec3 falle
     vec3 power = glow.rgb * (window * window * spot * spot / square);
     fallen += power * ball_cosine(dot(at.normal, l), min(ball, 0.999999));
 
-    if (size > 0.0) {  // the point of the ball nearest to the mirrored way to the eye (Karis 2013)
+    if (size > 0.0) {  // the point of the sphere nearest to the mirrored view (Karis 2013)
         vec3 off = dot(l, at.mirror) * at.mirror - l;
         l = normalize(l + off * min(1.0, sqrt(ball) / max(length(off), 1e-9)));
     }
     float nl = dot(at.normal, l);
     if (nl <= 0.0) return;
-    // The highlight widens as variances add up, and pales by as much: what a mirror shows is as bright as the ball.
+    // The highlight of a sphere is wider: the variances add. Its brightness falls by the same factor, so that a mirror
+    // shows the sphere as bright as it is.
     float square_alpha = at.alpha * at.alpha;
     if (model == MODEL_PHONG) {
         float paled = square_alpha / (square_alpha + 0.25 * ball * nl);
@@ -91,7 +93,7 @@ void deferred_lighting_add(int model, int light, LitSurface at, inout vec3 falle
     }
 }
 
-// Every light that the words of a tile name, in order.
+// Adds all lights of a tile, in order.
 void deferred_lighting_sum(
     int model, int texels, ivec2 tile, LitSurface at, inout vec3 fallen, inout vec3 mirrored
 ) {
@@ -103,7 +105,7 @@ void deferred_lighting_sum(
     }
 }
 
-// `share` is how much of the light that surfaces scatter and of the light that they mirror is wanted.
+// `share` scales diffuse (x) and specular light (y).
 vec4 deferred_lighting_lit(
     int model, int texels, bool tiled, vec2 share, bool mapped, float metal, float roughness, float specular,
     vec3 ambient, bool seen, vec3 eye

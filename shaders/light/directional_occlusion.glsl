@@ -5,8 +5,8 @@
 #include "lib/finite.glsl"
 #include "lib/occlusion.glsl"
 
-const int DIRECTIONAL_OCCLUSION_PARTS = 4;  // of what is hidden to either side of a slice, each with a color of its own
-const float DIRECTIONAL_OCCLUSION_BRIGHTEST = 65504.0;  // more would overflow in sums
+const int DIRECTIONAL_OCCLUSION_PARTS = 4;  // parts of the hidden light on each side of a slice
+const float DIRECTIONAL_OCCLUSION_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
 
 vec3 directional_occlusion_normal(const vec4 rows[3]) { return ambient_occlusion_normal(rows); }
 
@@ -18,8 +18,8 @@ vec3 directional_occlusion_from(vec3 way, int up, float rotation) {
     return image_based_light_in_sky(environment_uv(way, up == UP_Y, rotation));
 }
 
-// The sky behind what rises from the surface, at angle `end`, up to a horizon that so much light passes: from as many
-// directions, each for as much light.
+// The sky light that is hidden on one side of a slice, from the horizon, which lets `passes` of the light through, to
+// the surface at angle `end`: from several directions, each for an equal part of the light.
 vec3 directional_occlusion_hidden(
     Seen here, Slice slice, float end, float passes, float start, int up, float rotation
 ) {
@@ -34,7 +34,7 @@ vec3 directional_occlusion_hidden(
     return sum * hidden / float(DIRECTIONAL_OCCLUSION_PARTS);
 }
 
-// Of the light over pi, what a white surface gets from its neighbors, less the sky that they hide.
+// The light divided by pi that a white surface gets from its neighbors, minus the sky light that they hide.
 vec4 directional_occlusion_seen(
     const vec4 rows[3], const vec4 rays[3], int factor, int slices, int steps, float radius, float falloff,
     float intensity, float bounce, float rotation, int up, bool matched
@@ -66,7 +66,7 @@ vec4 directional_occlusion_seen(
                 horizon[side] = rise;
                 float angle = acos(clamp(rise, -1.0, 1.0));
                 float left = slice_light(slice.tilt, side == 0 ? angle : -angle);
-                // What rises is what is seen, and shines if it faces this way.
+                // A sample above the horizon is visible. It emits light if it faces this surface.
                 if (dot(normal_at(other), ambient_occlusion_place(rays, other) - here.place) < 0.0)
                     bounced += (passes[side] - left) * clamp(image_at(other).rgb, 0.0, DIRECTIONAL_OCCLUSION_BRIGHTEST);
                 passes[side] = left;

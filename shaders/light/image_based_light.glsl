@@ -5,11 +5,11 @@
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
 
-const float IMAGE_BASED_LIGHT_BRIGHTEST = 65504.0;  // more would overflow in sums
-const int IMAGE_BASED_LIGHT_SAMPLES = 128;  // of a lobe
-const int IMAGE_BASED_LIGHT_FACETS = 1024;  // of the table of what they mirror
+const float IMAGE_BASED_LIGHT_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
+const int IMAGE_BASED_LIGHT_SAMPLES = 128;  // samples of a reflection lobe
+const int IMAGE_BASED_LIGHT_FACETS = 1024;  // samples for each entry of the reflection table
 
-// Means over all that a pixel covers of a larger picture, by solid angle.
+// Reduces the environment: means over all pixels that one smaller pixel covers, weighted by solid angle.
 vec4 image_based_light_sky() {
     ivec2 first = pixel * environment_size / extent, end = max((pixel + 1) * environment_size / extent, first + 1);
     vec4 sum = vec4(0.0);
@@ -38,7 +38,7 @@ vec4 image_based_light_irradiance() {
     return sum / sum.a;
 }
 
-// Light from a direction. Pictures cannot be handed to functions, so each has one of its own.
+// Light from a direction. GLSL cannot pass pictures to functions, so each picture has its own function.
 vec3 image_based_light_in_sky(vec2 uv) {
     Corners c = environment_corners(uv, sky_size);
     return (mat4(sky_at(c.at[0]), sky_at(c.at[1]), sky_at(c.at[2]), sky_at(c.at[3])) * c.weight).rgb;
@@ -64,7 +64,7 @@ vec3 image_based_light_in_level4(vec2 uv) {
     return (mat4(level4_at(c.at[0]), level4_at(c.at[1]), level4_at(c.at[2]), level4_at(c.at[3])) * c.weight).rgb;
 }
 
-// Between two of five pictures of the sky, each coarser than the one before.
+// Interpolates between two of five pictures of the sky, each blurrier than the one before.
 vec3 image_based_light_level(vec2 uv, float level) {
     float part = fract(level);
     if (level < 1.0) return mix(image_based_light_in_level0(uv), image_based_light_in_level1(uv), part);
@@ -74,7 +74,7 @@ vec3 image_based_light_level(vec2 uv, float level) {
     return image_based_light_in_level4(uv);
 }
 
-// The i-th of facets that are spread around z as GGX says (Walter et al. 2007).
+// The i-th microfacet around z, distributed by GGX (Walter et al. 2007).
 vec3 image_based_light_facet(int i, int count, float alpha) {
     float part = (float(i) + 0.5) / float(count);
     float turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
@@ -82,8 +82,8 @@ vec3 image_based_light_facet(int i, int count, float alpha) {
     return vec3(sqrt(1.0 - lift * lift) * vec2(cos(turn), sin(turn)), lift);
 }
 
-// The mean of the sky that a rough surface reflects which is seen head on, by the GGX distribution of its facets. The
-// fewer samples, the coarser the sky that they read (Krivanek and Colbert 2008): levels halve it.
+// The mean of the sky that a rough surface reflects when seen straight on, by the GGX distribution. Fewer samples read
+// a coarser sky (Krivanek and Colbert 2008); each level has half the size.
 vec4 image_based_light_lobe(float roughness) {
     vec3 normal = environment_way((vec2(pixel) + 0.5) / vec2(extent), false, 0.0);
     vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
@@ -102,7 +102,7 @@ vec4 image_based_light_lobe(float roughness) {
     return vec4(sum / total, 1.0);
 }
 
-// Where it lies in a picture of the sky that was made with z up and without a turn.
+// The place of a direction in a picture of the sky made with z up and without rotation.
 vec2 image_based_light_uv(vec3 way, int up, float rotation) { return environment_uv(way, up == UP_Y, rotation); }
 
 vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
@@ -113,7 +113,7 @@ vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
     return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * color * light, 1.0));
 }
 
-// The i-th of facets that are spread as a `view` across x sees them (Heitz 2018).
+// The i-th visible microfacet for a `view` in the xz plane (Heitz 2018).
 vec3 image_based_light_seen(int i, int count, vec3 view, float alpha) {
     float part = (float(i) + 0.5) / float(count), turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
     vec3 stretched = normalize(vec3(alpha * view.x, 0.0, view.z)), across = vec3(0.0, 1.0, 0.0);
@@ -124,8 +124,8 @@ vec3 image_based_light_seen(int i, int count, vec3 view, float alpha) {
     return normalize(vec3(alpha * facet.xy, max(facet.z, 0.0)));
 }
 
-// How much facets mirror of an even sky: scale and bias of the color that they have head on, by how much the surface faces
-// the eye, across, and its roughness, down (the second half of the split sum).
+// The reflection of a uniform sky, as scale and bias of the color that facets have straight on: the second half of the
+// split sum (Karis 2013). x is the cosine to the camera, y the roughness.
 vec2 image_based_light_shares() {
     vec2 at = max(vec2(pixel) / vec2(extent - 1), 1e-3);
     vec3 view = vec3(sqrt(1.0 - at.x * at.x), 0.0, at.x);
@@ -135,7 +135,7 @@ vec2 image_based_light_shares() {
         vec3 facet = image_based_light_seen(i, IMAGE_BASED_LIGHT_FACETS, view, alpha);
         float seen = dot(view, facet), lit = 2.0 * seen * facet.z - view.z;
         if (seen <= 0.0 || lit <= 0.0) continue;
-        float part = 2.0 * lit * (at.x + along) * ggx_visible(at.x, lit, alpha);  // of what is seen, that is lit
+        float part = 2.0 * lit * (at.x + along) * ggx_visible(at.x, lit, alpha);  // the lit part of the visible part
         sum += part * mix(vec2(1.0, 0.0), vec2(0.0, 1.0), fresnel(vec3(0.0), seen).x);
     }
     return sum / float(IMAGE_BASED_LIGHT_FACETS);

@@ -6,24 +6,25 @@ vec3 light_shafts_planes() { return march_planes(); }
 vec3 light_shafts_bounds() { return march_bounds(); }
 vec3 light_shafts_surfaces() { return march_surfaces(); }
 
-// Henyey and Greenstein's, 1 where haze scatters alike to all sides. Light goes on straight at a cosine of 1.
+// The phase function of Henyey and Greenstein (1941), 1 for isotropic haze. At a cosine of 1 light continues straight
+// ahead.
 float light_shafts_phase(float cosine, float ahead) {
     return (1.0 - ahead * ahead) * pow(1.0 + ahead * ahead - 2.0 * ahead * cosine, -1.5);
 }
 
-// The part of the light that gets to a place on the way to this pixel; `way` is from there to the light.
+// The part of the light that reaches a point on the ray of this pixel. `way` is the direction from there to the light.
 float light_shafts_open(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, float thickness) {
     March ray = march_start(rows, uv, depth, way, reach, endless, vec2(extent));
-    ray.at = 0.0;  // it starts in the air: what this pixel shows may be in its way
+    ray.at = 0.0;  // the ray starts in the air: this pixel's surface may block it
     return march(ray, extent, thickness, 256) && !ray.endless ? 1.0 - ray.sure : 1.0;
 }
 
-// Light that is scattered once on its way, of a light of 1. `to` is the way to a sun, the place of a lamp.
+// Single scattering of a light of intensity 1. `to` is the direction to a sun, or the position of a lamp.
 float light_shafts_haze(
     const vec4 rows[3], const vec4 rays[3], int light, vec3 to, vec2 source, float density, float ahead, float longest,
     float thickness, int count
 ) {
-    const float least = 0.02;  // a lamp is so large, for ways that lead right through it
+    const float least = 0.02;  // least radius of a lamp, for rays through its center
     vec2 uv = camera_uv(pixel, extent);
     vec3 ray = camera_ray(rays, uv), eye = camera_eye(rays);
     float stretch = length(ray), near = surfaces_at(pixel).x, end = longest;
@@ -33,7 +34,7 @@ float light_shafts_haze(
     float noise = occlusion_noise(pixel, true).x, sum = 0.0;
 
     if (light != LIGHT_LAMP) {
-        // As many places wherever as much light is scattered.
+        // Samples are distributed by the light that is scattered there.
         float lost = 1.0 - exp(-density * end);
         for (int i = 0; i < count; ++i) {
             float part = (float(i) + noise) / float(count);
@@ -56,7 +57,7 @@ float light_shafts_haze(
     return finite(sum / float(count) * density * (angle.y - angle.x) / side);
 }
 
-// Means over 4 x 4 pixels, all of the pattern of noise, of what is about as far away: haze has no other edges.
+// The mean over 4 x 4 pixels, one period of the noise, of pixels at a similar depth: haze has no other edges.
 float light_shafts_denoise() {
     float here = surfaces_at(pixel).x, sum = 0.0, total = 0.0;
     for (int y = -2; y <= 2; ++y)

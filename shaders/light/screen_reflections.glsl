@@ -3,19 +3,19 @@
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
 
-const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX is a mirror
-const float SCREEN_REFLECTIONS_LAMP = 3.0;    // times the mean of its neighbors, what a pixel may be
+const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
+const float SCREEN_REFLECTIONS_LAMP = 3.0;    // most light of a pixel, as a multiple of its neighbors' mean
 
 vec3 screen_reflections_planes() { return march_planes(); }
 vec3 screen_reflections_bounds() { return march_bounds(); }
 vec3 screen_reflections_surfaces() { return march_surfaces(); }
 
-// Of length 1 and towards the camera, and 0 where nothing is.
+// The unit normal, facing the camera; 0 on the background.
 vec3 screen_reflections_normal(const vec4 rows[3], const vec4 rays[3]) {
     float near = surfaces_at(pixel).x;
     if (near <= 0.0) return vec3(0.0);
     vec3 normal = unit_normal(normal_at(pixel));
-    // The mean of several normals may look anywhere.
+    // The mean of several surfaces' normals is unreliable.
     if (is_mixed(normal_at(pixel))) normal = march_normal(rows, pixel, extent);
     return finite(seen_at(rays, camera_uv(pixel, extent), 1.0 / near, normal).normal);
 }
@@ -24,7 +24,7 @@ float screen_reflections_roughness(vec2 material, bool linked, float roughness) 
     return clamp(linked ? finite(material).y : roughness, 0.0, 1.0);
 }
 
-// What a ray from this pixel meets: the position in the picture, the distance in the world, and the confidence.
+// The result of a ray: the position that it meets in the picture, the distance in the world, and the confidence.
 vec4 screen_reflections_ray(
     const vec4 rows[3], vec3 way, vec3 plane, float thickness, float longest, float fade, float border, bool sky,
     int steps
@@ -54,12 +54,12 @@ vec4 screen_reflections_mirror(
     return screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
 }
 
-// The light of the surface that a ray met, times its confidence.
+// The light of the surface that a ray met, times the confidence.
 vec4 screen_reflections_met(vec4 found) { return found.w > 0.0 ? found.w * finite(image_near(found.xy)) : vec4(0.0); }
 
 vec4 screen_reflections_sharp() { return screen_reflections_met(mirror_at(pixel)); }
 
-// The part of a surface that faces a direction and is not hidden by its own bumps, for GGX (Smith 1967).
+// The part of microfacets that faces a direction and is not hidden by others, for GGX (Smith 1967).
 float screen_reflections_open(float cosine, float alpha) {
     float square = cosine * cosine;
     return 2.0 * cosine / (cosine + sqrt(mix(square, 1.0, alpha * alpha)));
@@ -73,7 +73,7 @@ vec4 screen_reflections_scattered(
     if (normal == vec3(0.0)) return vec4(0.0);
     float alpha = rough_at(pixel) * rough_at(pixel);
     if (alpha < SCREEN_REFLECTIONS_SHARP) return screen_reflections_met(mirror_at(pixel));
-    const vec2 lattice = vec2(0.75487767, 0.56984029);  // Roberts 2018
+    const vec2 lattice = vec2(0.75487767, 0.56984029);  // R2 sequence (Roberts 2018)
     vec3 plane = march_normal(rows, pixel, extent);
     vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     mat3 frame = mat3(across, cross(normal, across), normal);
@@ -82,7 +82,7 @@ vec4 screen_reflections_scattered(
     vec4 sum = vec4(0.0);
     float total = 0.0;
     for (int i = 0; i < count; ++i) {
-        // A bump that the eye sees, as often as it is seen (Heitz 2018, in the form of Dupuy and Benyoub 2023).
+        // A visible microfacet with its probability (Heitz 2018, in the form of Dupuy and Benyoub 2023).
         vec2 random = fract(noise + float(i) * lattice);
         vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
         float turn = 2.0 * OCCLUSION_PI * random.x, z = 1.0 - random.y * (1.0 + stretched.z);
@@ -100,17 +100,18 @@ vec4 screen_reflections_scattered(
     return total > 0.0 ? sum / total : vec4(0.0);
 }
 
-// Means over 4 x 4 pixels of the same surface, which is all of the pattern of noise; where reflections are sharper than
-// that, over fewer.
+// The mean over 4 x 4 pixels of the same surface, one period of the noise; over fewer pixels where the reflection is
+// sharper.
 vec4 screen_reflections_denoise(const vec4 rays[3]) {
     vec4 found = scattered_at(pixel), met = mirror_at(pixel);
     float alpha = rough_at(pixel) * rough_at(pixel);
     vec3 normal = normal_at(pixel);
     if (normal == vec3(0.0) || alpha < SCREEN_REFLECTIONS_SHARP) return found;
     float depth = 1.0 / surfaces_at(pixel).x, apart = pixel_pitch(rays, depth, vec2(extent));
-    // How wide the reflection of a point is, in pixels: it lies behind the surface as far as the point before it.
+    // The width of a point's reflection in pixels: the reflected point appears as far behind the surface as it is in
+    // front.
     float reach = met.w > 0.0 ? 2.0 * alpha * met.z / (depth + met.z) * depth / apart : 4.0;
-    reach = max(reach, 40.0 * alpha);  // such wide lobes see more than what the mirrored ray meets
+    reach = max(reach, 40.0 * alpha);  // wide lobes reach beyond the mirrored ray
     vec3 here = depth * camera_ray(rays, camera_uv(pixel, extent));
     vec4 sum = vec4(0.0);
     float weights[25], total = 0.0;
@@ -128,7 +129,7 @@ vec4 screen_reflections_denoise(const vec4 rays[3]) {
         sum += weight * scattered_at(at);
         total += weight;
     }
-    // One ray in hundreds that meets a lamp would be a dot: none may be much brighter than all together.
+    // A single ray that meets a lamp would make a bright dot: no pixel may be much brighter than the mean.
     float most = SCREEN_REFLECTIONS_LAMP * luminance(max(sum.rgb, 0.0)) / total;
     sum = vec4(0.0);
     for (int i = 0; i < 25; ++i) {
@@ -140,7 +141,7 @@ vec4 screen_reflections_denoise(const vec4 rays[3]) {
     return finite(sum / total);
 }
 
-// How much is mirrored (Schlick 1994), which rough surfaces do less at grazing angles (Lagarde 2011).
+// The Fresnel reflectance (Schlick 1994), reduced for rough surfaces at grazing angles (Lagarde 2011).
 vec3 screen_reflections_fresnel(
     vec3 normal, float rough, vec2 material, vec4 albedo, float mask, const vec4 rays[3], float reflectance,
     float strength
@@ -168,7 +169,7 @@ vec4 screen_reflections(
 ) {
     vec4 safe = finite(image);
     vec3 part = screen_reflections_fresnel(normal, rough, material, albedo, mask, rays, reflectance, strength);
-    // Light that is mirrored does not enter the surface.
+    // Reflected light does not enter the surface.
     return vec4(safe.rgb * (1.0 - min(part, 1.0) * light.a) + safe.a * part * light.rgb, safe.a);
 }
 

@@ -2,15 +2,15 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// Blends of one channel: b is the background, a the foreground, straight and not negative. The W3C defines them within
-// 0..1; brighter light continues them without a jump.
+// Blend modes of one channel (W3C Compositing and Blending 1): b is the background, a the foreground, both straight and
+// not negative. The W3C defines them for 0..1; here they continue for brighter light without a jump.
 
-// Above 1, where light cannot be "screened", the brighter one wins (as in Nuke).
+// Screen is not defined above 1: there the brighter one wins, as in Nuke.
 float merge_screen(float b, float a) { return max(a, b) > 1.0 ? max(a, b) : a + b - a * b; }
 
 float merge_hard_light(float b, float a) { return a <= 0.5 ? 2.0 * a * b : merge_screen(b, 2.0 * a - 1.0); }
 
-// White and brighter stay as they are, and the foreground counts up to 1.
+// A background of 1 or more stays; the foreground counts up to 1.
 float merge_soft_light(float b, float a) {
     a = min(a, 1.0);
     if (b >= 1.0) return b;
@@ -19,13 +19,13 @@ float merge_soft_light(float b, float a) {
     return b + (2.0 * a - 1.0) * (lighter - b);
 }
 
-// Limited to 1, or to the background where that is brighter.
+// Limited to 1, or to the background if that is brighter.
 float merge_color_dodge(float b, float a) {
     if (b == 0.0) return 0.0;
     return a >= 1.0 ? max(b, 1.0) : min(max(b, 1.0), b / (1.0 - a));
 }
 
-// White and brighter stay as they are.
+// A background of 1 or more stays.
 float merge_color_burn(float b, float a) {
     if (b >= 1.0) return b;
     return a <= 0.0 ? 0.0 : 1.0 - min(1.0, (1.0 - b) / a);
@@ -49,7 +49,7 @@ float merge_channel(int mode, float b, float a) {
     return 0.5 * (b + a);  // average
 }
 
-// The four blends of whole colors, with Rec.709 luminance (the W3C writes 0.3, 0.59, 0.11 for it).
+// The four blends of whole colors, with the luminance of the working space (the W3C uses the weights 0.3, 0.59, 0.11).
 
 vec3 merge_with_luminance(vec3 c, float wanted, float ceiling) {
     c += wanted - luminance(c);
@@ -66,7 +66,7 @@ vec3 merge_with_saturation(vec3 c, float wanted) {
 }
 
 vec3 merge_color(int mode, vec3 b, vec3 a) {
-    float ceiling = max(1.0, max(largest(b), largest(a)));  // beyond 1 nothing is brighter than what came in
+    float ceiling = max(1.0, max(largest(b), largest(a)));  // above 1, no brighter than the inputs
     float level = luminance(b);
     if (mode == MODE_HUE) return merge_with_luminance(merge_with_saturation(a, merge_spread(b)), level, ceiling);
     if (mode == MODE_SATURATION) return merge_with_luminance(merge_with_saturation(b, merge_spread(a)), level, ceiling);
@@ -86,7 +86,7 @@ vec4 merge_blend(int mode, vec4 a, vec4 b) {
 
 vec4 merge(vec4 a, vec4 b, float mask, int mode, float amount) {
     a = finite(a), b = finite(b);
-    vec4 merged = vec4(0.0);  // clear
+    vec4 merged = vec4(0.0);  // the mode clear
     if (mode == MODE_OVER) merged = a + b * (1.0 - a.a);
     if (mode == MODE_UNDER) merged = b + a * (1.0 - b.a);
     if (mode == MODE_IN) merged = a * b.a;

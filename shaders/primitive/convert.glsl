@@ -1,4 +1,4 @@
-// Nothing to compute: passing a parameter of this type is the conversion.
+// Conversions between types: the parameter's type converts, the function has nothing to compute.
 
 float as_float(float value) { return value; }
 vec2 as_vec2(vec2 value) { return value; }

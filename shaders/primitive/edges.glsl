@@ -1,17 +1,17 @@
-// What lies outside a picture, as the position inside it that is read instead; and what counts as a hole in it.
+// Edge modes: the position inside a picture that is read for a position outside. And holes: pixels that are not finite.
 
 ivec2 edge_clamp(ivec2 p, ivec2 size) { return clamp(p, ivec2(0), size - 1); }
 
-// GLSL's % is undefined for negative numbers.
+// Repeats the picture. GLSL's % is undefined for negative numbers.
 ivec2 edge_wrap(ivec2 p, ivec2 size) { return p - size * ivec2(floor((vec2(p) + 0.5) / vec2(size))); }
 
-// The border pixel is repeated: c b a | a b c | c b a
+// Mirrors the picture, with the border pixel repeated: c b a | a b c | c b a
 ivec2 edge_reflect(ivec2 p, ivec2 size) {
     ivec2 q = edge_wrap(p, 2 * size);
     return min(q, 2 * size - 1 - q);
 }
 
-// The border pixel is the mirror: c b | a b c | b a
+// Mirrors the picture at the border pixel: c b | a b c | b a
 ivec2 edge_mirror(ivec2 p, ivec2 size) {
     ivec2 period = max(2 * size - 2, ivec2(1)), q = edge_wrap(p, period);
     return min(q, period - q);
@@ -19,7 +19,7 @@ ivec2 edge_mirror(ivec2 p, ivec2 size) {
 
 bool inside(ivec2 p, ivec2 size) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, size)); }
 
-// By the bits: drivers may optimize isnan() away.
+// True for NaN and infinity. Bits are tested, because drivers may assume that isnan() is always false.
 bool is_hole(float c) { return (floatBitsToUint(c) & 0x7fffffffu) >= 0x7f800000u; }
 bool is_hole(vec2 c) { return is_hole(c.x) || is_hole(c.y); }
 bool is_hole(vec3 c) { return is_hole(c.xy) || is_hole(c.z); }

@@ -1,4 +1,4 @@
-// Enlarges by a whole factor along one axis with a cubic B-spline. The small picture starts `apron` pixels early.
+// Enlarges by a whole factor along one axis, with a cubic B-spline. The small picture starts `apron` pixels early.
 vec4 enlarge(int axis, int factor, int apron) {
     float at = (float(pixel[axis] + apron) + 0.5) / float(factor) - 0.5;
     float whole = floor(at), t = at - whole, s = 1.0 - t;

@@ -1,10 +1,10 @@
-// Scales a picture to another size about the center; what sticks out is cropped. `scale` is source pixels per pixel.
+// Scales a picture to another size around its center; what does not fit is cropped. `scale` is source pixels per pixel.
 
 vec2 fit_center(vec2 scale) {
     return (vec2(pixel) + 0.5 - 0.5 * vec2(extent)) * scale + 0.5 * vec2(image_size);
 }
 
-// Triangle filter as wide as the step between samples, so that shrinking averages and enlarging interpolates.
+// A triangle filter as wide as the step between samples: shrinking averages, enlarging interpolates.
 vec4 fit(vec2 scale) {
     vec2 center = fit_center(scale), reach = max(scale, vec2(1.0));
     ivec2 first = ivec2(floor(center - reach)), last = ivec2(ceil(center + reach));
@@ -22,7 +22,7 @@ vec4 fit(vec2 scale) {
     return sum / total;
 }
 
-// Data is never mixed: the nearest pixel.
+// The nearest pixel, for data, which must not be mixed.
 vec4 fit_nearest(vec2 scale) {
     return image_raw(ivec2(floor(fit_center(scale))));
 }

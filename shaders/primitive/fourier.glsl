@@ -1,4 +1,4 @@
-// Fast Fourier transforms of four real pictures at once: red + i green and blue + i alpha are two complex ones.
+// Fast Fourier transforms of four real pictures at once: red + i green and blue + i alpha are two complex pictures.
 
 vec2 fourier_times(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
@@ -8,16 +8,16 @@ vec4 fourier_step(vec4 sum, vec2 root, vec4 x) {
 }
 
 vec2 fourier_root(int frequency, int points, float direction) {
-    if (2 * frequency > points) frequency -= points;  // small angles are exact ones
+    if (2 * frequency > points) frequency -= points;  // the smaller of two equal angles is more exact
     float angle = direction * 6.283185307179586 * float(frequency) / float(points);
     return vec2(cos(angle), sin(angle));
 }
 
-// a / b, exact for all positions: dividing integers would cost the software rasterizer more than the rest of a stage.
+// a / b, exact for all positions. Integer division would take the software rasterizer longer than the rest of a stage.
 int fourier_quotient(int a, int b) { return int((float(a) + 0.5) / float(b)); }
 
-// The first stage along an axis: transforms of every `apart`-th pixel. NaN counts as black, and so does
-// what lies behind the first `terms` of them.
+// The first stage along an axis: transforms of every `apart`-th pixel. NaN counts as black, and so do all but the first
+// `terms` pixels.
 vec4 fourier_first(int axis, int terms, int radix, int apart) {
     int start = fourier_quotient(pixel[axis], radix);
     vec2 root = fourier_root(pixel[axis] - start * radix, radix, -1.0);
@@ -28,8 +28,8 @@ vec4 fourier_first(int axis, int terms, int radix, int apart) {
     return sum;
 }
 
-// One more stage (Stockham's, decimated in time): `radix` transforms of `span` points become one of all. Pixels from
-// `first` on are wanted.
+// One more stage (Stockham, decimation in time): `radix` transforms of `span` points become one. Only pixels from
+// `first` on are computed.
 vec4 fourier_stage(int axis, int radix, int span, int apart, int first, float direction) {
     int at = pixel[axis] + first, points = span * radix;
     int group = fourier_quotient(at, points), frequency = at - group * points;
@@ -41,8 +41,8 @@ vec4 fourier_stage(int axis, int radix, int span, int apart, int first, float di
     return sum;
 }
 
-// The product of two real pictures' spectra for a pair of channels: what is even in frequency belongs to the first
-// channel, what is odd to i times the second.
+// The product of the spectra of two real pictures, for a pair of channels. The even part in frequency belongs to the
+// first channel, the odd part to i times the second.
 vec2 fourier_pair(vec2 a, vec2 a_back, vec2 b, vec2 b_back) {
     a_back.y = -a_back.y, b_back.y = -b_back.y;
     vec2 even = 0.5 * (b + b_back), odd = 0.5 * (b - b_back);

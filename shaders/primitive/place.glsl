@@ -1,7 +1,7 @@
 #include "lib/finite.glsl"
 #include "lib/resampling.glsl"
 
-const float place_widest = 32.0;  // pixels of the image per pixel; where it shrinks more, it may alias
+const float place_widest = 32.0;  // pixels of the image per pixel; stronger shrinking may alias
 
 float place_radius(int kernel) {
     return kernel == KERNEL_TRIANGLE ? 1.0 : kernel == KERNEL_LANCZOS ? 3.0 : 2.0;
@@ -13,7 +13,8 @@ float place_weight(float x, int kernel) {
     return kernel == KERNEL_MITCHELL ? cubic_weight(x, 1.0 / 3.0, 1.0 / 3.0) : cubic_weight(x, 0.0, 0.5);
 }
 
-// A result pixel lies at matrix * pixel + start in the image; `across` and `down` are the rows of the matrix.
+// Resamples a picture: pixel p of the result lies at matrix * p + start in the image. `across` and `down` are the rows
+// of the matrix.
 vec4 place(vec2 across, vec2 down, vec2 start, int kernel) {
     vec2 at = vec2(pixel) + 0.5;
     vec2 center = vec2(dot(across, at), dot(down, at)) + start;

@@ -1,6 +1,6 @@
-// Keeps the compiler from optimizing across the seam between two fused functions, so that fused and unfused passes
-// give the same bits. `seam` is always zero, but only we know that; it has a part for every channel, lest channels
-// that are known to be equal be simplified together.
+// Keeps the driver's compiler from optimizing across the border between two fused functions, so that fused and unfused
+// passes give the same bits. `seam` is always zero, but the driver does not know that. It has a part for each channel,
+// so that channels that are equal are not simplified together.
 
 float settled(float v, uvec4 seam) { return uintBitsToFloat(floatBitsToUint(v) ^ seam.x); }
 vec2 settled(vec2 v, uvec4 seam) { return uintBitsToFloat(floatBitsToUint(v) ^ seam.xy); }

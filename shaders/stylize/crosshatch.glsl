@@ -2,7 +2,8 @@
 
 const float crosshatch_half_turn = 3.14159265;
 
-// The direction of a layer: each halves the widest gap that is left, 0, 90, 45, 135, ... degrees (van der Corput).
+// The direction of a layer of lines: 0, 90, 45, 135, ... degrees. Each halves the largest remaining gap (van der Corput
+// sequence).
 float crosshatch_turn(int layer) {
     float turn = 0.0, part = 0.5;
     for (int bits = layer; bits > 0; bits >>= 1, part *= 0.5) turn += part * float(bits & 1);

@@ -2,15 +2,15 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// The part of a unit square that a disc about its center covers.
+// The part of a unit square that a disc around its center covers.
 float halftone_disc(float radius) {
     float square = radius * radius, disc = 3.14159265 * square;
     if (radius <= 0.5) return disc;
     return disc - 4.0 * (square * acos(0.5 / radius) - 0.5 * sqrt(square - 0.25));
 }
 
-// How much of a cell is covered before ink reaches this place: all values are equally frequent, so that ink where
-// this is below a tone covers exactly that tone's share.
+// The tone at which ink reaches this place of a cell. All values are equally frequent, so ink where it is below a tone
+// covers exactly that part of the cell.
 float halftone_threshold(int pattern, vec2 place, float angle) {
     vec2 along = vec2(cos(angle), sin(angle));
     vec2 q = abs(fract(vec2(dot(place, along), dot(place, vec2(-along.y, along.x)))) - 0.5);
@@ -21,7 +21,7 @@ float halftone_threshold(int pattern, vec2 place, float angle) {
 }
 
 vec3 halftone_print(vec4 inks, int pattern, vec2 place, float angle) {
-    const vec4 angles = vec4(0.26179939, 1.30899694, 0.0, 0.78539816);  // 15, 75, 0 and 45 degrees
+    const vec4 angles = vec4(0.26179939, 1.30899694, 0.0, 0.78539816);  // C 15, M 75, Y 0, K 45 degrees, as in print
     vec3 paper = vec3(1.0);
     for (int i = 0; i < 4; ++i)
         if (inks[i] > 0.0 && halftone_threshold(pattern, place, angle + angles[i]) < inks[i])

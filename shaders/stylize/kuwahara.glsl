@@ -6,7 +6,8 @@ const float kuwahara_pi = 3.14159265;
 vec4 kuwahara_tones(vec4 image) { return to_display(image); }
 vec4 kuwahara(vec4 tones) { return from_display(tones); }
 
-// Variances are taken about the pixel's own color, where their two terms are small and do not cancel.
+// The mean of the quadrant with the least variance (Kuwahara 1976). Variances are relative to the pixel's own color:
+// the numbers are small and their difference loses no digits.
 vec4 kuwahara_quadrants(int radius) {
     vec4 here = tones_at(pixel), best = vec4(0.0);
     float least = 3.4e38, count = float((radius + 1) * (radius + 1));
@@ -27,7 +28,7 @@ vec4 kuwahara_quadrants(int radius) {
     return here + best;
 }
 
-// The structure tensor by Sobel, summed over all channels.
+// The structure tensor of the Sobel gradient, summed over all channels.
 vec3 kuwahara_changes() {
     vec3 falling = tones_at(pixel + ivec2(1, 1)).rgb - tones_at(pixel - ivec2(1, 1)).rgb;
     vec3 rising = tones_at(pixel + ivec2(1, -1)).rgb - tones_at(pixel + ivec2(-1, 1)).rgb;
@@ -37,7 +38,8 @@ vec3 kuwahara_changes() {
 }
 
 vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
-    // An ellipse along the stroke: with anisotropy A its axes are r (1 + A) and r / (1 + A).
+    // The window is an ellipse along the stroke, with the axes r (1 + A) and r / (1 + A) for the anisotropy A
+    // (Kyprianidis et al. 2009).
     vec3 change = changes_at(pixel);
     float anisotropy = kind == KIND_ANISOTROPIC ? structure_anisotropy(change) : 0.0;
     vec2 along = anisotropy > 0.0 ? structure_across(change).yx * vec2(-1.0, 1.0) : vec2(1.0, 0.0);
@@ -45,7 +47,7 @@ vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
     vec2 reach = vec2(length(axes * along), length(axes * along.yx));
     mat2 to_disc = mat2(along.x / axes.x, -along.y / axes.y, along.y / axes.x, along.x / axes.y);
 
-    // A sector is where along + zeta > eta across^2; its edges cross at 3/16 of a half turn.
+    // A sector is where along + zeta > eta across^2 (Kyprianidis et al. 2010); its edges cross at 3/16 of a half turn.
     const float edge_turn = 0.1875 * kuwahara_pi;
     float zeta = 2.0 / radius, eta = (zeta + cos(edge_turn)) / (sin(edge_turn) * sin(edge_turn));
     const mat2 eighth = mat2(0.70710678, -0.70710678, 0.70710678, 0.70710678);

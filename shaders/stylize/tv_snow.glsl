@@ -18,11 +18,11 @@ vec4 tv_snow(
     size = max(finite(size), 1e-3);
     ivec2 cell = ivec2((vec2(pixel) + 0.5) / max(size, 1.0));
     int moment = int(floor(float(frame) / float(max(hold, 1))));
-    if (interlaced) moment = (moment + (cell.y & 1)) >> 1;  // lines of the other parity are new in the next frame
+    if (interlaced) moment = (moment + (cell.y & 1)) >> 1;  // lines of the other field change in the next frame
     vec3 flakes = tv_snow_line(cell, moment, pcg3d(uvec3(uint(seed), 0u, 0u))) - 0.5;
     flakes = mix(vec3(flakes.x), flakes, clamp(finite(color), 0.0, 1.0));
     float level = hash3(ivec3(cell.y, moment, 0), pcg3d(uvec3(uint(seed), 1u, 0u))).x - 0.5;
-    float fine = min(size, 1.0);  // a pixel averages 1 / fine lines, and as many flakes of each
+    float fine = min(size, 1.0);  // a pixel averages 1 / fine lines, and as many flakes in each
     flakes *= fine;
     level *= sqrt(fine) * clamp(finite(lines), 0.0, 1.0);
     precise vec3 snow = clamp(0.5 + finite(contrast) * (flakes + level), 0.0, 1.0);

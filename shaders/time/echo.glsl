@@ -2,10 +2,10 @@
 
 vec4 echo_first(vec4 image) { return finite(image); }
 
-// Where light is brighter than white it cannot be screened: there the brighter one wins, as in merge.
+// Screen is not defined above 1: there the brighter one wins, as in `merge`.
 float echo_screen(float a, float b) { return max(a, b) > 1.0 ? max(a, b) : a + b - a * b; }
 
-// The picture so far with one more echo.
+// Adds one more echo to the picture.
 vec4 echo_join(vec4 image, vec4 seen, float strength, int mode) {
     vec4 fainter = strength * finite(image);
     if (mode == MODE_BRIGHTEST) return max(seen, fainter);

@@ -1,11 +1,11 @@
 #include "lib/adaptation.glsl"
 #include "lib/color.glsl"
 
-const float eye_adaptation_dark = 1e-5;   // black is as dark as that: it has no logarithm
-const float eye_adaptation_most = 1e9;    // brighter than any sun
-const float eye_adaptation_cones = 0.1, eye_adaptation_rods = 0.4;  // seconds; Krawczyk et al. 2005
+const float eye_adaptation_dark = 1e-5;   // least luminance: 0 has no logarithm
+const float eye_adaptation_most = 1e9;    // brighter than any light
+const float eye_adaptation_cones = 0.1, eye_adaptation_rods = 0.4;  // time constants in seconds (Krawczyk et al. 2005)
 
-// The sums: the logarithm of light, and the weight of the pixel.
+// The terms of the sums: the logarithm of light, and the weight of the pixel.
 vec2 eye_adaptation_terms(vec4 image) {
     vec4 light = metered(image);
     return light.a * vec2(log(luminance(light.rgb) + eye_adaptation_dark), 1.0);

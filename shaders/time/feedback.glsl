@@ -2,15 +2,16 @@
 #include "lib/finite.glsl"
 #include "lib/resampling.glsl"
 
-const float feedback_widest = 8.0;  // pixels of the past per pixel; where it shrinks more, it may alias
+const float feedback_widest = 8.0;  // pixels of the past per pixel; stronger shrinking may alias
 
-// The light that is fed back: finite, not brighter than the ceiling, and not negative.
+// The light that is fed back: finite, between 0 and the ceiling.
 vec4 feedback_first(vec4 image, float ceiling) {
     vec4 safe = finite(image);
     return vec4(clamp(safe.rgb, 0.0, ceiling), clamp(safe.a, 0.0, 1.0));
 }
 
-// The past at across, down and start: Catmull-Rom, which is wider where it shrinks, within the four pixels around.
+// The transformed past, by Catmull-Rom interpolation, wider where the picture shrinks, and limited to the four pixels
+// around.
 vec4 feedback_past(vec2 across, vec2 down, vec2 start, float hue_turn, float decay) {
     vec2 at = vec2(pixel) + 0.5;
     vec2 center = vec2(dot(across, at), dot(down, at)) + start;
@@ -37,7 +38,7 @@ vec4 feedback_past(vec2 across, vec2 down, vec2 start, float hue_turn, float dec
     return hue_turn == 0.0 ? past : vec4(with_hue(past.rgb, hue(past.rgb) + hue_turn), past.a);
 }
 
-// Light that is brighter than white cannot be screened: there the brighter one wins, as in merge.
+// Screen is not defined above 1: there the brighter one wins, as in `merge`.
 vec3 feedback_screen(vec3 a, vec3 b) {
     return mix(a + b - a * b, max(a, b), greaterThan(max(a, b), vec3(1.0)));
 }
@@ -49,5 +50,5 @@ vec4 feedback(vec4 image, vec4 past, int mode, float decay) {
     if (mode == MODE_ADD) return finite(vec4(safe.rgb + past.rgb, min(safe.a + past.a, 1.0)));
     if (mode == MODE_SCREEN) return vec4(feedback_screen(max(safe.rgb, 0.0), past.rgb), both);
     if (mode == MODE_OVER) return finite(safe + (1.0 - safe.a) * past);
-    return (1.0 - decay) * safe + past;  // mix; the past has faded already
+    return (1.0 - decay) * safe + past;  // the mode mix; the past has faded already
 }

@@ -1,9 +1,9 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-const float light_trails_limit = 65504.0;  // as much as a half float holds: no sun outshines all that follows
+const float light_trails_limit = 65504.0;  // the largest half float: brighter light would hide what follows
 
-// Light that leaves a trail, without alpha. Lamps leave all of theirs: no threshold is subtracted.
+// Light that leaves a trail, without alpha. Above the threshold all light counts: nothing is subtracted.
 vec4 light_trails_bright(vec4 image, float threshold, float knee) {
     vec3 light = max(finite(image).rgb, 0.0);
     float from = threshold * (1.0 - knee), to = threshold * (1.0 + knee) + 1e-6;

@@ -1,10 +1,10 @@
 #include "lib/adaptation.glsl"
 #include "lib/color.glsl"
 
-// Bin b of the histogram stands for 2^(first + step b).
+// Bin b of the histogram is at 2^(first + step b).
 const float auto_exposure_first = -16.0, auto_exposure_step = 0.25, auto_exposure_last = 127.0;
 
-// The luminance of a pixel and how much it counts.
+// The luminance of a pixel, and its weight.
 vec2 auto_exposure_light(vec4 image, float mask, float center_weight, vec2 center, float radius) {
     vec4 light = metered(image);
     vec2 off = (vec2(pixel) + 0.5 - center * vec2(extent)) / max(radius, 1e-3);
@@ -12,7 +12,7 @@ vec2 auto_exposure_light(vec4 image, float mask, float center_weight, vec2 cente
     return vec2(luminance(light.rgb), light.a * clamp(finite(mask), 0.0, 1e6) * spot);
 }
 
-// The sums: light, its logarithm and the weight.
+// The terms of the sums: light, its logarithm, and the weight.
 vec3 auto_exposure_terms(vec2 light) { return light.y * vec3(light.x, log(light.x + 1e-5), 1.0); }
 
 float auto_exposure_mean(vec3 sums, int metering) {
@@ -49,7 +49,7 @@ vec4 auto_exposure_fold(int count) {
     return sum;
 }
 
-// The geometric mean between two shares of all weight. A bin counts by what of it lies between them.
+// The geometric mean of the light between two percentiles. A bin counts by its part between them.
 float auto_exposure_percentiles(float low, float high) {
     vec4 sums = vec4(0.0);
     for (int x = 0; x < table_size.x; ++x) sums += table_at(ivec2(x, 0));

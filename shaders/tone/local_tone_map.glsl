@@ -3,7 +3,7 @@
 
 float local_tone_map_luminance(vec4 image) { return luminance(metered(image).rgb); }
 
-// The logarithm of luminance and how much it counts.
+// The logarithm of luminance, and its weight.
 vec2 local_tone_map_log(vec4 image) {
     vec4 light = metered(image);
     return light.a * vec2(log(1e-5 + luminance(light.rgb)), 1.0);
@@ -11,14 +11,14 @@ vec2 local_tone_map_log(vec4 image) {
 
 float local_tone_map_average(vec2 logs) { return logs.y > 0.0 ? exp(logs.x / logs.y) : 0.0; }
 
-// The key, what scales luminance to it, and the white on that scale.
+// The key, the factor that scales the average luminance to it, and the scaled white.
 vec3 local_tone_map_scene(float average, float maximum, float key, bool auto_key, float nits) {
     average = max(finite(average), 1e-9);
     if (auto_key) key = natural_key(average * nits);
     return vec3(key, vec2(1.0, max(finite(maximum), 1e-9)) * key / average);
 }
 
-// Scaled luminance, premultiplied with how much it counts, so that empty areas take no part in the blurs.
+// Scaled luminance times its weight, and the weight, so that transparent areas do not affect the blurs.
 vec2 local_tone_map_light(vec4 image, vec3 scene) {
     vec4 light = metered(image);
     return light.a * vec2(min(luminance(light.rgb) * scene.y, 1e9), 1.0);
@@ -26,10 +26,11 @@ vec2 local_tone_map_light(vec4 image, vec3 scene) {
 
 float local_tone_map_mean(vec2 light) { return light.y > ALPHA_NONE ? max(light.x / light.y, 0.0) : 0.0; }
 
-// The mean of the area so far, and 1 while it may grow.
+// The mean of the area so far, and 1 while the area may grow.
 vec2 local_tone_map_start(vec2 center) { return vec2(local_tone_map_mean(center), 1.0); }
 
-// An area may have this size if its surround is alike. Below the key, differences count for less.
+// An area may grow to this size if its surround has a similar mean (Reinhard et al. 2002). Below the key, differences
+// count less.
 vec2 local_tone_map_grow(
     vec2 area, vec2 center, vec2 surround, vec3 scene, float scale, float sharpness, float threshold
 ) {

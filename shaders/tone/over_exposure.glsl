@@ -2,7 +2,7 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// A straight line up to the start, then an exponential curve of the same slope that never gets to white.
+// A straight line up to the start, then an exponential curve with the same slope, which approaches white.
 float over_exposure_shoulder(float light, float start, float white) {
     float room = white - start;
     if (light <= start) return light;

@@ -1,7 +1,7 @@
 #include "lib/adaptation.glsl"
 #include "lib/color.glsl"
 
-const float photoreceptor_tone_map_dark = 1e-4;  // no luminance counts as darker, so that black does not rule
+const float photoreceptor_tone_map_dark = 1e-4;  // least luminance: black must not decide the result
 
 vec4 photoreceptor_tone_map_light(vec4 image) {
     vec4 light = metered(image);
@@ -15,13 +15,13 @@ float photoreceptor_tone_map_log(vec4 image) {
     return light.a * photoreceptor_tone_map_dim(light.rgb);
 }
 
-// The maxima: the logarithm of luminance and its negative.
+// The terms of the maxima: the logarithm of luminance and its negative.
 vec2 photoreceptor_tone_map_ends(vec4 image) {
     vec4 light = metered(image);
     return light.a > 0.0 ? vec2(1.0, -1.0) * photoreceptor_tone_map_dim(light.rgb) : vec2(-1e9);
 }
 
-// The average color and the exponent m.
+// The average color, and the exponent m (Reinhard and Devlin 2005).
 vec4 photoreceptor_tone_map_scene(float contrast, vec4 means, float logs, vec2 ends) {
     if (means.a <= 0.0) return vec4(0.0, 0.0, 0.0, 1.0);
     float range = ends.x + ends.y;  // from the darkest to the brightest
@@ -29,7 +29,7 @@ vec4 photoreceptor_tone_map_scene(float contrast, vec4 means, float logs, vec2 e
     return vec4(means.rgb / means.a, contrast > 0.0 ? contrast : 0.3 + 0.7 * pow(key, 1.4));
 }
 
-// mix() may lose the smaller of two numbers that are far apart.
+// Like mix(), which may lose the smaller of two very different numbers.
 vec3 photoreceptor_tone_map_blend(vec3 a, vec3 b, float share) { return (1.0 - share) * a + share * b; }
 
 vec4 photoreceptor_tone_map(
@@ -44,7 +44,7 @@ vec4 photoreceptor_tone_map(
     return premultiplied(vec4(rgb, color.a));
 }
 
-// The maxima: the brightest channel and the negative of the darkest.
+// The terms of the maxima: the brightest channel and the negative of the darkest.
 vec2 photoreceptor_tone_map_span(vec4 image) {
     vec4 color = straight(image);
     return color.a > ALPHA_NONE ? vec2(largest(color.rgb), -smallest(color.rgb)) : vec2(-1e9);

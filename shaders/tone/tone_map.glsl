@@ -4,7 +4,7 @@
 #include "lib/finite.glsl"
 #include "lib/agx.glsl"
 
-// Display luminance for scene luminance, both above 0.
+// Display luminance for scene luminance; both are above 0.
 float tone_map_luminance(
     int operator, float light, float key, float average, float maximum, float bias, float q, float k
 ) {
@@ -14,20 +14,22 @@ float tone_map_luminance(
     if (operator == OPERATOR_REINHARD_UNSQUARED) return keyed * (1.0 + keyed / white) / (1.0 + keyed);
     if (operator == OPERATOR_EXPONENTIAL) return 1.0 - exp(-keyed);
     if (operator == OPERATOR_LOGARITHMIC) return log(1.0 + q * light) / log(1.0 + k * maximum);
-    // Drago: the base of the logarithm goes from 2 for shadows to 10 for the maximum, on a display of 100 cd/m2.
+    // Drago et al. 2003: the base of the logarithm goes from 2 in shadows to 10 at the maximum, on a display of 100
+    // cd/m2.
     float power = log(bias) / log(0.5);
     float base = 2.0 + 8.0 * pow(light / maximum, power);
     return log(light / average + 1.0) / log(base) / (log(maximum / average + 1.0) / log(10.0));
 }
 
-// ACES RRT and sRGB ODT (Hill). Rows, multiplied from the left.
+// ACES RRT and sRGB ODT (fit by Hill). Matrices are written by rows and multiplied from the left.
 vec3 tone_map_aces(vec3 rgb) {
     vec3 v = to_rec709(rgb) * mat3(0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777);
     v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
     return from_rec709(v * mat3(1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602));
 }
 
-// Takes off the reflection of clear coat (Fresnel, 4 %), compresses above 0.8 and fades the brightest to white.
+// Khronos PBR Neutral: subtracts the Fresnel reflection of 4 %, compresses above 0.8, and fades the brightest light to
+// white.
 vec3 tone_map_neutral(vec3 rgb) {
     const float start = 0.8 - 0.04, desaturation = 0.15, range = 1.0 - start;
     float x = smallest(rgb);
@@ -43,13 +45,14 @@ vec3 tone_map_hable(vec3 x) {
     return (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3;
 }
 
-// The short ACES fit. Its light is taken down by the 0.6 that its author gives, so that it exposes as ACES does.
+// The ACES fit of Narkowicz (2015). Light is multiplied by 0.6, as its author suggests, for the exposure of ACES.
 vec3 tone_map_narkowicz(vec3 x) {
     x *= 0.6;
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
-// Toe, straight line and shoulder, joined smoothly. The published parameters, for a display whose white is 1.
+// Uchimura (2017): toe, straight line and shoulder, joined smoothly, with the published parameters for a display with
+// white 1.
 float tone_map_uchimura(float x, float slope) {
     const float middle = 0.22, share = 0.4, tightness = 1.33;
     float span = (1.0 - middle) * share / slope, end = middle + span, shown = middle + slope * span;
@@ -63,7 +66,7 @@ vec3 tone_map_uchimura(vec3 x, float slope) {
     return vec3(tone_map_uchimura(x.r, slope), tone_map_uchimura(x.g, slope), tone_map_uchimura(x.b, slope));
 }
 
-// x^a / (b x^(a d) + c), with b and c such that 0.18 becomes 0.267 and white becomes 1.
+// Lottes (2016): x^a / (b x^(a d) + c). b and c are such that 0.18 becomes 0.267 and white becomes 1.
 vec3 tone_map_lottes(vec3 x, float contrast, float white) {
     const float gray = 0.18, shown = 0.267, shoulder = 0.977;
     float a = 1.6 * contrast, ad = a * shoulder;

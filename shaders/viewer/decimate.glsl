@@ -1,7 +1,7 @@
-// Every so many pixels one, unchanged.
+// Reads every n-th pixel, unchanged.
 
 uniform sampler2D picture;
-uniform vec2 texels;  // of the picture, per pixel of the result
+uniform vec2 texels;  // texels of the picture per pixel of the result
 
 out vec4 result;
 

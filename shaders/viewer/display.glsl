@@ -2,8 +2,8 @@
 #include "viewer/palette.glsl"
 #include "viewer/view.glsl"
 
-// One panel: pictures a and b, placed on it, as the user sees them. Rows run downwards, as in pictures.
-// DATA, VIEWED, COMPARE and the names of modes come before this file, and view_transform() where it is needed.
+// One panel of the viewer with pictures a and b. Rows run downward, as in pictures. DATA, VIEWED, COMPARE and the names
+// of modes are defined before this file, and so is view_transform() where it is needed.
 
 uniform sampler2D a;
 uniform vec2 a_origin, a_step;
@@ -17,7 +17,7 @@ uniform ivec4 b_part;
 #endif
 
 #if VIEWED
-uniform sampler2D viewed;  // picture a by texels, through the view already
+uniform sampler2D viewed;  // picture a by texels, with the view applied
 uniform ivec2 viewed_first;
 #endif
 
@@ -37,7 +37,7 @@ vec3 behind(vec2 at) {
 }
 
 #if DATA
-// Data has no color: it is shown as it is.
+// Data has no color, so no view is applied.
 vec3 looked_at(vec4 c, vec2 at) {
     if (meaning == IMAGE) return channels == ALPHA ? vec3(c.a) : false_color(luminance(c.rgb));
     return chosen(meaning == NORMAL ? c * 0.5 + 0.5 : (c - range.x) / (range.y - range.x));

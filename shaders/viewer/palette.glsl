@@ -1,4 +1,4 @@
-// Stops above and below middle gray as colors of a display: gray is 18 %, greens below it, warm colors above.
+// False colors for stops above and below middle gray: gray is 18 %, greens and blues are darker, warm colors brighter.
 
 vec3 false_color(float light) {
     float stops = log2(max(light, 1e-8) / 0.18);

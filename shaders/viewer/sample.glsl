@@ -1,15 +1,14 @@
 #include "lib/finite.glsl"
 
-// A picture at one pixel of a panel: the nearest texel, or the mean of all that the pixel covers.
-// `part` is the first texel that the texture holds, and how many the picture has: where some are missing, the pixel is
-// outside.
+// A picture at one pixel of a panel: the nearest texel, or the mean of all texels that the pixel covers. `part` is the
+// first texel in the texture, and the size of the whole picture. A pixel with missing texels counts as outside.
 
 struct Sampled {
     vec4 value;
     bool inside, broken;  // broken: some texel is NaN or infinite; the value is the mean of the others
 };
 
-// Texels along a side that are read for one pixel; more are read at even distances.
+// The most texels that are read along a side for one pixel; if there are more, every n-th is read.
 const int MOST = 8;
 
 void sampled_texel(sampler2D picture, ivec2 at, float weight, inout vec4 sum, inout float total, inout bool broken) {

@@ -1,7 +1,7 @@
 #include "viewer/sample.glsl"
 #include "viewer/view.glsl"
 
-// Texels of picture a through the view: fewer than pixels of the panel where the picture is enlarged.
+// Texels of picture a with the view applied: where the picture is enlarged, these are fewer than pixels of the panel.
 
 uniform sampler2D a;
 uniform int a_channels;
