@@ -27,7 +27,7 @@ from pool import Tally, run_cases
 import shaders
 
 KINDS = ("graphs", "shaders", "images", "jails", "kills", "abuse", "concurrency", "soak")
-QUICK = {"graphs": 400, "shaders": 120, "images": 200, "jails": 150, "kills": 40, "concurrency": 3, "soak": 200}
+QUICK = {"graphs": 400, "shaders": 120, "images": 200, "jails": 150, "kills": 40, "concurrency": 3, "soak": 700}
 FULL = {"graphs": 20000, "shaders": 5000, "images": 2000, "jails": 0, "kills": 500, "concurrency": 40, "soak": 1500}
 """Cases of a whole campaign, as docs/security.md reports it; 0 jails are all of them."""
 

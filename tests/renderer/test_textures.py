@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from halation.compiler import Surface
-from halation.renderer.execution.texture_pool import TextureLease, TexturePool
+from halation.renderer.execution.texture_pool import MIN_TEXTURE_BYTES, TextureLease, TexturePool
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -103,6 +103,17 @@ def test_small_results_do_not_stay_for_ever():
         use(textures, f"small{number}", 0.01, 1)
         use(textures, f"large{number}", 0.01)
     assert sum(f"small{number}" in textures for number in range(4000)) < 100
+
+
+def test_tiny_results_are_counted_by_what_the_driver_takes():
+    """A pixel has 16 bytes, of which millions would fit: the number of objects on the device stays bounded as well."""
+    textures = pool(8)
+    for number in range(5000):
+        use(textures, f"{number}", 0.01, 1)
+        textures.next_round()
+    allowed = 8 * LARGE // MIN_TEXTURE_BYTES
+    assert allowed <= textures._device.live <= allowed + 2  # type: ignore[attr-defined]
+    assert "4999" in textures and "0" not in textures
 
 
 def test_what_somebody_leases_stays_whatever_it_costs():
