@@ -22,10 +22,10 @@ TextureKind = tuple[int, int, int, Depth]
 
 
 MIN_TEXTURE_BYTES = 2**16
-"""The bytes that a texture takes at least on a device, however few pixels it has: GPUs place textures in steps of 64 KiB
-(Direct3D 12, D3D12_DEFAULT_RESOURCE_PLACEMENT_ALIGNMENT). Mesa's llvmpipe takes 2.5 KiB beside the pixels and up to
-5 KiB more for a framebuffer (measured on 1,000 textures of 1, 8 and 32 pixels on a side). With its own 16 bytes a single
-pixel would rank above every picture, and a budget of 512 MiB would hold 33 million of them."""
+"""The bytes that a texture takes at least on a device, however few pixels it has: GPUs place textures in steps of
+64 KiB (Direct3D 12, D3D12_DEFAULT_RESOURCE_PLACEMENT_ALIGNMENT). Mesa's llvmpipe takes 2.5 KiB beside the pixels and up
+to 5 KiB more for a framebuffer (measured on 1,000 textures of 1, 8 and 32 pixels on a side). With its own 16 bytes a
+single pixel would rank above every picture, and a budget of 512 MiB would hold 33 million of them."""
 
 
 class PooledTexture(Struct, eq=False):
