@@ -7,7 +7,7 @@ import json
 import textwrap
 from collections.abc import Callable, Iterator
 from enum import Enum
-from typing import Any
+from typing import Any, Literal, get_args, get_origin
 
 import halation as hal
 from halation import errors
@@ -88,7 +88,7 @@ def write_signature(name: str, subject: Callable[..., Any]) -> str:
     parameters = [item for item in signature.parameters.values() if item.name != "self"]
     words = [_write_parameter(item) for item in parameters]
     keyword = [index for index, item in enumerate(parameters) if item.kind is inspect.Parameter.KEYWORD_ONLY]
-    if keyword:
+    if keyword and not any(item.kind is inspect.Parameter.VAR_POSITIONAL for item in parameters):
         words.insert(keyword[0], "*")
     result = "" if inspect.isclass(subject) else f" -> {_write_type(signature.return_annotation)}"
     line = f"{name}({', '.join(words)}){result}"
@@ -100,7 +100,8 @@ def write_signature(name: str, subject: Callable[..., Any]) -> str:
 
 def _write_parameter(item: inspect.Parameter) -> str:
     if item.default is item.empty:
-        return f"{item.name}: {_write_type(item.annotation)}"
+        stars = {item.VAR_POSITIONAL: "*", item.VAR_KEYWORD: "**"}.get(item.kind, "")
+        return f"{stars}{item.name}: {_write_type(item.annotation)}"
     return f"{item.name}: {_write_type(item.annotation)} = {_write_default(item.default)}"
 
 
@@ -112,6 +113,8 @@ def _write_default(default: object) -> str:
 
 
 def _write_type(annotation: Any) -> str:
+    if get_origin(annotation) is Literal:
+        return f"Literal[{', '.join(map(repr, get_args(annotation)))}]"
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     return text.replace("Self", "Graph")
 

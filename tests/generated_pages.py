@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
-from api_reference import write_reference
+import api_reference
+import node_reference
 from command_reference import fill_tables
 from halation.cli import manual
 from halation.graph.expressions.functions import FUNCTIONS
@@ -63,7 +64,11 @@ def fill_rules(text: str) -> str:
 
 
 WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
-    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.catalogue_page(list(built_in_nodes().values()))}
+    {
+        "docs/api.md": api_reference.write_reference,
+        "docs/nodes.md": lambda: manual.catalogue_page(list(built_in_nodes().values())),
+        "docs/writing-nodes.md": node_reference.write_reference,
+    }
 )
 """Pages that are generated from the first line to the last."""
 

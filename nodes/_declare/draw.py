@@ -1,4 +1,4 @@
-"""What a filter can draw. The compiler implements it."""
+"""`Draw`: what the passes of a filter can draw. The compiler implements it."""
 
 from __future__ import annotations
 
@@ -17,43 +17,47 @@ from .values import Plain, Uniform
 
 
 class Drawn(Protocol):
-    """Pixels that a draw will make. Only the compiler looks inside."""
+    """A picture that a draw will make, to draw with or to return from `passes`."""
 
     @property
     def size(self) -> Size: ...
 
 
 Pixels = Socket | Drawn
+"""A picture: an input of the node, or one that was drawn."""
+
 Affine = tuple[float, float, float, float, float, float]
-"""A map of pixel positions, by rows: x' = a x + b y + c, y' = d x + e y + f. Pixels have their centers at .5."""
+"""A map of pixel positions, by rows: x' = a x + b y + c, y' = d x + e y + f. Pixel centers lie at .5."""
 
 Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
-"""How pixels between pixels are made. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
+"""The filter for places between pixels. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
 
 Argument = Socket | Drawn | Plain
+"""What a GLSL function is called with: a picture or a value."""
 
 
 class Reach(Struct, frozen=True):
-    """Pixels around a place, to which `matrix` leads from the middle of the pixel that is made; the function reads no
-    farther from it than `radius`, across and down."""
+    """The pixels that a function reads: at most `radius` across and down around a place, which is `matrix` times the
+    center of the pixel that is made."""
 
     matrix: Affine
     radius: tuple[int, int]
 
     @staticmethod
     def block(across: int, down: int, beside: int = 0) -> Reach:
-        """All pixels of a block, of which each becomes one, and so many beside it."""
+        """For a function that makes one pixel of a block, and reads `beside` more pixels on each side."""
         matrix = (float(across), 0.0, 0.0, 0.0, float(down), 0.0)
         return Reach(matrix, (-(-across // 2) + beside, -(-down // 2) + beside))
 
     @staticmethod
     def within(across: int, down: int, beside: int = 0) -> Reach:
-        """The one for the block that a pixel lies in, and so many beside it."""
+        """For a function that reads the pixel of a smaller picture that stands for its block, and `beside` more."""
         return Reach((1.0 / across, 0.0, 0.0, 0.0, 1.0 / down, 0.0), (1 + beside, 1 + beside))
 
 
 Overlap = int | tuple[int, int] | Reach
-"""Pixels to every side, or across and down; in a picture of another size, of the pixel at the same part of it."""
+"""How many pixels a function reads around its own: on all sides, or across and down. In a picture of another size they
+count from the pixel at the same relative place."""
 
 
 class ShaderStage(Struct, frozen=True):
@@ -81,12 +85,13 @@ class ShaderText(Struct, frozen=True):
 class Draw(Protocol):
     """Records the draws of a node. Nothing runs yet, but sizes are known.
 
-    Functions are looked up in the node's own GLSL file. `result` is the type of what is drawn.
+    Functions are those of the node's own GLSL file. `result` is the type of the picture that is drawn; Image by
+    default.
     """
 
     @property
     def size(self) -> Size:
-        """The size that the node's outputs have unless drawn otherwise."""
+        """The size of the node's outputs, unless a draw names another one."""
         ...
 
     @property
@@ -105,7 +110,7 @@ class Draw(Protocol):
         ...
 
     def size_of(self, pixels: Pixels) -> Size:
-        """The size of an input or of something drawn."""
+        """The size of an input or of a drawn picture."""
         ...
 
     def is_linked(self, socket: Socket) -> bool:
@@ -113,11 +118,11 @@ class Draw(Protocol):
         ...
 
     def camera(self, socket: CameraSocket, frame: int | None = None) -> CameraModel | None:
-        """The camera that is linked to this input of the node, if any is; at another of the node's `times`."""
+        """The camera that is linked to an input, at `frame` (one of the node's `times`); None without a link."""
         ...
 
     def at(self, socket: Socket, frame: int) -> Drawn:
-        """An input at another frame, one of the node's `times`."""
+        """An input at another frame, which must be one of the node's `times`."""
         ...
 
     def __call__(
@@ -133,13 +138,13 @@ class Draw(Protocol):
     ) -> Drawn:
         """Call `function` for every pixel of `size`.
 
-        Inputs, and keyword arguments that are pixels, are read through accessors named after the socket or
-        keyword: `image_at(ivec2)`, `image_near(vec2)` (bilinear, pixel positions, centers at .5) and
-        `image_size`. The other keyword arguments are the function's parameters, in order.
+        The function reads inputs, and keyword arguments that are pictures, by functions named after them:
+        `image_at(ivec2)`, `image_near(vec2)` and `image_size`. The other keyword arguments are the parameters of the
+        function, in order.
 
-        `overlap` is how many pixels around its own the function reads at most, those that `near` mixes too, of all
-        pictures or of those that it names. Without one, or of what is not named, it may read everything, and no
-        part of a picture can be made alone.
+        `overlap` is how many pixels around its own the function reads at most, including those that `near`
+        interpolates: of all pictures, or by name. Without it the function may read all pixels, and large pictures
+        cannot be rendered in tiles.
         """
         ...
 
@@ -154,11 +159,11 @@ class Draw(Protocol):
         overlap: Overlap | Mapping[str, Overlap] | None = None,
         **arguments: Argument,
     ) -> tuple[Drawn, ...]:
-        """Draw with a `function` that has `out` parameters, last, for pictures of these types: all are made at once."""
+        """Draw several pictures in one pass: the last parameters of `function` are an `out` for each of `results`."""
         ...
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
-        """Call a pointwise `function`; every argument, pixels too, is a parameter, in order. It can fuse."""
+        """Call a pointwise `function`: all arguments, pictures too, are its parameters, in order. It can fuse."""
         ...
 
     def program(
@@ -170,47 +175,47 @@ class Draw(Protocol):
         size: Size | None = None,
         result: Socket | None = None,
     ) -> Drawn:
-        """Run a complete shader program from outside over every pixel of `size`; four channels come out.
+        """Run a complete shader program over every pixel of `size`. It makes four channels.
 
-        Pictures are by the names of its samplers, which filter (bilinear) and end in their outermost pixels. What it
-        does not draw stays black.
+        `pictures` are by the names of the program's samplers, which interpolate and repeat the border pixels. Pixels
+        that the program does not draw stay black.
         """
         ...
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
-        """Gaussian of `sigma` working pixels: direct where small, decimated where large."""
+        """Blur with a Gaussian; `sigma` is in pixels. A large sigma is computed on a smaller picture."""
         ...
 
     def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
-        """Correlate along both axes with an odd number of centered weights that fall off smoothly.
+        """Blur along both axes with an odd number of centered weights that fall off smoothly.
 
-        Direct where they are few, decimated where they are many: then within 1e-3 of what a single pixel becomes.
+        Many weights are computed on a smaller picture: then the spread of a single pixel is exact to 1e-3.
         """
         ...
 
     def convolve(
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
     ) -> Drawn:
-        """Correlate along one axis with an odd number of centered weights."""
+        """Blur along one axis with an odd number of centered weights."""
         ...
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
-        """Convolve every channel with the same channel of another picture of any size; black lies outside.
+        """Convolve every channel with the same channel of another picture, of any size. Outside of pictures is black.
 
-        The kernel's origin is its middle, pixel `size // 2`; it is not normalized. By fast Fourier transform: exact
-        but for rounding, and the cost hardly depends on what the kernel holds.
+        The origin of the kernel is its center, pixel `size // 2`; the kernel is not normalized. It is computed by fast
+        Fourier transforms, exact up to rounding.
         """
         ...
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
-        """Change straight color as OpenColorIO does, exactly; alpha is kept. It can fuse, as `point` does."""
+        """Convert straight color exactly as OpenColorIO does; alpha stays. It can fuse, as `point` does."""
         ...
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
-        """Move, turn and scale: `matrix` says where a pixel of the result lies in `image`.
+        """Move, rotate and scale: `matrix` maps a pixel of the result to its place in `image`.
 
-        The kernel widens where the picture shrinks. What was itself placed with the same edge is placed anew: pixels
-        are filtered once, and what left the frame in between is still there.
+        The kernel is wider where the picture shrinks. Two placements in a row with the same edge become one: pixels are
+        filtered once, and parts that left the frame in between are still there.
         """
         ...
 
@@ -221,45 +226,45 @@ class Draw(Protocol):
         cameras: tuple[CameraModel, CameraModel, CameraModel],
         near: float,
     ) -> Mapping[str, Drawn]:
-        """Draw the meshes of a scene as seen by a camera; motions and cameras are those of now, before and after.
+        """Draw the meshes of a scene as a camera sees them. Motions and cameras are those of now, before and after.
 
-        Gives `albedo` and `emission` (opaque where something is), `normal` (unit, towards the camera), `place` (world
-        x, y, z and planar depth), `metal_rough`, `velocity` (pixels since the frame before and until the next, y
-        down), `surface` (u, v, object, material; numbers from 1). Where nothing is, all are 0. What is nearer than
-        `near` is cut off.
+        Returns `albedo` and `emission` (opaque on surfaces), `normal` (unit, toward the camera), `place` (world x, y, z
+        and planar depth), `metal_rough`, `velocity` (pixels from the previous frame and to the next one, y down) and
+        `surface` (u, v, object, material; numbered from 1). All are 0 on the background. Parts nearer than `near` are
+        cut off.
         """
         ...
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
-        """Sum or maximum of every channel over all pixels, as 1x1; exact at any size."""
+        """The sum or maximum of every channel over all pixels, as a picture of 1x1; exact at any size."""
         ...
 
     def history(self, first: Pixels, name: str = "") -> Drawn:
-        """What this node remembered of the frame before; on a first frame, `first`. For `Temporal` nodes.
+        """The picture that this node remembered in the previous frame; `first` in the first frame.
 
-        One that remembers several pictures tells them apart by `name`.
+        For `Temporal` nodes. A node that remembers several pictures gives each a `name`.
         """
         ...
 
     def remember(self, pixels: Drawn, name: str = "") -> None:
-        """Keep these pixels for the next frame. For `Temporal` nodes."""
+        """Keep a picture for the next frame. For `Temporal` nodes."""
         ...
 
     def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
-        """Numbers as a picture of four channels, `width` pixels to a row, for functions that read them anywhere."""
+        """Numbers as a picture of four channels with `width` pixels in a row, for functions to read."""
         ...
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
-        """What the file of a render turns out to hold; `named` are layers by the roles that they are to have.
+        """The layers of a render's file by role. `named` are layers that the user has chosen for a role.
 
         For `Source` nodes.
         """
         ...
 
     def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
-        """The pixels of a layer of an image file, as `result` says. Color is in that color space, "" to find out."""
+        """A layer of a picture file as a picture of type `result`. `space` is its color space, "" to recognize it."""
         ...
 
     def asset(self, path: str, folder: str) -> Drawn:
-        """A picture that belongs to the node itself, never fit to a size. It must lie in `folder`, links followed."""
+        """A picture of the node itself, at its own size. The file must lie in `folder`, also behind links."""
         ...

@@ -1,4 +1,4 @@
-"""Nodes: what a class body becomes."""
+"""`Node` and its kinds: reads the declaration in a class body."""
 
 from __future__ import annotations
 
@@ -34,12 +34,13 @@ class Node:
     id: ClassVar[str] = ""
     """The file's name; in a plug-in its namespace comes first: `acme_glow.soft_glow`."""
     title: ClassVar[str] = ""
-    """What people call it: the id with spaces, `soft glow (acme glow)` for one of a plug-in."""
+    """The name that users see: the id with spaces, `soft glow (acme glow)` for a node of a plug-in."""
     category: ClassVar[str] = ""
     """The folder's name, which is the menu."""
     required_package: ClassVar[str] = ""
     """The plug-in that brings it, as pip installs it: `acme-glow==1.2.0`."""
     version: ClassVar[int] = 1
+    """The version of the values in graph files: raise it when a saved value changes its meaning."""
     function: ClassVar[str] = ""
     """The GLSL function of a pointwise node: the id, with `_` for the dot."""
     shader: ClassVar[str] = ""
@@ -50,9 +51,9 @@ class Node:
     order: ClassVar[tuple[str, ...]] = ()
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     traits: ClassVar[tuple[Trait, ...]] = ()
-    """What rules and tests need to know beyond sockets and values."""
+    """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
-    """Where a proxy of half the size does not look like the whole picture made smaller."""
+    """Why a proxy of half the size does not look like the full picture made smaller."""
 
     def __init_subclass__(cls, abstract: bool = False, **kwargs: Any) -> None:
         """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses."""
@@ -87,17 +88,17 @@ class Node:
         return getattr(self, name)
 
     def identity(self) -> str | None:
-        """The input that passes through unchanged at these values, or None. It is not called while a value is wired."""
+        """The input that passes through unchanged at these values, or None. Not called while a value is linked."""
         return None
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
-        """The size of the outputs: the first linked input's, else the graph's canvas."""
+        """The size of the outputs: that of the first linked input, else that of the graph."""
         return next(iter(inputs.values()), canvas)
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
-        """The frames of an input that this frame is made of, by input; one that is not named is seen at `frame` alone.
+        """The frames of each input that are needed for a frame; of inputs that are not named only `frame` is.
 
-        For filters, which read those frames by `draw.at`.
+        For filters, which read them by `draw.at`.
         """
         return {}
 
@@ -124,23 +125,23 @@ class Node:
 
 
 class Pointwise(Node, abstract=True):
-    """An output pixel needs only the same pixel of each input, so neighbors fuse into one pass.
+    """An output pixel depends only on the same pixel of each input, so that neighbors fuse into one pass.
 
-    `shaders/<category>/<id>.glsl` holds a function named like the node whose parameters are the sockets and
-    values in declared order. One output is returned; several are `out` parameters at the end.
+    `shaders/<category>/<id>.glsl` has a function with the name of the node. Its parameters are the sockets and values
+    in declared order. It returns the output; several outputs are `out` parameters at the end.
     """
 
 
 class Filter(Node, abstract=True):
-    """Anything that looks at other pixels or takes several passes."""
+    """A node that reads other pixels, or takes several passes."""
 
     def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn | CameraModel]:
-        """What to draw. Several outputs come back by name; a camera is made without drawing."""
+        """Record the draws, and return the output; several outputs by name. A camera is returned as it is."""
         raise NotImplementedError
 
 
 class Source(Filter, abstract=True):
-    """Makes pixels from outside the graph."""
+    """A node that makes pixels without an input: from files, formulas or meshes."""
 
 
 class Reader(Source):
@@ -155,8 +156,8 @@ class Reader(Source):
 
 
 class Temporal(Filter, abstract=True):
-    """A filter that owns history: `draw.history` gives what `draw.remember` kept of the frame before.
+    """A filter that remembers pictures: `draw.history` returns what `draw.remember` kept in the previous frame.
 
-    The first frame of the graph's range has none, nor has any before it. It is never neutral: values may be keyed, and
-    a frame that they do not change is remembered too.
+    The first frame of the graph has no history. Such a node is never skipped as neutral: its values may be animated,
+    and frames that they do not change are remembered too.
     """

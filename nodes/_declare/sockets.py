@@ -1,4 +1,4 @@
-"""The ends of links: what a node takes in and hands out."""
+"""Sockets: the typed inputs and outputs of nodes."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ Size = tuple[int, int]
 """Width and height in pixels."""
 
 Edge = Literal["clamp", "mirror", "reflect", "wrap", "black"]
-"""What lies outside a picture: scipy's nearest, mirror, reflect and wrap; black is transparent."""
+"""What is read outside of a picture, by the names of scipy: clamp (nearest), mirror, reflect, wrap; black is
+transparent."""
 
 
 @dataclass(frozen=True)
 class Socket:
-    """A typed end of a link. With a `default` (one number per channel, or one for all) it may stay unlinked."""
+    """A typed input. With a `default` (one number per channel, or one for all) it may stay unlinked."""
 
     kind: ClassVar[Kind]
     default: float | tuple[float, ...] | None = None
     doc: str = dataclasses.field(default="", kw_only=True)
     own_size: bool = dataclasses.field(default=False, kw_only=True)
-    """True if a filter takes a picture of any size as it is; all others are fit to the first one."""
+    """True if a picture keeps its size; pictures of other inputs are scaled to the size of the first one."""
     name: str = dataclasses.field(default="", init=False, compare=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -87,14 +88,14 @@ class Color(Socket):
 
 
 class CameraSocket(Socket):
-    """The camera that a picture was taken with, known before anything is drawn: see `Camera`. Filters take it."""
+    """The camera of a picture, as a `CameraModel`. It is known before anything is drawn, and only filters take it."""
 
     kind = Kind.CAMERA
 
 
 @dataclass(frozen=True)
 class OutputSocket:
-    """Something a node makes. `socket` says its type."""
+    """An output. `socket` is its type."""
 
     socket: Socket = dataclasses.field(default_factory=Image)
     name: str = dataclasses.field(default="", init=False, compare=False)

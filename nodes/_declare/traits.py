@@ -1,4 +1,4 @@
-"""Traits: what a node says about itself to the rules of `halation check` and to the tests of all nodes."""
+"""Traits: what a node tells the rules of `halation check` and the tests of all nodes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 
 
 class Trait(StrEnum):
-    """One thing that is true of a node and that its sockets and values do not show. *The picture* is its first input.
+    """A property of a node that its sockets and values do not show. *The picture* is its first input.
 
     A node lists its own: `traits = (Trait.NEEDS_COLOR,)`.
     """
@@ -26,16 +26,17 @@ class Trait(StrEnum):
     RESAMPLES = "resamples"
     """It filters the picture, so that two such nodes in a row cost sharpness and time."""
     KEEPS_NON_FINITE = "keeps non-finite"
-    """Its outputs are its inputs unchanged, NaN and infinity included; all other nodes make every pixel finite."""
+    """It passes NaN and infinity on; all other nodes make every pixel finite, with `lib/finite.glsl`."""
     USES_ALPHA = "uses alpha"
-    """Its color depends on alpha: a pixel that is half covered is not half of the same pixel fully covered."""
+    """Its color depends on alpha. All other pointwise nodes treat a half-covered pixel as half of the same pixel fully
+    covered, with `lib/alpha.glsl`."""
 
 
 @dataclass(frozen=True)
 class ProxyNote:
-    """Why outputs of a proxy, rendered at half the size, are not the whole picture made smaller."""
+    """Why outputs of a proxy, rendered at half the size, do not look like the full picture made smaller."""
 
     outputs: tuple[str, ...]
     reason: str
     differs: Literal["detail", "look"] = "detail"
-    """In fine detail only, or in how they look as a whole."""
+    """Whether they differ in fine detail only, or in the whole look."""

@@ -1,4 +1,4 @@
-"""Values: what a node lets its user set, and how that is edited."""
+"""Values: the parameters of a node, and how they are edited."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from .lights import LIGHT_NUMBERS
 from .sockets import glsl_type
 
 Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
-"""What a number counts.
+"""The unit of a number.
 
-`px` pixels at full size (scaled under a proxy); `height` fraction of the image height (pixels in GLSL);
-`deg` degrees (radians in GLSL); `EV` photographic stops; `ratio` a plain factor; `count` a whole number of
-things; `s` seconds; `scene` the scene's own units (radiance, depth).
+`px`: pixels at full size, scaled with a proxy. `height`: fraction of the picture's height, which GLSL gets in pixels.
+`deg`: degrees, which GLSL gets in radians. `EV`: photographic stops. `ratio`: a plain factor. `count`: a number of
+things. `s`: seconds. `scene`: the scene's own units (radiance, depth).
 """
 
 
@@ -26,7 +26,7 @@ def unit_factor(unit: Unit | None, scale: float, height: float) -> float:
 
 
 class Slider(Struct, frozen=True):
-    """How a number is edited: the soft range of the slider, the hard range that typing cannot leave, the unit."""
+    """A number: the range of the slider, the hard range `minimum` to `maximum`, which typing cannot leave, the unit."""
 
     low: float
     high: float
@@ -43,23 +43,22 @@ class Doc(Struct, frozen=True):
 
 
 Missing = Literal["error", "hold", "nearest", "black"]
-"""What a frame of a sequence shows that has no file."""
+"""What a frame of a sequence shows if it has no file."""
 
 Holds = Literal["picture", "render", "table", "scene"]
-"""What is in a file: pixels, layers of a render, a table of colors (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
+"""The content of a file: pixels, layers of a render, a color table (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
 
 
 class File(Struct, frozen=True):
-    """The value is a path of a picture, or of a table of colors. `layer` names the value that picks a layer of it."""
+    """The value is the path of a file. `layer` names the value that chooses a layer of it."""
 
     layer: str = ""
     holds: Holds = "picture"
 
 
 class OfLayer(Struct, frozen=True):
-    """The value is about the layer of a render that has a role, "depth" say: a text names it, a choice what it holds.
-
-    `path` is the value with the render's file.
+    """The value is about the layer of a render with a role, such as "depth": a text names the layer, a choice says
+    what its numbers mean. `path` is the value with the file of the render.
     """
 
     role: str
@@ -71,7 +70,7 @@ class OfSpace(Struct, frozen=True):
 
 
 class Picks(Struct, frozen=True):
-    """The value is a list of names of a cryptomatte, as `picked` reads it; `layer` is the value that says of which."""
+    """The value is a list of names of a cryptomatte, for `pick_ids`. `layer` is the value that chooses the matte."""
 
     layer: str
     path: str = "path"
@@ -82,13 +81,13 @@ class Swatch(Struct, frozen=True):
 
 
 class Handle(Struct, frozen=True):
-    """The value is a position as a fraction of the picture (0,0 is its top left), dragged in the viewer."""
+    """The value is a position in fractions of the picture, 0,0 at the top left, dragged in the viewer."""
 
 
 class Curve(Struct, frozen=True):
-    """The value is a smooth curve through points `x0, y0, x1, y1, ...`, x growing within 0..1: see `curve_at`.
+    """The value is a smooth curve through points `x0, y0, x1, y1, ...` with increasing x in 0..1: see `curve_at`.
 
-    `low` and `high` are the soft range of y, `minimum` and `maximum` its hard range.
+    `low` and `high` are the range of y in the editor, `minimum` and `maximum` its hard range.
     """
 
     low: float = 0.0
@@ -98,7 +97,7 @@ class Curve(Struct, frozen=True):
 
 
 class ColorRamp(Struct, frozen=True):
-    """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, t never falling: see `ramp_at`."""
+    """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, sorted by t: see `ramp_at`."""
 
 
 class Lights(Struct, frozen=True):
@@ -121,10 +120,10 @@ ValueType = Literal[
     "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "lights", "path", "text"
 ]
 Plain = float | int | bool | str | tuple[float, ...]
-"""What a value may be: JSON scalars and flat lists of numbers."""
+"""The types of values: JSON scalars and flat lists of numbers."""
 
 Uniform = float | int | bool | tuple[float, ...]
-"""What a uniform of a shader may be set to."""
+"""The types of uniforms."""
 
 
 class Value(Struct, frozen=True):

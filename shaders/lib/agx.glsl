@@ -36,6 +36,7 @@ float agx_sigmoid(float x) {
     return AGX_GRAY + reach * u / pow(1.0 + pow(abs(u), 1.5), 1.0 / 1.5);
 }
 
+// The tone curve of one channel: scene light to display light.
 float agx_curve(float light) {
     float stops = clamp(log2(max(light, 1e-10) / 0.18), -10.0, 6.5);
     return pow(max(agx_sigmoid((stops + 10.0) / 16.5), 0.0), 2.4);

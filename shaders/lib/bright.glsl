@@ -5,6 +5,7 @@
 
 const float BRIGHT_NONE = 1e-5;  // least luminance to divide by
 
+// Hard threshold: all light above it, nothing below.
 float bright_hard(float light, float threshold) { return light > threshold ? light : 0.0; }
 
 // Soft threshold: the light above it, with a quadratic transition whose width is `knee` times the threshold.

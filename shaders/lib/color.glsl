@@ -1,8 +1,10 @@
 // Color science of the working space, which is scene-linear.
 #include "lib/working.glsl"
 
+// The luminance of a color in the working space.
 float luminance(vec3 rgb) { return dot(rgb, LUMINANCE_WEIGHTS); }
 
+// The largest or the smallest channel.
 float largest(vec3 v) { return max(max(v.r, v.g), v.b); }
 float smallest(vec3 v) { return min(min(v.r, v.g), v.b); }
 
@@ -13,6 +15,7 @@ float srgb_encode(float linear) {
     return sign(linear) * (light <= 0.0031308 ? 12.92 * light : 1.055 * pow(light, 1.0 / 2.4) - 0.055);
 }
 
+// The light of an sRGB code: the inverse of srgb_encode().
 float srgb_decode(float encoded) {
     float code = abs(encoded);
     return sign(encoded) * (code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4));

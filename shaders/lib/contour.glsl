@@ -4,8 +4,10 @@
 
 const float CONTOUR_NONE = -1.0;
 
+// The start of the flooding: the own row as that of the nearest pixel inside, or outside.
 vec2 contour_seeds(float mask, float row) { return mask >= 0.5 ? vec2(row, CONTOUR_NONE) : vec2(CONTOUR_NONE, row); }
 
+// The nearer of two rows; CONTOUR_NONE is no row.
 float contour_nearer(float a, float b, float row) {
     if (a < 0.0 || b < 0.0) return max(a, b);
     return abs(b - row) < abs(a - row) ? b : a;
@@ -26,6 +28,7 @@ float contour_before(float covered, float covered_back) {
     return covered < 1.0 ? covered - 0.5 : 0.5 + covered_back;
 }
 
+// The coverage of a pixel by the inside (`kind` true) or the outside of the mask.
 float contour_covered(float mask, bool kind) { return kind ? clamp(mask, 0.0, 1.0) : 1.0 - clamp(mask, 0.0, 1.0); }
 
 // One step of jump flooding, in a pass that reads `seeds`: takes over the rows that the pixels `reach` above and below

@@ -35,6 +35,7 @@ ivec2 environment_texel(ivec2 at, ivec2 size) {
 // The four pixels around a direction, with their weights.
 struct Corners { ivec2 at[4]; vec4 weight; };
 
+// The four pixels around a place of the picture, with the weights of bilinear interpolation.
 Corners environment_corners(vec2 uv, ivec2 size) {
     vec2 at = uv * vec2(size) - 0.5, part = at - floor(at), rest = 1.0 - part;
     ivec2 first = ivec2(floor(at));

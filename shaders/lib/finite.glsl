@@ -1,11 +1,13 @@
 // Makes numbers finite: NaN becomes 0 and infinity the largest half float, so that one bad pixel does not spread. Bits
 // are tested, because drivers may assume that isnan() is always false.
 
+// True if a number, or every channel, is neither NaN nor infinite.
 bool is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
 bool is_finite(vec2 v) { return is_finite(v.x) && is_finite(v.y); }
 bool is_finite(vec3 v) { return is_finite(v.xy) && is_finite(v.z); }
 bool is_finite(vec4 v) { return is_finite(v.xy) && is_finite(v.zw); }
 
+// The number, or 0 for NaN and the largest half float for infinity.
 float finite(float x) {
     if (is_finite(x)) return x;
     uint bits = floatBitsToUint(x);

@@ -6,6 +6,7 @@ const float GEOMETRY_NOTHING = 1e10;  // the depth that nodes write for the back
 const float GEOMETRY_LEAST = 0.1;     // shorter normals count as background
 const float GEOMETRY_WHOLE = 0.98;    // shorter normals are averages of several surfaces (antialiasing)
 
+// True for the depth of a surface; false for the background, NaN and infinity.
 bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth < GEOMETRY_FAR; }
 
 // 1 / depth, which is linear on every plane; 0 on the background.

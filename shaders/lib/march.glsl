@@ -23,7 +23,9 @@ struct March {
     float sure;        // confidence: 1 if it met a visible surface, less the deeper it entered an object from the side
 };
 
+// The nearness of the ray at a place along it.
 float march_near(March ray, float at) { return ray.near + ray.gain * at; }
+// The position of the end of the ray in the picture.
 vec2 march_place(March ray) { return ray.from + ray.pace * ray.at; }
 
 // The length of the ray so far, in world units.
@@ -69,6 +71,7 @@ ivec2 march_cell(March ray, ivec2 size) {
     return ivec2(clamp(floor(ahead), vec2(0.0), vec2(size - 1))) >> (2 * ray.level);
 }
 
+// The number of cells of a level.
 ivec2 march_cells(ivec2 size, int level) { return (size + (1 << (2 * level)) - 1) >> (2 * level); }
 
 // The place of a cell in the picture `surfaces`: pixels at the top, below them the larger cells side by side.
@@ -77,6 +80,7 @@ ivec2 march_texel(ivec2 cell, ivec2 size, int level) {
     return level > 0 ? cell + ivec2(0, size.y) : cell;
 }
 
+// The distance by which a ray is behind a surface, from the nearness of both.
 float march_gap(float near, float surface) { return max(1.0 / max(near, 1e-30) - 1.0 / max(surface, 1e-30), 0.0); }
 
 // Advances the ray by one cell. `seen` is the content of the cell: for a pixel the nearness at its center and the
@@ -165,6 +169,7 @@ vec3 march_bounds() {
     return vec3(found, 0.0);
 }
 
+// The third draw, which reads `planes` and `bounds`: all levels in one picture.
 vec3 march_surfaces() {
     ivec2 size = planes_size;
     if (pixel.y < size.y) return all(lessThan(pixel, size)) ? planes_at(pixel) : vec3(0.0);

@@ -1,14 +1,16 @@
 // Lattice noises. Each cell is hashed once and gives three independent noises, each within -1..1.
 #include "lib/hash.glsl"
 
-// The lattice ends where floats have no fractions left, before integers overflow.
+// The cell of a position. The lattice ends where floats have no fractions left, before integers overflow.
 ivec3 lattice_cell(vec3 p) { return ivec3(floor(clamp(p, -1e9, 1e9))); }
 
+// A random value for each cell.
 vec3 white_noise(vec3 p, uvec3 seed) { return hash3(lattice_cell(p), seed) * 2.0 - 1.0; }
 
 // Interpolation with continuous second derivative (Perlin 2002, "Improving Noise").
 vec3 quintic(vec3 t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); }
 
+// Smooth interpolation between random values at lattice points.
 vec3 value_noise(vec3 p, uvec3 seed) {
     ivec3 cell = lattice_cell(p);
     vec3 t = quintic(fract(p));

@@ -29,6 +29,7 @@ Seen seen_at(const vec4 rays[3], vec2 uv, float depth, vec3 normal) {
     return Seen(depth * ray, size > 1e-3 ? normal / size : view, view, uv);
 }
 
+// The slice through a surface point at an angle around the view vector.
 Slice slice_at(const vec4 rows[3], const vec4 rays[3], Seen seen, vec2 size, float angle) {
     vec3 right = vec3(rays[0].x, rays[1].x, rays[2].x);
     right = normalize(right - dot(right, seen.view) * seen.view);

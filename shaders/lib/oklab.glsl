@@ -2,9 +2,10 @@
 // the cube root of k, so premultiplied color can be rotated and saturated directly.
 #include "lib/working.glsl"
 
+// The cube root, also of negative numbers.
 float signed_cbrt(float x) { return sign(x) * pow(abs(x), 1.0 / 3.0); }
 
-// Matrices are written by rows and multiplied from the left.
+// OKLab of a color. Matrices are written by rows and multiplied from the left.
 vec3 to_oklab(vec3 rgb) {
     vec3 cones = to_rec709(rgb) * mat3(
         0.4122214708, 0.5363325363, 0.0514459929,
@@ -18,6 +19,7 @@ vec3 to_oklab(vec3 rgb) {
     );
 }
 
+// The inverse of to_oklab().
 vec3 from_oklab(vec3 lab) {
     vec3 root = lab * mat3(
         1.0, 0.3963377774, 0.2158037573,

@@ -1,5 +1,6 @@
 // Filters for resampling, by distance in pixels. They are not normalized: divide by the sum of the weights.
 
+// The triangle filter: linear interpolation.
 float triangle_weight(float x) { return max(1.0 - abs(x), 0.0); }
 
 // The cubic filters of Mitchell and Netravali (1988): B 0 and C 1/2 is Catmull-Rom, B and C 1/3 is Mitchell's.

@@ -10,4 +10,5 @@ vec4 shrunk(int factor) {
     return sum / float(factor * factor);
 }
 
+// A pixel of the enlarged picture, by bilinear interpolation.
 vec4 enlarged(int factor) { return image_near((vec2(pixel) + 0.5) / float(factor)); }

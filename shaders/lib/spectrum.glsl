@@ -5,6 +5,7 @@
 // responds equally to all.
 vec4 spectrum_response(float place) { return vec4(max(-place, 0.0), 1.0 - abs(place), max(place, 0.0), 1.0); }
 
+// A Gaussian with different widths below and above its middle.
 float spectrum_lobe(float nm, float middle, float below, float above) {
     float t = (nm - middle) / (nm < middle ? below : above);
     return exp(-0.5 * t * t);

@@ -3,6 +3,7 @@
 
 const float STRUCTURE_NONE = 1e-12;  // below this difference of eigenvalues there is no main direction
 
+// The tensor of one pixel, from the change across and down: xx, xy, yy.
 vec3 structure_tensor(vec2 change) { return vec3(change.x * change.x, change.x * change.y, change.y * change.y); }
 
 // The difference of the two eigenvalues.

@@ -127,6 +127,13 @@ def test_a_driver_names_the_node_and_the_users_own_line(renderer: Renderer) -> N
     assert not re.search(r"w[0-9a-f]{8}", str(fault)) and "code of 'b'" in str(fault)
 
 
+@pytest.mark.parametrize(("mode", "factor"), [("half", 0.5), ("twice", 2.0)])
+def test_a_choice_of_code_that_reads_other_pixels(run: Run, mode: str, factor: float) -> None:
+    code = """vec4 f(vec4 image, int mode // = half, one of half | twice
+    ) { return image_at(pixel) * (mode == MODE_TWICE ? 2.0 : 0.5); }"""
+    assert (run(node(code, mode=mode), {"image": PICTURE}) == PICTURE * factor).all()
+
+
 def test_an_include_that_is_no_library_file_is_refused(renderer: Renderer) -> None:
     for name in ("/etc/passwd", "../../secret.glsl", "color/none"):
         with pytest.raises(ShaderError, match="names no shader file"):
