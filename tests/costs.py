@@ -1,0 +1,96 @@
+"""What the tests cost: processor time of each, its child processes included, and the memory of each worker.
+
+`--costs FILE` writes the table and prints its largest rows; `.ci/run` asks for it. Processor time says more than time
+on the clock, which depends on what else the machine does.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections import defaultdict
+from collections.abc import Generator
+from pathlib import Path
+
+import pytest
+
+SHOWN = 20
+"""The most rows that are printed."""
+
+_START = pytest.StashKey[float]()
+
+
+class CostTable:
+    """The costs of all tests, in the process that collects the reports."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._seconds: dict[str, float] = {}
+        self._memory = defaultdict[str, int](int)
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Add the costs of a test that has ended."""
+        if report.when == "teardown":
+            costs = dict(report.user_properties)
+            self._seconds[report.nodeid] = round(float(str(costs.get("processor seconds", 0.0))), 3)
+            worker = getattr(getattr(report, "node", None), "gateway", None)
+            name = worker.id if worker else "this process"
+            self._memory[name] = max(self._memory[name], int(str(costs.get("peak bytes", 0))))
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Print the costs and write them to the file."""
+        slowest = sorted(self._seconds.items(), key=lambda entry: -entry[1])
+        terminalreporter.section(f"the {SHOWN} tests that take most processor time")
+        for name, seconds in slowest[:SHOWN]:
+            terminalreporter.write_line(f"{seconds:8.1f} s  {name}")
+        peaks = ", ".join(f"{name} {peak / 2**20:.0f} MiB" for name, peak in sorted(self._memory.items()))
+        terminalreporter.write_line(f"together {sum(self._seconds.values()):.0f} s; peak memory: {peaks}")
+        table = {"seconds": dict(sorted(self._seconds.items())), "peak_bytes": dict(self._memory)}
+        self._path.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The option that asks for the table."""
+    parser.addoption("--costs", metavar="FILE", help="write what each test costs, and print what costs most")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Collect costs where they were asked for, unless another process collects them."""
+    if path := config.getoption("--costs"):
+        if not hasattr(config, "workerinput"):
+            config.pluginmanager.register(CostTable(Path(path).absolute()))
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> Generator[None, None, None]:
+    """Note when a test begins."""
+    item.stash[_START] = processor_seconds()
+    return (yield)
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Generator[None, None, None]:
+    """Note what a test has cost."""
+    try:
+        return (yield)
+    finally:
+        if item.config.getoption("--costs"):
+            seconds = processor_seconds() - item.stash.get(_START, processor_seconds())
+            item.user_properties += [("processor seconds", seconds), ("peak bytes", peak_memory())]
+
+
+def processor_seconds() -> float:
+    """Seconds of processor time that this process and its ended children have used."""
+    times = os.times()
+    return times.user + times.system + times.children_user + times.children_system
+
+
+def peak_memory() -> int:
+    """The most bytes that this process has had in memory; 0 where the system does not say."""
+    if sys.platform == "win32":
+        return 0
+    import resource
+
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
