@@ -57,9 +57,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Collect costs where they were asked for, unless another process collects them."""
-    if path := config.getoption("--costs"):
-        if not hasattr(config, "workerinput"):
-            config.pluginmanager.register(CostTable(Path(path).absolute()))
+    if (path := config.getoption("--costs")) and not hasattr(config, "workerinput"):
+        config.pluginmanager.register(CostTable(Path(path).absolute()))
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -76,6 +76,13 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
         faulthandler.cancel_dump_traceback_later()
 
 
+def pytest_enter_pdb() -> None:
+    """Give somebody who debugs a test all the time in the world."""
+    if hasattr(signal, "SIGALRM"):
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+    faulthandler.cancel_dump_traceback_later()
+
+
 def pytest_sessionfinish(session: pytest.Session) -> None:
     """Limit how long threads and devices keep a worker after its last test."""
     if hasattr(session.config, "workerinput"):

@@ -1,0 +1,120 @@
+"""What the plugins of the suite promise, with small suites of their own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+Suite = Callable[..., subprocess.CompletedProcess[str]]
+
+
+@pytest.fixture
+def suite(tmp_path: Path) -> Suite:
+    """`suite(code, *words)` runs the tests in `code` with the plugins of this suite."""
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = -p time_limits -p costs -p failures\ntimeout_grace = 1\n")
+
+    def run_tests(code: str, *words: str) -> subprocess.CompletedProcess[str]:
+        (tmp_path / "test_it.py").write_text(code)
+        environment = {**os.environ, "PYTHONPATH": str(ROOT / "tests")}
+        return subprocess.run(
+            [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *words],
+            cwd=tmp_path,
+            env={name: text for name, text in environment.items() if not name.startswith("PYTEST_")},
+            capture_output=True,
+            text=True,
+        )
+
+    return run_tests
+
+
+LIMITED = """
+import ctypes, signal, time, pytest
+from hypothesis import given, strategies
+
+def test_before():
+    assert True
+
+@pytest.mark.timeout(0.5)
+def test_python():
+    while True:
+        pass
+
+@pytest.mark.timeout(0.5)
+@given(strategies.integers())
+def test_examples(number):
+    while True:
+        pass
+
+@pytest.mark.timeout(0.5)
+def test_wait():
+    time.sleep(1000.0)
+
+@pytest.mark.timeout(0.5)
+@pytest.mark.parametrize("library", [ctypes.CDLL, ctypes.PyDLL])
+def test_stuck(library):
+    lock = ctypes.create_string_buffer(64)
+    library(None).pthread_mutex_lock(lock)
+    library(None).pthread_mutex_lock(lock)
+
+def test_after():
+    assert True
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGALRM")
+def test_a_test_that_never_ends_is_named_and_the_rest_go_on(suite: Suite) -> None:
+    """In Python, in Hypothesis, in a wait of the system, and in C with and without the lock of Python."""
+    ended = suite(LIMITED, "-n", "1")
+    assert ended.returncode == 1 and "5 failed, 2 passed" in ended.stdout, ended.stdout
+    for name in ("test_python", "test_examples", "test_wait"):
+        assert f"FAILED test_it.py::{name} - " in ended.stdout
+        assert f"Overrun: test_it.py::{name} has not ended after 0.5 seconds" in ended.stdout
+    for library in ("CDLL", "PyDLL"):
+        assert f"crashed while running 'test_it.py::test_stuck[{library}]'" in ended.stdout
+    assert "in test_stuck" in ended.stderr, "the stacks are printed"
+
+
+def test_every_test_here_has_a_limit(request: pytest.FixtureRequest) -> None:
+    assert float(request.config.getini("timeout")) == 300.0
+    assert request.config.pluginmanager.hasplugin("timeout") and request.config.pluginmanager.hasplugin("time_limits")
+
+
+def test_a_failure_is_shown_before_the_next_test_begins(suite: Suite) -> None:
+    code = """
+def test_wrong():
+    assert 1 == 2
+def test_next(capsys):
+    with capsys.disabled():
+        print("the next test")
+    assert True
+"""
+    said = suite(code).stdout
+    assert said.index("FAILED test_it.py::test_wrong - assert 1 == 2") < said.index("the next test")
+
+
+def test_costs_are_written(suite: Suite, tmp_path: Path) -> None:
+    code = """
+import subprocess, sys
+def test_busy():
+    spent = bytearray(100 << 20)
+    assert sum(range(10_000_000))
+def test_child():
+    subprocess.run([sys.executable, "-c", "sum(range(10_000_000))"], check=True)
+    assert True
+def test_idle():
+    assert True
+"""
+    ended = suite(code, "--costs", "costs.json")
+    assert ended.returncode == 0 and "tests that take most processor time" in ended.stdout
+    costs = json.loads((tmp_path / "costs.json").read_text())
+    seconds = {name.partition("::")[2]: spent for name, spent in costs["seconds"].items()}
+    assert seconds["test_idle"] < min(seconds["test_busy"], seconds["test_child"])
+    assert 100 << 20 < costs["peak_bytes"]["this process"] < 1 << 30
