@@ -190,12 +190,15 @@ def drive(
     size: tuple[int, int] = (1400, 900),
     likes: Mapping[str, object] | None = None,
     faulty: bool = False,
+    content_scale: float = 1.0,
 ) -> Window:
     """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`.
 
+    `content_scale` is that of the display: 2 for one of 192 dots per inch; `size` grows with it.
     A panel that fails, or anything else that says it is a fault in Halation, fails the test unless it is `faulty`.
     """
     window = headless(folder, path, bindings, size)
+    window.params.dpi_aware_params.dpi_window_size_factor = content_scale
     window.params.fps_idling.enable_idling = False
 
     def run_test(ctx: Any) -> None:

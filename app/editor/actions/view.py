@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..shared.action import Action
+from ..theme.style import ui_scale
 
 if TYPE_CHECKING:
     from .context import ViewSettingsContext
@@ -28,8 +29,7 @@ def _theme(context: ViewSettingsContext) -> None:
 
 def _scale(step: float) -> Callable[[ViewSettingsContext], object]:
     def scale(context: ViewSettingsContext) -> None:
-        current_scale = context.store.current.ui_scale or 1.0
-        context.store.change(ui_scale=min(max(round(current_scale + step, 2), 0.75), 3.0))
+        context.store.change(ui_scale=min(max(round(ui_scale() + step, 2), 0.75), 3.0))
 
     return scale
 

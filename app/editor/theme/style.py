@@ -66,6 +66,12 @@ def apply(palette: Palette, scale: float) -> None:
     _assign(style)
 
 
+def measure_style() -> tuple[float, ...]:
+    """Sizes of the live style by which a change of its scale can be seen."""
+    live = imgui.get_style()
+    return live.frame_padding.x, live.window_padding.x, live.font_scale_main, live.font_scale_dpi
+
+
 def _assign(style: imgui.Style) -> None:
     """Copy into the live style: there is only one, and it cannot be replaced."""
     live = imgui.get_style()

@@ -62,7 +62,7 @@ class Window:
         self._input = InputQueue()
         self._title = ""
         self._fronted: set[str] = set()
-        self._styled: tuple[Palette, float] | None = None
+        self._styled: tuple[Palette, float, tuple[float, ...]] | None = None
         self.params = self._make_params(version, size)
         self.frames = 0
         self.fault: Exception | None = None
@@ -237,9 +237,10 @@ class Window:
     def _restyle(self) -> None:
         likes = self.editor.store.current
         scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
-        if self._styled != (self.editor.palette, scale):
-            self._styled = (self.editor.palette, scale)
-            style.apply(*self._styled)
+        # The host scales the style by itself too: behind the first frame, and where the window moves to another display.
+        if self._styled != (self.editor.palette, scale, style.measure_style()):
+            style.apply(self.editor.palette, scale)
+            self._styled = (self.editor.palette, scale, style.measure_style())
         session = self.editor.session
         title = f"{'* ' if session.dirty else ''}{session.name} - Halation"
         if title != self._title:
