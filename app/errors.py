@@ -5,6 +5,7 @@
     ├── GraphError           3    the graph itself is at fault
     │   └── DocumentError         a graph file cannot be read: names file and JSON path
     ├── InputError           4    a picture that the graph needs cannot be read
+    │   └── NoFileError           no file is chosen for a node yet: in the editor this is no fault
     ├── DeviceError          5    no usable OpenGL, or it ran out of something
     │   └── ShaderError           a driver refused a shader: names node, file and line
     └── RenderError          1    the picture was not finished
@@ -72,6 +73,10 @@ class InputError(HalationError):
     """A picture that the graph needs cannot be read."""
 
     exit_code = 4
+
+
+class NoFileError(InputError):
+    """No file is chosen for a node that reads one. The editor says so where the picture would be, and marks nothing."""
 
 
 class DeviceError(HalationError):

@@ -136,7 +136,7 @@ def _try_sizes(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
     for width, height in ((1, 1), (2, 3), (17, 11), (64, 1), (1, 63)):
         pictures = make_pictures(node, (width, height), np.random.default_rng(5))
         size = None if pictures else (width, height)
-        for name, picture in _render(renderer, node(), pictures, size).items():
+        for name, picture in render_node(renderer, node(), pictures, size).items():
             socket = node.outputs[name].socket
             shape = (1, 1, socket.channels) if socket.single else (height, width, socket.channels)
             if picture.shape != shape:
@@ -156,7 +156,7 @@ def _try_bad_pixels(renderer: Renderer, node: type[Node], table: str) -> Iterato
         picture[12, 12] = -5.0
         picture[0, 0, 0] = np.nan
         picture[18, 22] = 3e38
-    for name, picture in _render(renderer, node(**find_changing_values(node, table)), pictures).items():
+    for name, picture in render_node(renderer, node(**find_changing_values(node, table)), pictures).items():
         if not np.isfinite(picture).all():
             yield f"NaN or infinity of a picture comes out at '{name}': use finite() of lib/finite.glsl"
 
@@ -165,7 +165,7 @@ def _try_choices(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
     pictures = make_pictures(node, (9, 7), np.random.default_rng(7), single=False)
     for value in node.values.values():
         for choice in value.choices[1:]:
-            for name, picture in _render(renderer, node(**{value.name: choice}), pictures, (9, 7)).items():
+            for name, picture in render_node(renderer, node(**{value.name: choice}), pictures, (9, 7)).items():
                 if not np.isfinite(picture).all():
                     yield f"the output '{name}' has NaN or infinity with {value.name}={choice}"
 
@@ -186,7 +186,7 @@ def _try_half_coverage(renderer: Renderer, node: type[Node], table: str) -> Iter
     pictures[image][..., 3] = 1.0
     halves = pictures | {image: 0.5 * pictures[image]}
     for values in ({}, find_changing_values(node, table)):
-        covered, half = _render(renderer, node(**values), pictures), _render(renderer, node(**values), halves)
+        covered, half = render_node(renderer, node(**values), pictures), render_node(renderer, node(**values), halves)
         for name in node.outputs:
             is_image = node.outputs[name].socket.kind is Kind.IMAGE
             if is_image and not np.allclose(2.0 * half[name], covered[name], rtol=1e-3, atol=1e-3):
@@ -233,7 +233,7 @@ def _other_values(value: Value, table: str) -> tuple[Any, ...]:
     return (table,) if value.type == "path" and table else ()
 
 
-def _render(
+def render_node(
     renderer: Renderer, node: Node, pictures: Mapping[str, np.ndarray], size: tuple[int, int] | None = None
 ) -> dict[str, np.ndarray]:
     """Every output of a node with these pictures, and a camera wherever one is taken."""

@@ -12,7 +12,7 @@ import os
 import stat
 from collections.abc import Iterable
 from io import BufferedReader
-from pathlib import Path
+from pathlib import Path, PurePath
 
 from ..errors import InputError
 from .sandbox import Sandbox, make_path_printable
@@ -133,10 +133,13 @@ def find_similar_name(name: str, names: Iterable[str]) -> str:
     """The most similar of the names of files, for a suggestion; "" if none is similar.
 
     What stands before the first dot must be similar, in capitals or not: all names of a folder of pictures may end
-    alike, and then `nope.exr` looks like each of them.
+    alike, and then `nope.exr` looks like each of them. The endings must be of one kind: `shot.log` is no suggestion for
+    `shot.exr`.
     """
     names_by_stem: dict[str, list[str]] = {}
     for candidate in names:
+        if not _may_stand_for(_find_ending(candidate), _find_ending(name)):
+            continue
         names_by_stem.setdefault(_find_stem(candidate), []).append(candidate)
     stems = difflib.get_close_matches(_find_stem(name), names_by_stem, 1)
     return difflib.get_close_matches(name, names_by_stem[stems[0]], 1, 0.0)[0] if stems else ""
@@ -144,3 +147,28 @@ def find_similar_name(name: str, names: Iterable[str]) -> str:
 
 def _find_stem(name: str) -> str:
     return name.partition(".")[0].casefold()
+
+
+def _find_ending(name: str) -> str:
+    return PurePath(name).suffix.casefold()
+
+
+def _may_stand_for(ending: str, sought: str) -> bool:
+    """True if a file with one ending may be what was meant by a name with another."""
+    if ending == sought or not sought:
+        return True
+    kind = next((kind for kind in _KINDS if sought in kind), None)
+    return ending in kind if kind else bool(difflib.get_close_matches(ending, [sought], 1))
+
+
+_KINDS = tuple(
+    frozenset(f".{ending}" for ending in endings.split())
+    for endings in (
+        "bmp cin dpx exr gif hdr heic jp2 jpeg jpg jxl pfm png ppm psd sgi tga tif tiff tx webp avi mkv mov mp4 webm",
+        "json",
+        "glsl frag fs vs",
+        "glb gltf obj ply stl",
+        "3dl clf csp cube spi1d spi3d vf ocio ocioz",
+    )
+)
+"""Endings of files that can take each other's place: pictures and video, graphs, shaders, meshes, color tables."""

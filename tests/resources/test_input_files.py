@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from halation.errors import InputError
-from halation.resources.input_files import check_file, read_bytes
+from halation.resources.input_files import check_file, find_similar_name, read_bytes
 from halation.resources.sandbox import UNRESTRICTED
 
 FILES = ("shot.exr", "shot_depth.exr", "plate.0011.exr", "plate.0012.exr", ".hidden.exr")
@@ -41,3 +41,21 @@ def test_an_ending_alone_is_no_likeness(tmp_path: Path, name: str) -> None:
         (tmp_path / file).write_bytes(b"x")
     with pytest.raises(InputError, match=r"there is no such file: check the name$"):
         check_file(tmp_path / name, UNRESTRICTED)
+
+
+@pytest.mark.parametrize(
+    ("sought", "names", "meant"),
+    [
+        ("missing.exr", ["missing.log"], ""),
+        ("missing.exr", ["missing.log", "missing.json", "missing.exr.txt"], ""),
+        ("shot.exr", ["shot.log", "shot.png"], "shot.png"),
+        ("look.jsn", ["look.log", "look.json"], "look.json"),
+        ("look.json", ["look.exr", "lok.json"], "lok.json"),
+        ("gain.glsl", ["gain.json", "gain.frag"], "gain.frag"),
+        ("film.cube", ["film.mov", "film.3dl"], "film.3dl"),
+        ("shot", ["shot.exr"], "shot.exr"),
+        ("shot.EXR", ["SHOT.exr"], "SHOT.exr"),
+    ],
+)
+def test_a_suggestion_is_of_the_same_kind(sought: str, names: list[str], meant: str) -> None:
+    assert find_similar_name(sought, names) == meant

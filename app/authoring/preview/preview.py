@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 from halation.nodes import CameraModel, Size
 
 from ...compiler import Library, Plan
-from ...errors import HalationError
+from ...errors import HalationError, NoFileError
 from ...graph import Graph, Port, color_settings
 from ...renderer import DeviceTexture, Display, Renderer
 from ..background.render_overviews import OverviewPending
+from .code_check import CodeCheck
 from .displayed_images import DisplayedImage, DisplayedImages
 from .frame_cache import FrameCache, FrameImage
 from .picture_job import PictureJob, begin_visible_part
@@ -34,16 +35,16 @@ PATIENCE = 0.3
 class Preview:
     """Computes what is wanted, keeps what is shown.
 
-    `timed` measures passes as they run. While `paused` nothing is computed; wants are remembered. `thumbnailing` draws
-    small pictures of nodes whose results happen to be there. While it `skims`, frames that are there are only shown.
-    `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done. What a `glimpse` shows of
-    pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment, by the
-    `clock`; budgets and measurements are in real time.
+    `errors` went wrong, by path of the node or input, "" where none is at fault; `faults` are their sentences, without
+    files that are only not chosen yet. `timed` measures passes as they run. While `paused` nothing is computed.
+    `thumbnailing` draws small pictures of nodes whose results happen to be there. While it `skims`, frames that are
+    there are only shown. `ahead` is a frame that is wanted soon, for when nothing else is to be done. What a `glimpse`
+    shows is computed first; the rest follows when the graph has rested for a moment, by the `clock`.
     """
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self.renderer, self._runner = renderer, renderer.runner
-        self._thumbnails = Thumbnails(renderer, display)
+        self._thumbnails, self._code = Thumbnails(renderer, display), CodeCheck(renderer)
         self._wish: PreviewRequest | None = None
         self._round: PreviewWork | None = None
         self._job: PictureJob | None = None
@@ -54,9 +55,7 @@ class Preview:
         self._timings: dict[str, NodeTiming] = {}
         self._cameras: dict[Port, CameraModel] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
-        """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
         self.errors: Mapping[str, HalationError] = MappingProxyType({})
-        """The same as it was raised: a ShaderError knows the line."""
         self.paused = self.timed = self.skims = False
         self.thumbnailing = True
         self.ahead: int | None = None
@@ -111,6 +110,8 @@ class Preview:
         while self._draws and not self.busy and not (worked and time.perf_counter() >= deadline):
             self._thumbnails.draw_next()
             worked = True
+        if self._checks_code and self._round is not None and self._code.add_faults(self._round):
+            self._settle(self._round)
         return self._has_more
 
     def refresh(self) -> None:
@@ -202,11 +203,7 @@ class Preview:
     @property
     def progress(self) -> tuple[int, int]:
         """Passes done, and passes to do in all, as far as they are known."""
-        before, job = self._round.passes if self._round else 0, self._job
-        if job is None or job.run is None or job.ahead:
-            return before, before
-        before += job.finished_passes
-        return before + job.run.passes_done, before + job.run.total
+        return self._round.count_passes(self._job) if self._round else (0, 0)
 
     @property
     def lead(self) -> tuple[str, int, int] | None:
@@ -228,11 +225,15 @@ class Preview:
     @property
     def _has_more(self) -> bool:
         skimmed = self._round is not None and self._round.from_cache_only and not self.skims
-        return self.busy or self._draws or skimmed or self._job is not None or self._looks_ahead
+        return self.busy or self._draws or skimmed or self._job is not None or self._looks_ahead or self._checks_code
 
     @property
-    def _draws(self) -> bool:
-        """True while there are thumbnails to be drawn, and time for it."""
+    def _checks_code(self) -> bool:
+        """True while there is code that no picture needed, and time to try it."""
+        return bool(self._round and not self.busy and not self.skims and self._code.is_behind(self._round))
+
+    @property
+    def _draws(self) -> bool:  # thumbnails, while there is time for them
         return self.thumbnailing and self._thumbnails.waiting and not self.skims
 
     def _is_behind(self) -> bool:
@@ -303,9 +304,7 @@ class Preview:
     def _may_restart(self, wish: PreviewRequest) -> bool:
         """Let a run that was begun for the same panels come to its end if that is soon."""
         work, job = self._round, self._job
-        if work is None or job is None or work.wish.ports != wish.ports or work.wish.scale != wish.scale or job.ahead:
-            return True
-        if work.part and not job.part:
+        if work is None or job is None or work.is_replaced(wish, job):
             return True
         return self.clock() - work.started_at > self.patience
 
@@ -379,7 +378,8 @@ class Preview:
     def _settle(self, work: PreviewWork) -> None:
         """What was wrong before is known to be over only when all has been tried."""
         self.errors = MappingProxyType({**(self.errors if work.queue else {}), **work.faults})
-        self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
+        mistakes = {path: error for path, error in self.errors.items() if not isinstance(error, NoFileError)}
+        self.faults = MappingProxyType({path: str(error) for path, error in mistakes.items()})
 
     def _publish_images(self, work: PreviewWork, job: PictureJob, plan: Plan) -> None:
         wish, faces = job.wish, dict[str, FrameImage]()

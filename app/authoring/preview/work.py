@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ...errors import HalationError
 from ...graph import Port
 from ..background.render_overviews import OverviewPending
+from .picture_job import PictureJob
 from .request import PreviewRequest
 from .timing import NodeTiming
 from .visible_region import PictureRegion, VisibleRegion
@@ -42,6 +43,18 @@ class PreviewWork:
         if glimpse is None or glimpse == self.tried_region or self.faults or self.pending or not self.wish.ports:
             return False
         return glimpse.names <= self.wish.ports.keys() and not (self.part and self.part.shows(glimpse))
+
+    def count_passes(self, job: PictureJob | None) -> tuple[int, int]:
+        """Passes done, and passes to do in all, as far as they are known while `job` runs."""
+        if job is None or job.run is None or job.ahead:
+            return self.passes, self.passes
+        finished = self.passes + job.finished_passes
+        return finished + job.run.passes_done, finished + job.run.total
+
+    def is_replaced(self, wish: PreviewRequest, job: PictureJob) -> bool:
+        """True if nothing that `job` does would be shown for another wish."""
+        differs = self.wish.ports != wish.ports or self.wish.scale != wish.scale
+        return differs or job.ahead or bool(self.part and not job.part)
 
     def must_wait(self, clock_time: float) -> bool:
         """True while the first of the queue must not be begun; `clock_time` is of the clock of `started_at`."""

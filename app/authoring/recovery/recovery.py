@@ -24,6 +24,7 @@ from ...errors import DocumentError, HalationError, OutputError
 from ...graph import Graph
 from ...resources.atomic_write import find_temporary_files, write_text_atomically
 from ...resources.sandbox import UNRESTRICTED, Sandbox
+from .claims import DocumentClaim
 from .file_locks import is_held, lock
 
 FIRST = 1.0
@@ -86,6 +87,7 @@ class RecoveryFile:
         self.interval = min(interval, LONGEST)
         self.fault = ""
         self._file: Path | None = None
+        self._claim: DocumentClaim | None = None
         self._noted: tuple[Graph, Path | None] | None = None
         self._changes = self._settled = 0
         self._since = 0.0
@@ -98,9 +100,21 @@ class RecoveryFile:
             self.folder.mkdir(parents=True, exist_ok=True)
             _remove_leftovers(self.folder)
             self._file = self._own.enter_context(_claim_name(self.folder))
+            self._claim = DocumentClaim(self._file)
             self._thread.start()
         except OSError as fault:
             self.fault = f"unsaved work cannot be kept in {self.folder} ({fault.strerror}): save often"
+
+    def claim(self, path: Path | None) -> None:
+        """Say which file this editor edits; other editors then know."""
+        if self._claim is not None:
+            self._claim.set_path(path)
+
+    def find_rivals(self) -> str:
+        """A sentence if another editor has the same file open, else ""."""
+        if self._claim is None or not self._claim.is_shared():
+            return ""
+        return "another editor has this document open too: who saves last replaces what the other saved"
 
     def note(self, graph: Graph, path: Path | None, dirty: bool) -> None:
         """Say what there is now; costs nothing where nothing changed."""
@@ -142,6 +156,8 @@ class RecoveryFile:
             self._change.notify()
         if self._thread.is_alive():
             self._thread.join()
+        if self._claim is not None:
+            self._claim.close()
         with contextlib.suppress(OutputError):
             self._own.close()
 
@@ -255,6 +271,9 @@ def _remove_leftovers(folder: Path) -> None:
     """Remove what ended editors left unfinished."""
     for path in find_temporary_files(folder):
         if not is_held(folder / f"{path.name.rpartition('-')[2].partition('.')[0]}.lock"):
+            _remove(path)
+    for path in _files(folder, "*.open"):
+        if not is_held(path.with_suffix(".lock")):
             _remove(path)
     for path in _files(folder, "*.lock"):
         if not path.with_suffix(".json").exists() and not is_held(path):

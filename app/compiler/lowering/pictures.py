@@ -8,7 +8,7 @@ from functools import cached_property
 from halation.nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from msgspec.structs import replace
 
-from ...errors import HalationError
+from ...errors import HalationError, NoFileError, describe_owner
 from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
@@ -97,6 +97,8 @@ class PictureBuilder:
         """The files that a node names, which lie beside the graph file that it came from."""
 
         def locate(file: str) -> str:
+            if not file:
+                raise NoFileError(f"{describe_owner(inputs.path)}: no file is chosen: name one", node=inputs.path)
             return self.named.locate(file, inputs.path)
 
         def recolor(change: ColorChange) -> ColorProgram:
@@ -120,7 +122,7 @@ class PictureBuilder:
             )
 
         def asset(picture: Picture) -> Ref:
-            whole = replace(picture, path=locate(picture.path), within=locate(picture.within))
+            whole = replace(picture, path=locate(picture.path), within=self.named.locate(picture.within, inputs.path))
             return self.read_asset(whole, inputs.path)
 
         return NodeResources(read, recolor, mesh, render, asset)

@@ -13,7 +13,7 @@ from ..toolkit.buttons import outline
 from ..toolkit.places import record
 from ..toolkit.textures import Textures, fit_picture
 from ..toolkit.thumbnails import FileThumbnails
-from ..toolkit.words import cut_middle, draw_dim, tip
+from ..toolkit.words import cut_middle, draw_dim, show_tip, tip
 from .browsing import Browsing, size_text, time_text
 from .listing import Item, Order
 
@@ -163,7 +163,7 @@ class FileGrid:
         corner = ImVec2(left + (width - size) / 2, top + (height - size) / 2)
         lines.add_text(font, size, corner, u32(color, 0.7), icon)
         if broken and imgui.is_item_hovered():
-            imgui.set_tooltip(str(pixels))
+            show_tip(str(pixels))
 
 
 def _sort(browsing: Browsing) -> None:

@@ -12,6 +12,7 @@ from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
+from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
@@ -337,7 +338,7 @@ class Canvas:
             )
         flags = int(imgui.HoveredFlags_.for_tooltip)
         if text and imgui.is_window_hovered(flags):
-            imgui.set_tooltip(text)
+            show_tip(text)
 
     # --- around it ---------------------------------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
 from ..shared.dialogs import browse
+from ..toolkit.words import show_tip
 from .brush import TEXT, DrawContext, make_node_palette
 from .geometry import Rect
 from .layout import FIELD_HEIGHT, NodeRow
@@ -114,7 +115,7 @@ class LiveFields:
             self.open, self._opening, self._popup_position = (port, value), value.type, (low[0], high[1])
         idle = not fields.dragging and fields.typing is None
         if value.doc and idle and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
-            imgui.set_tooltip(value.doc)
+            show_tip(value.doc)
         if edit:
             self._edits.append((port, edit))
 

@@ -38,6 +38,7 @@ from ..shared.entries import (
     shader_entries,
 )
 from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.fields import keep_typing
 from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import record
 from .geometry import Point
@@ -109,9 +110,7 @@ class NodeSearch:
             return
         if self._awaits:
             self._add_shaders()
-        if self._opening:
-            imgui.set_keyboard_focus_here()
-            self._opening = False
+        self._opening = False
         chosen = self._draw_contents()
         if chosen or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
@@ -131,6 +130,7 @@ class NodeSearch:
         self._entries = (*self._entries, *shader_entries(files))
 
     def _draw_contents(self) -> CatalogEntry | None:
+        keep_typing()
         imgui.set_next_item_width(-1)
         hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
         hint = f"Replace {self._replaced} by ..." if self._replaced else hint

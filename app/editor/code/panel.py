@@ -27,6 +27,9 @@ MAX_PAGES = 16
 """Pages that keep their cursor and undo history: the least recently used one goes first."""
 
 _SIZE = EM * 0.94
+_OURS = 0x434F4445
+_FOR_THIS_FRAME = int(imgui.internal.InputFlagsPrivate_.lock_this_frame)
+"""The widget of the text does not see a key that is locked: it would begin a line."""
 
 
 class CodePanel:
@@ -103,6 +106,8 @@ class CodePanel:
         if imgui.is_key_chord_pressed(chord("Ctrl+Enter")):
             page.commit()
             page.end_burst()
+            for key in (imgui.Key.enter, imgui.Key.keypad_enter):
+                imgui.internal.set_key_owner(key, _OURS, _FOR_THIS_FRAME)
         if imgui.is_key_chord_pressed(chord("Ctrl+S")):
             page.commit()
             page.end_burst()

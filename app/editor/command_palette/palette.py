@@ -10,6 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from ..shared.fuzzy import Match, split_matched
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
+from ..toolkit.fields import keep_typing
 from ..toolkit.keys import display_shortcut, is_enter_pressed
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, font
@@ -62,8 +63,7 @@ class CommandPalette:
         self._context.log.attempt(command.run)
 
     def _draw_field(self) -> None:
-        if not imgui.is_any_item_active():
-            imgui.set_keyboard_focus_here()
+        keep_typing()
         imgui.set_next_item_width(-1)
         with font(self._context, "text", 18.0):
             hint = "Do anything: type a command, a node, a preset"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.edits.element_id import ElementId
 from ...authoring.log import Level
+from ...errors import ShaderError
 
 if TYPE_CHECKING:
     from .context import ProblemsContext
@@ -30,14 +31,17 @@ def list_problems(context: ProblemsContext) -> tuple[ListedProblem, ...]:
 
 
 def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
-    """What the preview says about a node that the graph itself has a problem with is the same thing in other words."""
+    """What the preview says about a node that the graph itself has a problem with is the same thing in other words.
+
+    Only an error in code is another thing.
+    """
     inside = "/".join(context.session.place)
     for node, problems in context.session.problems.items():
         for problem in problems:
             yield ListedProblem(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
     faulty_nodes = {"/".join(filter(None, (inside, node))) for node in context.session.problems}
     for where, sentence in context.preview.faults.items():
-        if where not in faulty_nodes:
+        if where not in faulty_nodes or isinstance(context.preview.errors.get(where), ShaderError):
             yield ListedProblem("error", where, sentence)
     for sentence in service_faults(context):
         yield ListedProblem("warning", "", sentence)
@@ -46,8 +50,9 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
 
 
 def service_faults(context: ProblemsContext) -> Iterable[str]:
-    """What recovery, file watching and preferences cannot do at present."""
-    return filter(None, (context.recovery.fault, context.watcher.fault, *context.store.faults))
+    """What recovery, file watching and preferences cannot do at present, and who else edits the document."""
+    recovery = context.recovery
+    return filter(None, (recovery.fault, recovery.find_rivals(), context.watcher.fault, *context.store.faults))
 
 
 def show_element(context: ProblemsContext, where: str) -> None:

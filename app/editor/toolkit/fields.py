@@ -12,6 +12,12 @@ from .places import Rect, WidgetSurface, record
 from .words import tip
 
 
+def keep_typing() -> None:
+    """Give the next field the keyboard whenever nothing else has it: Enter leaves a field, and a search goes on."""
+    if not imgui.is_any_item_active():
+        imgui.set_keyboard_focus_here()
+
+
 def background(
     palette: Palette, rect: Rect, *, hovered: bool = False, active: bool = False, fault: bool = False
 ) -> None:

@@ -53,7 +53,15 @@ def draw_wrapped(color: RGB, text: str) -> None:
 
 def tip(text: str) -> None:
     """A tooltip of the last widget, as many lines as it needs."""
-    if text and imgui.begin_item_tooltip():
+    if text and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
+        show_tip(text)
+
+
+def show_tip(text: str) -> None:
+    """A tooltip at the pointer."""
+    # After a key the library would put it beside what the keyboard chose last, wherever that is.
+    imgui.get_current_context().nav_highlight_item_under_nav = False
+    if imgui.begin_tooltip():
         imgui.push_text_wrap_pos(imgui.get_font_size() * 24)
         imgui.text_unformatted(text)
         imgui.pop_text_wrap_pos()

@@ -204,7 +204,9 @@ class Viewer:
     def _draw_messages(self, images: _FrameImages, sight: Sight) -> None:
         preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault and (images.a is None or preview.faults.get(self._context.code.fault_path) != fault):
+        if fault and images.a is None and fault not in preview.faults.values():  # something is still to be chosen
+            draw_message(self._context, sight, fault[:1].upper() + fault[1:], palette.dim)
+        elif fault and (images.a is None or preview.faults.get(self._context.code.fault_path) != fault):
             draw_message(self._context, sight, fault, palette.error, dim=images.a is not None)
         elif images.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)

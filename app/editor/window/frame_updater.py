@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from halation.nodes import plugins
@@ -12,7 +14,8 @@ from ...graph import Port
 from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrate_graph, shader_folder
 from ...watch.sequence_files import list_sequence_files
-from ...watch.watching import FileChange, find_group_files, find_pictures
+from ...watch.watching import FileChange, Kind, find_group_files, find_pictures
+from ..problems.findings import service_faults
 from ..viewer.wanted import find_visible_region, list_wanted_ports
 
 if TYPE_CHECKING:
@@ -26,6 +29,19 @@ FRAME_BUDGET = 0.012
 PLAY_BUDGET = 0.030
 """The same while frames are played, which is what is looked at then."""
 
+_DELETED: Mapping[Kind, str] = MappingProxyType(
+    {
+        "graph": "saving writes it again",
+        "group": "the group stays as it was read",
+        "picture": "put it back, or choose another file",
+        "code": "the code stays as it was read; saving writes it again",
+    }
+)
+"""What follows for the user from a file that is gone, by what it holds."""
+
+OVER_BUDGET = 2
+"""Seconds in a row, of which each is looked at once, before a warning: a picture alone may need more for a moment."""
+
 
 class FrameUpdater:
     """Lets files be watched, unsaved work be kept, and pictures be computed within the budget of one frame."""
@@ -36,6 +52,7 @@ class FrameUpdater:
         self._watched: tuple[object, ...] = ()
         self._flushed = float("-inf")
         self._reported: set[str] = set()
+        self._seconds_over_budget = 0
 
     def update(self) -> None:
         """Do the work of one frame."""
@@ -44,6 +61,7 @@ class FrameUpdater:
         self._watch()
         for change in editor.watcher.poll():
             editor.log.attempt(lambda change=change: self._take_change(change))
+        editor.recovery.claim(editor.session.path)
         editor.recovery.note(editor.session.recoverable, editor.session.path, editor.session.dirty)
         if imgui.get_time() - self._flushed > 1.0:
             self._flushed = imgui.get_time()
@@ -56,10 +74,22 @@ class FrameUpdater:
         """Log once what services cannot do; Problems shows it for as long as it lasts."""
         editor = self._editor
         refused = {f"The plug-in {plugin} cannot be loaded: {plugin.fault}" for plugin in plugins() if plugin.fault}
-        faults = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults, *refused} - {""}
+        services = service_faults(self._contexts.problems)
+        faults = {*services, *refused, self._find_memory_fault()} - {""}
         for sentence in sorted(faults - self._reported):
             editor.log.add(sentence, "warning")
         self._reported = faults
+
+    def _find_memory_fault(self) -> str:
+        """A sentence if pictures have taken more memory than they may for a while, else ""."""
+        used, budget = self._editor.preview.memory
+        self._seconds_over_budget = self._seconds_over_budget + 1 if used > budget else 0
+        if self._seconds_over_budget < OVER_BUDGET:
+            return ""
+        return (
+            f"the pictures of this graph need more memory than the budget of {budget / 2**20:.0f} MiB, so nothing is "
+            "kept: raise the budget in the preferences, or choose a smaller proxy in the viewer"
+        )
 
     def _compute(self) -> None:
         """Compute what the viewer and the canvas show, for as long as the budget lasts."""
@@ -112,6 +142,12 @@ class FrameUpdater:
     def _take_change(self, change: FileChange) -> None:
         """Read a file again after another program wrote it."""
         editor = self._editor
+        if not change.exists and (consequence := _DELETED.get(change.kind)):
+            editor.log.add(f"{change.path.name} was deleted or moved: {consequence}", "warning")
+            if change.kind == "picture":
+                editor.preview.refresh()
+                editor.session.look_again()
+            return
         match change.kind:
             case "graph":
                 self._contexts.documents.load_changed_file(change.path)

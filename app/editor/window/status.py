@@ -31,7 +31,8 @@ def draw_status(editor: Editor, contexts: Contexts) -> None:
     else:
         _draw_hints(editor, contexts, left)
     imgui.same_line(left)
-    draw_dim(editor, figures)
+    used, budget = editor.preview.memory
+    imgui.text_colored(vec4(editor.palette.warning if used > budget else editor.palette.dim), figures)
     record(editor, "status figures")
 
 

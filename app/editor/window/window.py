@@ -237,7 +237,7 @@ class Window:
     def _restyle(self) -> None:
         likes = self.editor.store.current
         scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
-        # The host scales the style by itself too: behind the first frame, and where the window moves to another display.
+        # The host scales the style too: behind the first frame, and where the window moves to another display.
         if self._styled != (self.editor.palette, scale, style.measure_style()):
             style.apply(self.editor.palette, scale)
             self._styled = (self.editor.palette, scale, style.measure_style())
