@@ -32,7 +32,7 @@ def animation(ui: Ui) -> Iterator[str]:
             "Animate",
         )
     )
-    ui.session.seek(16)
+    ui.session.time.seek(16)
     state = ui.editor.curves
     state.fit()
     state.choose(frozenset({(intensity, 12.0, 0), (intensity, 24.0, 0), (Port("bloom", "knee"), 20.0, 0)}))

@@ -152,7 +152,7 @@ def fields(ui: Ui) -> Screens:
 def viewer(ui: Ui) -> Screens:
     """Channels, comparing, warnings and what lies over the picture."""
     seen = ui.editor.viewer
-    ui.session.view(Port("outputs", "image"))
+    ui.session.views.show(Port("outputs", "image"))
     ui.session.select([])
     ui.settled()
     for channels in ("red", "alpha", "luminance", "false color"):
@@ -160,7 +160,7 @@ def viewer(ui: Ui) -> Screens:
         ui.wait(2)
         yield f"viewer_{channels.replace(' ', '_')}"
     seen.show("false color")
-    ui.session.view(Port("grade", "out"), "B")
+    ui.session.views.show(Port("grade", "out"), "B")
     for mode in ("wipe", "difference", "toggle"):
         seen.toggle_comparison(mode)
         ui.settled()
@@ -180,10 +180,10 @@ def viewer(ui: Ui) -> Screens:
     ui.keys("Escape")
     seen.table, seen.region, seen.measured, seen.markers = False, None, None, ()
     ui.session.select([ElementId("vignette")])
-    ui.session.view(Port("outputs", "lights"))
+    ui.session.views.show(Port("outputs", "lights"))
     ui.settled()
     yield "viewer_field"
-    ui.session.view(Port("bloom", "out"))
+    ui.session.views.show(Port("bloom", "out"))
     ui.settled()
     ui.click("button view" if "button view" in ui.editor.places else "button more tools")
     yield "viewer_views"
@@ -193,7 +193,7 @@ def viewer(ui: Ui) -> Screens:
     ui.wait(2)
     yield "viewer_paused"
     seen.paused = False
-    ui.session.view(Port("outputs", "image"))
+    ui.session.views.show(Port("outputs", "image"))
 
 
 def scopes(ui: Ui) -> Screens:
@@ -351,7 +351,7 @@ def canvas(ui: Ui) -> Screens:
 
 def start(ui: Ui) -> Screens:
     """The start screen at the first start, and later with files and unsaved work."""
-    ui.session.new()
+    ui.session.files.new()
     ui.wait(3)
     yield "empty"
     for title in ("Scopes", "History", "Renders"):

@@ -81,7 +81,7 @@ class Flipbook:
         ended = any(new[1] != old[1] for new, old in zip(states, self._seen, strict=True))
         written = {frame for new, old in zip(states, self._seen, strict=True) for frame in new[0] - old[0]}
         self._seen = states
-        return ended or not written.isdisjoint({self.session.frame, *cached})
+        return ended or not written.isdisjoint({self.session.time.frame, *cached})
 
     @property
     def _state(self) -> tuple[tuple[frozenset[int], bool], ...]:
@@ -115,10 +115,10 @@ def _make_session(strips: Sequence[FlipbookStrip], rate: float, frame: int) -> S
     first, last = min(strip.frames[0] for strip in strips), max(strip.frames[1] for strip in strips)
     graph = replace(graph, settings=replace(graph.settings, frames=(first, last), rate=rate))
     session = Session(sandbox=UNRESTRICTED)
-    session.open_text(document.dumps(graph))
+    session.files.open_text(document.dumps(graph))
     for side, name in zip(SIDES, names, strict=False):
-        session.view(Port(OUTPUTS, name), side)
-    session.seek(min(max(frame, first), last))
+        session.views.show(Port(OUTPUTS, name), side)
+    session.time.seek(min(max(frame, first), last))
     return session
 
 

@@ -10,6 +10,7 @@ import pytest
 from halation import document
 from halation.authoring import commands as c
 from halation.authoring.commands import EditCommand
+from halation.authoring.edits.clipboard import copy_elements
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.session import Session
 from halation.errors import GraphError
@@ -84,7 +85,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.SetInput: lambda s, p: c.SetInput("beauty", file="a.exr"),
     c.SetOutput: lambda s, p: c.SetOutput("image", view="none"),
     c.CutSelection: lambda s, p: c.CutSelection(),
-    c.PasteText: lambda s, p: c.PasteText(s.copy()),
+    c.PasteText: lambda s, p: c.PasteText(copy_elements(s.graph, s.selection)),
     c.DuplicateSelection: lambda s, p: c.DuplicateSelection(),
     c.MakeGroup: lambda s, p: c.MakeGroup("look"),
     c.Ungroup: lambda s, p: c.Ungroup("body"),
@@ -94,6 +95,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.EmbedCode: lambda s, p: c.EmbedCode("filed"),
     c.LinkCodeFile: lambda s, p: c.LinkCodeFile("code", p / "other.glsl"),
     c.AssignViewer: lambda s, p: c.AssignViewer(3, port("n1.out")),
+    c.ReplaceDocument: lambda s, p: c.ReplaceDocument("Reload", chain(2)),
     c.ReplaceGraph: lambda s, p: c.ReplaceGraph("Replace", s.graph.disconnect(port("n1.image"))),
 }
 CLASSES = sorted(

@@ -50,11 +50,11 @@ def test_it_is_a_document_of_its_own(folder: Path) -> None:
         FlipbookStrip(folder / "shot_v1.####.png", (1, 4), "AgX"),
     )
     session = Flipbook((one, other), 12.0, 40).session
-    assert (session.frames, session.settings.rate, session.frame) == ((1, 8), 12.0, 8)
-    assert session.find_viewed_port("A") == Port(OUTPUTS, "shot_v1")
-    assert session.find_viewed_port("B") == Port(OUTPUTS, "shot_v12")
-    assert session.value(Port("flipbook: shot_v1", "path")) == str(one.path)
-    assert {session.value(Port(name, "missing")) for name in session.graph.nodes} == {"hold"}
+    assert (session.time.frames, session.root.settings.rate, session.time.frame) == ((1, 8), 12.0, 8)
+    assert session.views.find_port("A") == Port(OUTPUTS, "shot_v1")
+    assert session.views.find_port("B") == Port(OUTPUTS, "shot_v12")
+    assert session.graph.value(Port("flipbook: shot_v1", "path")) == str(one.path)
+    assert {session.graph.value(Port(name, "missing")) for name in session.graph.nodes} == {"hold"}
     assert [output.view for output in session.root.outputs.values()] == ["", "none"]
     assert session.problems == {}
 
@@ -65,7 +65,7 @@ def test_it_is_a_document_of_its_own(folder: Path) -> None:
 )
 def test_any_name_will_do(tmp_path: Path, name: str, called: str) -> None:
     session = Flipbook((FlipbookStrip(tmp_path / name, (1, 2)),), 24.0, 1).session
-    assert session.find_viewed_port("A") == Port(OUTPUTS, called) and session.find_viewed_port("B") is None
+    assert session.views.find_port("A") == Port(OUTPUTS, called) and session.views.find_port("B") is None
 
 
 def test_a_render_is_shown_as_its_output_asks(tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_only_what_was_seen_too_early_is_read_anew(tmp_path: Path) -> None:
     write(export, 3)
     assert book.follow((1, 3))
     assert not book.follow((1, 3))
-    book.session.seek(5)
+    book.session.time.seek(5)
     write(export, 4, 5)
     assert book.follow(())
     export.ended_at = 1.0

@@ -133,7 +133,7 @@ def measure_drag(folder: Path) -> dict[str, float]:
             steps += 1
             ui.ctx.inputs.mouse_pos_value = ImVec2(left + 8 + steps % 60, y)  # moved once a frame, as by a hand
             ui.wait(1)
-            values.add(ui.session.value(Port("n9", "stops")))
+            values.add(ui.session.graph.value(Port("n9", "stops")))
             shown = ui.editor.preview.find_whole_image("A")
             assert shown is not None and shown.scale == 1.0
             seen.add(shown.revision)

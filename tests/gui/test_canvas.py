@@ -107,7 +107,7 @@ def test_a_value_dragged_on_a_node_is_one_step(gui) -> None:
         ui.wait(2)
         x, y = ui.at("widget exposure.stops")
         ui.drag((x, y), (x + 30, y))
-        assert ui.session.value(Port("exposure", "stops")) > 0.5
+        assert ui.session.graph.value(Port("exposure", "stops")) > 0.5
         assert ui.session.history.position == steps + 1
         assert ui.session.position(ElementId("exposure")) == (320.0, 0.0)
 
@@ -123,7 +123,7 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
         ui.until(lambda: "choice mirror" in ui.editor.places)
         ui.wait(2)
         ui.click("choice mirror")
-        ui.until(lambda: ui.session.value(Port("gaussian_blur", "edge")) == "mirror")
+        ui.until(lambda: ui.session.graph.value(Port("gaussian_blur", "edge")) == "mirror")
         ui.until(lambda: "choice mirror" not in ui.editor.places)
         port = Port("bloom", "firefly")
         assert f"widget {port}" not in ui.editor.places
@@ -131,11 +131,11 @@ def test_a_choice_and_a_switch_on_nodes(gui) -> None:
         ui.until(lambda: ui.editor.canvas.sizes["bloom"][1] > 200)
         ui.editor.canvas.fit((ElementId("bloom"),))
         ui.wait(3)
-        before = ui.session.value(port)
+        before = ui.session.graph.value(port)
         ui.move(f"widget {port}")
         ui.wait(2)
         ui.click(f"widget {port}")
-        ui.until(lambda: ui.session.value(port) is not before)
+        ui.until(lambda: ui.session.graph.value(port) is not before)
 
     gui(body)
 
@@ -199,7 +199,7 @@ def test_double_click_views_a_node(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"))
         ui.double_click("title exposure", (0.3, 0.5))
-        assert ui.session.find_viewed_port("A") == Port("exposure", "out")
+        assert ui.session.views.find_port("A") == Port("exposure", "out")
 
     gui(body)
 
@@ -269,7 +269,7 @@ def test_fields_leave_the_wheel_and_the_right_button_to_the_canvas(gui) -> None:
         assert ui.editor.canvas.zoom > zoom
         ui.click(f"widget {port}", button=1)
         ui.click("menu Reset stops")
-        assert ui.session.value(port) == 0.0
+        assert ui.session.graph.value(port) == 0.0
 
     gui(body)
 
@@ -283,7 +283,7 @@ def test_typing_a_number_on_a_node(gui) -> None:
         ui.move(empty(ui))
         ui.wait(2)
         ui.type("1.5")
-        assert ui.session.value(Port("exposure", "stops")) == 1.5
+        assert ui.session.graph.value(Port("exposure", "stops")) == 1.5
 
     gui(body)
 

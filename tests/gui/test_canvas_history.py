@@ -86,7 +86,7 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
         ui.wait(3)
         x, y = ui.at("widget exposure.stops")
         record.act("value", lambda: ui.drag((x, y), (x + 20, y)))
-        assert session.value(Port("exposure", "stops")) > 0.2
+        assert session.graph.value(Port("exposure", "stops")) > 0.2
         press("mute", "M")
         title("bloom")
         press("collapse", "H")

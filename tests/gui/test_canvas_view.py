@@ -94,12 +94,12 @@ def test_a_color_is_chosen_on_a_node_and_picked_from_the_picture(gui) -> None:
         ui.click(f"widget {port}")
         ui.wait(4)
         ui.shot("canvas_color.png")
-        before, steps = ui.session.value(port), ui.session.history.position
+        before, steps = ui.session.graph.value(port), ui.session.history.position
         ui.click(f"button pick canvas {port} picker")
         ui.until(lambda: ui.editor.viewer.picking == str(port))
         ui.wait(3)
         ui.click("viewer image", fraction=(0.4, 0.6))
-        ui.until(lambda: ui.session.value(port) != before)
+        ui.until(lambda: ui.session.graph.value(port) != before)
         assert ui.session.history.position == steps + 1
 
     gui(body, _preset("emboss_and_edges"))
@@ -120,7 +120,7 @@ def test_a_picture_has_its_place_from_when_it_is_there(gui) -> None:
             ui.wait(2)
             assert ui.editor.canvas.sizes == before
         pins = ui.at("pin out gray.out"), ui.at("pin in gray.image")
-        ui.session.view(Port("gray", "out"))
+        ui.session.views.show(Port("gray", "out"))
         ui.until(lambda: "picture gray" in ui.editor.places)
         assert (ui.at("pin out gray.out"), ui.at("pin in gray.image")) == pins, "a picture moves no pin"
         ui.editor.store.change(thumbnails=False)

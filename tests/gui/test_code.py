@@ -62,7 +62,7 @@ def write(ui, text: str) -> None:
 
 
 def text_of(ui, id: str = "code") -> str:
-    return ui.session.code(id).text
+    return ui.session.code_files.find_code(id).text
 
 
 def test_typing_changes_the_picture(gui, path) -> None:
@@ -164,7 +164,7 @@ def test_a_file_that_is_dropped_is_edited_and_saved(gui, path) -> None:
         ui.settled()
         ui.window._dropped.append(str(file))
         ui.until(lambda: "gain" in ui.session.graph.nodes)
-        assert ui.session.code("gain").file == "gain.glsl"
+        assert ui.session.code_files.find_code("gain").file == "gain.glsl"
         ui.session.apply(SpliceChain(["gain"], Port("outputs", "image")))
         ui.until(lambda: red(ui) == pytest.approx(0.5, abs=1e-3))
         file.write_text(GAIN.replace("= 2", "= 4"))
@@ -177,10 +177,10 @@ def test_a_file_that_is_dropped_is_edited_and_saved(gui, path) -> None:
         ui.click("code text")
         ui.ctx.key_press(chord("Ctrl+Home"))
         write(ui, "// mine\n")
-        assert ui.session.drafts == {file: "// mine\n" + GAIN.replace("= 2", "= 4")} and ui.session.dirty
+        assert ui.session.code_files.drafts == {file: "// mine\n" + GAIN.replace("= 2", "= 4")} and ui.session.dirty
         ui.shot("code_file.png")
         ui.keys("Ctrl+S")
-        ui.until(lambda: not ui.session.drafts)
+        ui.until(lambda: not ui.session.code_files.drafts)
         assert file.read_text().startswith("// mine\n")
 
         write(ui, "// draft\n")
@@ -193,7 +193,7 @@ def test_a_file_that_is_dropped_is_edited_and_saved(gui, path) -> None:
         ui.until(lambda: red(ui) == pytest.approx(0.5, abs=1e-3))
         ui.wait(3)
         ui.click("button inline code")
-        assert not ui.session.code("gain").file and text_of(ui, "gain") == GAIN
+        assert not ui.session.code_files.find_code("gain").file and text_of(ui, "gain") == GAIN
 
     gui(body, path, size=SIZE)
 
@@ -235,6 +235,6 @@ def test_code_is_added_from_the_list(gui, path) -> None:
             ui.shot(f"code_search_{kind}.png")
             ui.keys("Enter")
             assert ui.session.active == id and ui.session.graph.nodes[id].id == kind
-        assert ui.session.code("Red_Room").file == "isf/Red Room.fs"
+        assert ui.session.code_files.find_code("Red_Room").file == "isf/Red Room.fs"
 
     gui(body, path, size=SIZE)

@@ -70,7 +70,7 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         ui.keys("Escape")
         ui.keys("Ctrl+Z")
         ui.settled()
-        assert ui.session.settings.color.working == ""
+        assert ui.session.root.settings.color.working == ""
 
     gui(body, file)
 

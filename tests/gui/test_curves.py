@@ -125,7 +125,7 @@ def test_keys_are_copied_duplicated_and_deleted(gui) -> None:
         ui.click("key one.gain 1")
         ui.click("key one.gain 11", keys="Ctrl")
         ui.keys("Ctrl+C")
-        ui.session.seek(30)
+        ui.session.time.seek(30)
         ui.keys("Ctrl+V")
         assert frames(ui) == (1.0, 11.0, 21.0, 30.0, 40.0)
         ui.keys("Delete")
@@ -133,10 +133,10 @@ def test_keys_are_copied_duplicated_and_deleted(gui) -> None:
         ui.click("key one.gain 11")
         ui.keys("Ctrl+D")
         assert frames(ui) == (1.0, 11.0, 12.0, 21.0)
-        ui.session.seek(1)
+        ui.session.time.seek(1)
         ui.keys("Ctrl+A")
         ui.keys("Delete")
-        assert list(ui.session.graph.animation) == [SIGMA] and ui.session.value(GAIN) == 0.5
+        assert list(ui.session.graph.animation) == [SIGMA] and ui.session.graph.value(GAIN) == 0.5
         ui.keys("Ctrl+Z")
         assert frames(ui) == (1.0, 11.0, 12.0, 21.0)
         ui.click("keys diamond one.gain")
@@ -207,10 +207,10 @@ def test_the_mouse_moves_the_view_and_the_frame(gui) -> None:
         steps = start(ui, "curves")
         state = ui.editor.curves
         ui.drag("keys ruler", beside(ui, "key one.gain 11 0", 0.2))
-        assert ui.session.frame == 11
+        assert ui.session.time.frame == 11
         x, y = ui.at("keys now")
         ui.drag((x, y), (x + 5 * per_frame(ui), y))
-        assert ui.session.frame == 16 and len(ui.session.history.steps) == steps
+        assert ui.session.time.frame == 16 and len(ui.session.history.steps) == steps
         ui.move("keys area", (0.25, 0.5))
         before = state.view
         with ui.held("Ctrl"):
@@ -264,7 +264,7 @@ def test_an_empty_graph_is_asked_for_a_first_key(gui) -> None:
         ui.ctx.item_click("//$FOCUSED/gain##one.gain")
         ui.wait(3)
         assert frames(ui) == (1.0,)
-        ui.session.seek(10)
+        ui.session.time.seek(10)
         ui.session.apply(SetValue(GAIN, 3.0))
         ui.wait(3)
         assert "key one.gain 10" in ui.editor.places

@@ -79,7 +79,7 @@ def test_a_picture_that_is_dropped_becomes_a_node(gui, look: Path) -> None:
         ui.wait(5)
         (new,) = set(ui.session.graph.nodes) - before
         assert ui.session.graph.nodes[new].id == "read_image"
-        ui.session.view(Port(new, "out"))
+        ui.session.views.show(Port(new, "out"))
         ui.settled()
         assert not ui.editor.preview.faults
         ui.keys("Ctrl+Z")

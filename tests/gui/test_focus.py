@@ -63,8 +63,8 @@ def test_the_point_is_dragged_and_its_depth_written(gui, path: Path) -> None:
         ui.drag("handle lens.focus_point", inside(ui, 0.7, 0.7), release=False)
         ui.settled()
         assert (ui.pixels("focus_dragged.png") != before).any()
-        assert ui.session.value(POINT) == pytest.approx((0.7, 0.7), abs=0.01)
-        u, v = ui.session.value(POINT)
+        assert ui.session.graph.value(POINT) == pytest.approx((0.7, 0.7), abs=0.01)
+        u, v = ui.session.graph.value(POINT)
         ui.ctx.mouse_up(0)
         ui.settled()
         found[u, v] = ui.ask(lambda: depth_at(ui.editor, (u, v)))
@@ -72,7 +72,7 @@ def test_the_point_is_dragged_and_its_depth_written(gui, path: Path) -> None:
         assert ui.session.history.steps == ("Set lens.focus_point",)
         ui.keys("E")
         ui.click(inside(ui, 0.25, 0.5))
-        assert ui.session.value(POINT) == pytest.approx((0.25, 0.5), abs=0.01) and not ui.editor.viewer.picking
+        assert ui.session.graph.value(POINT) == pytest.approx((0.25, 0.5), abs=0.01) and not ui.editor.viewer.picking
 
     gui(body, path)
     check(found)
@@ -92,11 +92,11 @@ def test_a_distance_is_picked_from_the_picture(gui, path: Path) -> None:
         ui.shot("focus_picking.png")
         assert "label lens.focus_distance" in ui.editor.places
         ui.click(inside(ui, 0.45, 0.5))
-        found[0.45, 0.5] = ui.session.value(DISTANCE)
+        found[0.45, 0.5] = ui.session.graph.value(DISTANCE)
         assert ui.session.history.steps == ("Set lens.focus_distance",) and not ui.editor.viewer.picking
         ui.keys("E")
         ui.drag(inside(ui, 0.2, 0.6), inside(ui, 0.7, 0.75))
-        found[0.7, 0.75] = ui.session.value(DISTANCE)
+        found[0.7, 0.75] = ui.session.graph.value(DISTANCE)
         assert len(ui.session.history.steps) == 2
         ui.keys("E")
         ui.click(inside(ui, 0.5, 0.5), button=1)

@@ -9,6 +9,7 @@ import pytest
 from halation import document
 from halation.authoring.commands import AddComment, AddFrame, AddNode, ExposeValue, MakeGroup, ReplaceGraph, SetValue
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.values import find_control
 from halation.graph import Graph, Group, Output, Port, Settings
 from halation.media import write_picture
 from halation.nodes import Kind, catalogue
@@ -42,7 +43,7 @@ def file(tmp_path: Path) -> Path:
 
 
 def value(ui, port: str):
-    return ui.session.value(Port.parse(port))
+    return ui.session.graph.value(Port.parse(port))
 
 
 def select(ui, *keys: str) -> int:
@@ -149,7 +150,7 @@ def test_links(gui, file) -> None:
         assert ui.session.selection == {"noise"}
         select(ui, "tone_map")
         ui.click("button unlink tone_map.average")
-        assert ui.session.find_source(Port("tone_map", "average")) is None
+        assert ui.session.graph.links.get(Port("tone_map", "average")) is None
         ui.click("field tone_map.average")
         ui.type("0.5")
         assert value(ui, "tone_map.average") == 0.5
@@ -181,10 +182,10 @@ def test_controls(gui, file) -> None:
         select(ui, "tone_map")
         ui.click("name tone_map.exposure", button=1)
         ui.click("menu Expose as Control")
-        assert ui.session.control_of(Port("tone_map", "exposure")) == "exposure"
+        assert find_control(ui.session.graph, Port("tone_map", "exposure")) == "exposure"
         ui.click("button control tone_map.exposure")
         ui.type("brightness")
-        assert ui.session.control_of(Port("tone_map", "exposure")) == "brightness"
+        assert find_control(ui.session.graph, Port("tone_map", "exposure")) == "brightness"
         select(ui)
         ui.click("field tone_map.exposure")
         ui.type("2")

@@ -40,7 +40,7 @@ def path(tmp_path: Path) -> Path:
 
 
 def of(ui) -> tuple[Light, ...]:
-    return lights_of(ui.session.value(PORT))
+    return lights_of(ui.session.graph.value(PORT))
 
 
 def seen(ui, light: Light) -> tuple[float, float, float]:

@@ -30,7 +30,7 @@ def select(ui, key: str) -> int:
 
 def of(ui) -> tuple[Light, ...]:
     """The lights of the node."""
-    return lights_of(ui.session.value(Port("lamps", "lights")))
+    return lights_of(ui.session.graph.value(Port("lamps", "lights")))
 
 
 def test_lights(gui) -> None:

@@ -176,7 +176,7 @@ def test_without_a_scene_there_is_nothing_to_orbit(gui, path: Path) -> None:
         assert not ui.editor.viewer.orbiting
         ui.click("button viewer.orbit")
         noise = ui.session.apply(AddNode("noise"))
-        ui.session.view(Port(noise, "value"))
+        ui.session.views.show(Port(noise, "value"))
         ui.settled()
         assert "button viewer.orbit" not in ui.editor.places and not ui.editor.viewer.orbits
         pan = ui.editor.viewer.pan

@@ -59,7 +59,7 @@ def test_a_click_in_the_history_goes_there(gui) -> None:
         ui.click("history 0")
         assert ui.session.graph == before
         ui.click("history 1")
-        assert ui.session.value(Port("bloom", "intensity")) == 0.5
+        assert ui.session.graph.value(Port("bloom", "intensity")) == 0.5
 
     gui(body, PRESET)
 
@@ -253,7 +253,7 @@ def test_unsaved_work_is_offered_again(gui, look: Path, tmp_path: Path) -> None:
     def again(ui) -> None:
         ui.shot("recover.png")
         ui.click("recover 0")
-        assert ui.session.value(Port("bloom", "intensity")) == 0.875
+        assert ui.session.graph.value(Port("bloom", "intensity")) == 0.875
         assert ui.session.path == look
         assert ui.session.dirty
         assert not ui.editor.dialogs.any

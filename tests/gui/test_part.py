@@ -129,7 +129,7 @@ def test_the_mouse_pans_and_zooms_while_a_part_is_shown(gui, tmp_path, resting):
 @pytest.mark.parametrize("compare", ["wipe", "beside", "difference"])
 def test_both_sides_are_compared_in_part(gui, tmp_path, resting, compare):
     def body(ui) -> None:
-        ui.session.view(Port("light", "out"), "B")
+        ui.session.views.show(Port("light", "out"), "B")
         ui.editor.viewer.toggle_comparison(compare)
         ui.settled()
         near(ui)

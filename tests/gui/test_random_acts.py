@@ -132,7 +132,7 @@ def test_nothing_that_is_done_at_random_fails(gui, tmp_path, monkeypatch, seed: 
             player.act()
             assert not ui.editor.faults, ui.editor.faults
         kept = tmp_path / "kept.json"
-        ui.session.save_as(kept)
+        ui.session.files.save_as(kept)
         assert document.load(kept, sandbox=UNRESTRICTED) == ui.session.root
 
     gui(body, path, size=SIZE)

@@ -56,9 +56,9 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
         ui.settled()
         session = ui.session
         assert (session.name, session.path) == ("night shot", None) and not session.history.steps
-        assert session.value(Port("bloom", "intensity")) == 0.625
+        assert session.graph.value(Port("bloom", "intensity")) == 0.625
         assert not ui.editor.preview.faults and not ui.editor.faults
-        ui.session.view(Port("outputs", "image"))
+        ui.session.views.show(Port("outputs", "image"))
         ui.settled()
         shown = ui.editor.preview.find_whole_image("A")
         size = shown.texture.size

@@ -57,7 +57,7 @@ def test_a_render_that_is_dropped_works_at_once(gui) -> None:
         assert ui.session.graph.nodes[node].id == "read_render" and len(ui.session.history.steps) == 1
         ui.shot("render.png")
         for name in ("color", "albedo", "depth", "normal", "position", "velocity", "object_id"):
-            ui.session.view(Port(node, name))
+            ui.session.views.show(Port(node, name))
             ui.settled()
             assert ui.editor.preview.find_whole_image("A").port.socket == name and not ui.editor.preview.faults
             assert np.ptp(np.nan_to_num(pixels(ui), posinf=0.0)) > 0.1
@@ -79,14 +79,14 @@ def test_a_plain_picture_stays_one(gui, tmp_path) -> None:
 def test_another_layer_for_depth_changes_what_is_shown(gui) -> None:
     def body(ui) -> None:
         node = drop(ui)
-        ui.session.view(Port(node, "depth"))
+        ui.session.views.show(Port(node, "depth"))
         ui.settled()
         before = pixels(ui)[..., 0]
         press(ui, f"field {node}.depth_layer")
         ui.until(lambda: f"layer {node}.depth_layer Object Index" in ui.editor.places)
         ui.click(f"layer {node}.depth_layer Object Index")
         known(ui)
-        assert ui.session.value(Port(node, "depth_layer")) == "Object Index"
+        assert ui.session.graph.value(Port(node, "depth_layer")) == "Object Index"
         after = pixels(ui)[..., 0]
         assert set(np.unique(after)) <= set(range(64)) and (before != after).any()
         ui.keys("Ctrl+Z")
@@ -112,7 +112,7 @@ def test_a_layer_that_is_not_there_is_a_sentence(gui) -> None:
         ui.until(lambda: f"layer {node}.depth_layer " in ui.editor.places)
         ui.click(f"layer {node}.depth_layer ")
         known(ui)
-        assert not ui.editor.preview.faults and ui.session.value(Port(node, "depth_layer")) == ""
+        assert not ui.editor.preview.faults and ui.session.graph.value(Port(node, "depth_layer")) == ""
 
     gui(body, size=(1400, 1400))
 
@@ -136,11 +136,11 @@ def test_what_is_ambiguous_is_listed_and_can_be_used(gui, tmp_path) -> None:
         press(ui, f"button use {node} foo")
         ui.click("menu position")
         known(ui)
-        assert ui.session.value(Port(node, "position_layer")) == "foo"
+        assert ui.session.graph.value(Port(node, "position_layer")) == "foo"
         press(ui, f"button use {node} normalsCS")
         ui.click("menu normal")
         known(ui)
-        ui.session.view(Port(node, "normal"))
+        ui.session.views.show(Port(node, "normal"))
         ui.settled()
         assert (pixels(ui)[..., :3] == layers["normalsCS"]).all()
         assert f"button use {node} worldNormals" in ui.editor.places
@@ -181,27 +181,27 @@ def test_a_click_picks_what_is_there(gui) -> None:
         known(ui)
         node = ui.session.active
         pick = Port(node, "pick")
-        ui.session.view(Port(node, "colors"))
+        ui.session.views.show(Port(node, "colors"))
         ui.settled()
         ui.move("viewer image", at("monkey"))
         known(ui)
         assert "matte name" in ui.editor.places
         steps = len(ui.session.history.steps)
         ui.click("viewer image", fraction=at("monkey"))
-        assert ui.session.value(pick) == "monkey"
+        assert ui.session.graph.value(pick) == "monkey"
         ui.click("viewer image", fraction=at("wall"))
-        assert ui.session.value(pick) == "monkey, wall" and len(ui.session.history.steps) == steps + 2
+        assert ui.session.graph.value(pick) == "monkey, wall" and len(ui.session.history.steps) == steps + 2
         ui.shot("matte.png")
         ui.click("viewer image", fraction=at("monkey"))
-        assert ui.session.value(pick) == "wall"
+        assert ui.session.graph.value(pick) == "wall"
         ui.keys("Ctrl+Z")
-        assert ui.session.value(pick) == "monkey, wall"
+        assert ui.session.graph.value(pick) == "monkey, wall"
         x, y = ui.at("viewer image", at("wall"))
         ui.drag((x, y), (x + 30.0, y + 20.0))
-        assert ui.session.value(pick) == "monkey, wall" and ui.editor.viewer.pan != (0.0, 0.0)
+        assert ui.session.graph.value(pick) == "monkey, wall" and ui.editor.viewer.pan != (0.0, 0.0)
 
         press(ui, f"name {pick} ball")
-        assert ui.session.value(pick) == "monkey, wall, ball"
+        assert ui.session.graph.value(pick) == "monkey, wall, ball"
         ui.click(f"search {pick}")
         ui.type("ring", enter=False)
         assert [place for place in ui.editor.places if place.startswith(f"name {pick} ")] == [
@@ -209,6 +209,6 @@ def test_a_click_picks_what_is_there(gui) -> None:
             f"name {pick} ring_pink",
         ]
         press(ui, f"button None {pick}")
-        assert ui.session.value(pick) == ""
+        assert ui.session.graph.value(pick) == ""
 
     gui(body, size=(1400, 1400))

@@ -107,9 +107,9 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.click("play 0")
         ui.settled()
         book = ui.editor.stage.flipbook
-        assert book is not None and book.session.frames == (1, 8)
+        assert book is not None and book.session.time.frames == (1, 8)
         ui.keys("Shift+RightArrow")
-        assert book.session.frame == 8 and ui.session.frame == 1
+        assert book.session.time.frame == 8 and ui.session.time.frame == 1
         ui.settled()
         assert ui.editor.preview.find_whole_image("A").frame == 8
         ui.shot("flipbook_alone.png")
@@ -213,11 +213,11 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
         ui.editor.dialogs.browse = None
         ui.settled()
         book, viewer = ui.editor.stage.flipbook, ui.editor.viewer
-        assert [strip.path for strip in book.strips] == [one, other] and book.session.frames == (1, 6)
+        assert [strip.path for strip in book.strips] == [one, other] and book.session.time.frames == (1, 6)
         assert viewer.compare == "beside"
         ui.keys("RightArrow")
         ui.settled()
-        assert book.session.frame == 2
+        assert book.session.time.frame == 2
         ui.shot(f"flipbook_beside_{theme}.png")
         panel = ui.editor.places["viewer panel"]
         middle, down = (panel[0] + panel[2]) / 2, (panel[1] + panel[3]) / 2
@@ -239,11 +239,11 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
             assert viewer.compare == name
             ui.shot(f"flipbook_{name}_{theme}.png")
         ui.keys("Space")
-        ui.until(lambda: book.session.frame >= 4, 30)
+        ui.until(lambda: book.session.time.frame >= 4, 30)
         ui.keys("Space")
         assert not ui.editor.timeline.playback.playing
-        ui.session.view(Port(OUTPUTS, "image"), "B")
-        ui.session.view(Port("bloom", "out"))
+        ui.session.views.show(Port(OUTPUTS, "image"), "B")
+        ui.session.views.show(Port("bloom", "out"))
         ui.settled()
         assert ui.editor.stage.flipbook is None and viewer.compare == "off"
         assert ui.editor.preview.find_whole_image("A").port == Port("bloom", "out")
@@ -259,10 +259,10 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
         ui.click("play 0")
         book = ui.editor.stage.flipbook
         assert book is not None
-        book.session.seek(8)
+        book.session.time.seek(8)
         ended(ui)
         for frame in (8, 1):
-            book.session.seek(frame)
+            book.session.time.seek(frame)
             ui.settled()
             seen = ui.ask(lambda: ui.editor.probe.read_small(ui.editor.preview.find_whole_image("A").texture, 480))
             there = read_layer(

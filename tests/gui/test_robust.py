@@ -84,7 +84,7 @@ def test_a_panel_may_fail_anywhere(gui, tmp_path: Path, place: str) -> None:
             ui.wait(2)
             assert not ui.editor.faults, name
             ui.session.apply(SetValue(STOPS, number / 8))
-            ui.session.save_as(path)
+            ui.session.files.save_as(path)
             assert document.load(path, sandbox=UNRESTRICTED).value(STOPS) == number / 8
 
     gui(body, LOOK, faulty=True)
@@ -112,11 +112,11 @@ def test_a_dialog_that_fails_is_closed_and_keys_work_again(gui) -> None:
         ui.editor.dialogs.question = Question("Sure?", "Is it?", (("Yes", bool), ("No", bool)))
         ui.wait(4)
         assert not ui.editor.dialogs.any
-        before = ui.session.value(STOPS)
+        before = ui.session.graph.value(STOPS)
         ui.session.apply(SetValue(STOPS, 2.5))
         ui.move("Graph")
         ui.keys("Ctrl+Z")
-        assert ui.session.value(STOPS) == before
+        assert ui.session.graph.value(STOPS) == before
 
     gui(body, LOOK, faulty=True)
 

@@ -64,8 +64,8 @@ def test_pictures_of_the_editor(gui, theme: str) -> None:
     def body(ui) -> None:
         ui.editor.viewer.scopes = {"histogram", "vectorscope"}
         (beauty,) = ui.session.graph.inputs
-        ui.session.view(Port("outputs", "image"))
-        ui.session.view(Port("inputs", beauty), "B")
+        ui.session.views.show(Port("outputs", "image"))
+        ui.session.views.show(Port("inputs", beauty), "B")
         ui.editor.viewer.toggle_comparison("wipe")
         ui.session.select([ElementId("halo")])
         ui.settled()

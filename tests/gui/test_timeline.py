@@ -65,11 +65,11 @@ def test_scrubbing_shows_other_frames(gui, tmp_path) -> None:
 
     def body(ui) -> None:
         start(ui, graph_of(path, "exposure"))
-        assert ui.session.frames == (1, 12) and ui.session.frame == 1
+        assert ui.session.time.frames == (1, 12) and ui.session.time.frame == 1
         first = seen(ui)
         ui.shot("timeline.png")
         ui.drag("ruler 1", "ruler 12")
-        assert ui.session.frame == 12
+        assert ui.session.time.frame == 12
         ui.settled()
         assert not np.array_equal(seen(ui), first)
         steps = len(ui.session.history.steps)
@@ -94,7 +94,7 @@ def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
         shown = set()
 
         def looped() -> bool:
-            frames.append(ui.session.frame)
+            frames.append(ui.session.time.frame)
             shown.add(ui.editor.preview.find_whole_image("A").frame)
             return any(after < before for before, after in pairwise(frames)) and len(shown) > 3
 
@@ -107,13 +107,13 @@ def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
         assert not timeline.playback.playing and timeline.report
         ui.settled()
         assert ui.window.params.fps_idling.enable_idling
-        here = ui.session.frame
+        here = ui.session.time.frame
         ui.keys("RightArrow")
-        assert ui.session.frame == here % 12 + 1
+        assert ui.session.time.frame == here % 12 + 1
         ui.keys("Shift+LeftArrow")
-        assert ui.session.frame == 1
+        assert ui.session.time.frame == 1
         ui.keys("LeftArrow")
-        assert ui.session.frame == 12, "round the corner"
+        assert ui.session.time.frame == 12, "round the corner"
         ui.settled()
         ui.shot("ready.png")
 
@@ -122,29 +122,29 @@ def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
         ui.keys("Shift+LeftArrow")
         ui.click("button time.play")
         ui.until(lambda: not timeline.playback.playing)
-        assert ui.session.frame == 12
+        assert ui.session.time.frame == 12
 
         ui.drag("ruler in", ui.at("ruler", (0.34, 0.1)))
         assert timeline.part is not None and timeline.part[1] == 12 and timeline.span(ui.session)[0] > 3
         ui.keys("Shift+LeftArrow")
-        assert ui.session.frame == timeline.part[0]
+        assert ui.session.time.frame == timeline.part[0]
         ui.shot("part.png")
 
         ui.click("field timeline frame")
         ui.type("7")
-        assert ui.session.frame == 7
+        assert ui.session.time.frame == 7
         ui.move("ruler")
         ui.wheel(4.0)
         low, high = timeline.view
         assert high - low < 11.0
         ui.drag("ruler", ui.at("ruler", (0.7, 0.5)), button=2)
-        assert timeline.view[0] < low and ui.session.frame == 7
+        assert timeline.view[0] < low and ui.session.time.frame == 7
         steps = len(ui.session.history.steps)
         ui.click("field timeline last")
         ui.type("9")
-        assert ui.session.frames == (1, 9) and len(ui.session.history.steps) == steps + 1
+        assert ui.session.time.frames == (1, 9) and len(ui.session.history.steps) == steps + 1
         ui.keys("Ctrl+Z")
-        assert ui.session.frames == (1, 12)
+        assert ui.session.time.frames == (1, 12)
 
     gui(body)
 
@@ -159,55 +159,55 @@ def test_keys_by_diamond_and_by_dragging(gui, tmp_path) -> None:
         ui.wait(3)
         first = seen(ui)
         ui.click("diamond exposure.stops")
-        assert session.key_at(stops).value == 0.0
+        assert session.time.find_key(stops).value == 0.0
         ui.keys("Shift+RightArrow")
         ui.settled()
         steps = len(session.history.steps)
         x, y = ui.at("field exposure.stops")
         ui.drag((x, y), (x + 40.0, y))
         assert len(session.history.steps) == steps + 1
-        assert session.animation(stops).frames == (1.0, 12.0) and session.key_at(stops).value > 0.2
+        assert session.graph.animation.get(stops).frames == (1.0, 12.0) and session.time.find_key(stops).value > 0.2
         ui.settled()
         bright = seen(ui)
         ui.keys("DownArrow")
-        assert session.frame == 1
+        assert session.time.frame == 1
         ui.settled()
         np.testing.assert_array_equal(seen(ui), first)
-        session.seek(6)
+        session.time.seek(6)
         ui.settled()
-        assert 0.0 < session.value_now(stops) < session.animation(stops).keys[1].value
+        assert 0.0 < session.time.evaluate(stops) < session.graph.animation.get(stops).keys[1].value
         ui.move("diamond exposure.stops")
         ui.shot("keys.png")
         ui.keys("UpArrow")
-        assert session.frame == 12
+        assert session.time.frame == 12
         ui.settled()
         np.testing.assert_array_equal(seen(ui), bright)
         ui.keys("Ctrl+Z")
-        assert session.animation(stops).frames == (1.0,), "a drag is one step"
+        assert session.graph.animation.get(stops).frames == (1.0,), "a drag is one step"
 
-        session.seek(5)
+        session.time.seek(5)
         ui.wait(3)
         x, y = ui.at("field exposure.stops")
         ui.drag((x, y), (x + 40.0, y), release=False)
-        assert session.animation(stops).frames == (1.0, 5.0)
+        assert session.graph.animation.get(stops).frames == (1.0, 5.0)
         ui.keys("Escape")
         ui.ctx.mouse_up(0)
         ui.wait(3)
-        assert session.animation(stops).frames == (1.0,), "and none if it is cancelled"
+        assert session.graph.animation.get(stops).frames == (1.0,), "and none if it is cancelled"
 
         ui.click("diamond exposure.stops")
-        assert session.animation(stops).frames == (1.0, 5.0)
+        assert session.graph.animation.get(stops).frames == (1.0, 5.0)
         ui.click("diamond exposure.stops", button=1)
         ui.shot("menu.png")
         ui.click("menu Copy Animation")
         ui.click("diamond exposure.stops", button=1)
         ui.click("menu Remove All Keys")
-        assert session.animation(stops) is None
+        assert session.graph.animation.get(stops) is None
         ui.click("diamond exposure.stops", button=1)
         ui.click("menu Paste Animation")
-        assert session.animation(stops).frames == (1.0, 5.0)
+        assert session.graph.animation.get(stops).frames == (1.0, 5.0)
         ui.double_click("name exposure.stops")
-        assert session.animation(stops) is None
+        assert session.graph.animation.get(stops) is None
 
     gui(body)
 
@@ -222,15 +222,15 @@ def test_an_expression_is_typed_after_an_equals_sign(gui, tmp_path) -> None:
         ui.wait(3)
         ui.click("field exposure.stops")
         ui.type("=sin(frame / 12 * tau) * 2")
-        assert isinstance(session.animation(stops), Expression)
-        session.seek(4)
+        assert isinstance(session.graph.animation.get(stops), Expression)
+        session.time.seek(4)
         ui.settled()
-        assert abs(session.value_now(stops) - 1.732) < 0.001
+        assert abs(session.time.evaluate(stops) - 1.732) < 0.001
         ui.move("ruler")
         ui.shot("expression.png")
         ui.click("field exposure.stops")
         ui.type("frame / (2 +")
-        assert session.animation(stops).text == "sin(frame / 12 * tau) * 2", "what was there goes on"
+        assert session.graph.animation.get(stops).text == "sin(frame / 12 * tau) * 2", "what was there goes on"
         ui.shot("expression_fault.png")
         ui.editor.store.change(theme="light")
         ui.wait(4)
@@ -238,10 +238,10 @@ def test_an_expression_is_typed_after_an_equals_sign(gui, tmp_path) -> None:
         ui.editor.store.change(theme="dark")
         ui.click("field exposure.stops")
         ui.type("frame / 8")
-        assert session.animation(stops).text == "frame / 8"
+        assert session.graph.animation.get(stops).text == "frame / 8"
         ui.click("diamond exposure.stops", button=1)
         ui.click("menu Bake to Keys")
-        assert [key.value for key in session.animation(stops).keys] == [frame / 8 for frame in range(1, 13)]
+        assert [key.value for key in session.graph.animation.get(stops).keys] == [frame / 8 for frame in range(1, 13)]
         ui.shot("baked.png")
 
     gui(body)
@@ -253,19 +253,19 @@ def test_the_graphs_range_rate_and_preroll(gui, tmp_path) -> None:
     def body(ui) -> None:
         session = ui.session
         start(ui, graph_of(path, "exposure"))
-        assert session.frames == (1001, 1008) and session.frame == 1001
+        assert session.time.frames == (1001, 1008) and session.time.frame == 1001
         ui.click("field frames", fraction=(0.25, 0.5))
         ui.type("1003")
-        assert session.settings.frames == (1003, 1008)
+        assert session.root.settings.frames == (1003, 1008)
         ui.click("field preroll")
-        assert session.settings.preroll == 12
+        assert session.root.settings.preroll == 12
         ui.click("field rate")
         ui.type("25")
-        assert session.settings.rate == 25.0
+        assert session.root.settings.rate == 25.0
         ui.shot("graph.png")
         ui.click("button automatic frames")
         ui.click("button automatic preroll")
-        assert (session.settings.frames, session.settings.preroll) == (None, None)
+        assert (session.root.settings.frames, session.root.settings.preroll) == (None, None)
 
     gui(body)
 
@@ -279,7 +279,7 @@ def test_missing_frames_are_marked(gui, tmp_path) -> None:
         start(ui, graph_of(path, "exposure"))
         ui.until(lambda: ui.window._panels["Timeline"]._ruler.missing.gaps == ((5, 6),))
         session = ui.session
-        session.seek(5)
+        session.time.seek(5)
         ui.settled()
         assert "no such file" in ui.editor.preview.fault("A")
         ui.shot("missing.png")
@@ -308,14 +308,14 @@ def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_pa
             finally:
                 reel.close()
 
-        ui.session.seek(10)
+        ui.session.time.seek(10)
         ui.wait(1)
         ui.settled()
         assert ui.editor.preview.remembers and ui.editor.preview.find_whole_image("A").frame == 10
         far = seen(ui)
         ui.shot("trails.png")
         for frame in (3, 12, 9, 10):
-            ui.session.seek(frame)
+            ui.session.time.seek(frame)
             ui.settled()
         np.testing.assert_array_equal(seen(ui), far, "whatever was shown before")
         np.testing.assert_array_equal(far, ui.ask(lambda: rendered(10)))
@@ -340,7 +340,7 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
         ui.editor.dialogs.question = None
         ui.wait(3)
         node = ui.session.active
-        assert ui.session.value(Port(node, "path")) == path and ui.session.frames == (1, 12)
+        assert ui.session.graph.value(Port(node, "path")) == path and ui.session.time.frames == (1, 12)
         ui.settled()
         ui.until(lambda: not ui.editor.renders.is_busy)
         ui.wait(5)
@@ -352,6 +352,6 @@ def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> Non
             )
         )
         assert ui.editor.dialogs.question is None, "several of one sequence are that"
-        assert ui.session.value(Port(ui.session.active, "path")) == path
+        assert ui.session.graph.value(Port(ui.session.active, "path")) == path
 
     gui(body)

@@ -63,7 +63,7 @@ def test_the_wipe_shows_both_and_is_dragged(gui) -> None:
     def body(ui) -> None:
         ui.settled()
         a = seen(ui, 0.8, 0.85)
-        ui.session.view(Port("inputs", "beauty"), "B")
+        ui.session.views.show(Port("inputs", "beauty"), "B")
         hover(ui)
         ui.keys("W")
         ui.settled()
@@ -71,11 +71,11 @@ def test_the_wipe_shows_both_and_is_dragged(gui) -> None:
         b = seen(ui, 0.8, 0.85)
         assert (a != b).any()
         # The line of numbers for B makes the picture a little smaller: A is what both sides show then.
-        ui.session.view(Port("outputs", "image"), "B")
+        ui.session.views.show(Port("outputs", "image"), "B")
         ui.settled()
         a = seen(ui, 0.8, 0.85)
         assert (a != b).any()
-        ui.session.view(Port("inputs", "beauty"), "B")
+        ui.session.views.show(Port("inputs", "beauty"), "B")
         ui.settled()
         ui.drag("viewer wipe", inside(ui, 0.95, 0.5))
         assert ui.editor.viewer.wipe == pytest.approx((0.95, 0.5), abs=0.01)
@@ -104,7 +104,7 @@ def test_the_wheel_keeps_the_pixel_under_the_pointer(gui) -> None:
         ui.wait(3)
         assert viewer.zoom > 5.0 and viewer.pixel == pytest.approx(before, abs=1)
         near = viewer.zoom, viewer.pan
-        ui.session.view(Port("inputs", "beauty"))
+        ui.session.views.show(Port("inputs", "beauty"))
         viewer.proxy = 0.5
         ui.settled()
         assert (viewer.zoom, viewer.pan) == near and viewer.pixel == pytest.approx(before, abs=1)

@@ -43,10 +43,10 @@ def test_a_position_is_dragged_on_the_picture_as_one_step(gui) -> None:
         ui.wait(3)
         ui.drag("handle vignette.center", inside(ui, 0.7, 0.25))
         ui.settled()
-        assert ui.session.value(Port("vignette", "center")) == pytest.approx((0.7, 0.25), abs=0.01)
+        assert ui.session.graph.value(Port("vignette", "center")) == pytest.approx((0.7, 0.25), abs=0.01)
         assert len(ui.session.history.steps) == 1
         ui.session.undo()
-        assert ui.session.value(Port("vignette", "center")) == (0.5, 0.5)
+        assert ui.session.graph.value(Port("vignette", "center")) == (0.5, 0.5)
 
     gui(body, PRESET)
 
@@ -67,13 +67,13 @@ def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
         steps = len(ui.session.history.steps)
         ui.drag("handle lit.lights 1", inside(ui, 0.7, 0.5))
         ui.settled()
-        sun, light = lights_of(ui.session.value(Port("lit", "lights")))
+        sun, light = lights_of(ui.session.graph.value(Port("lit", "lights")))
         assert sun == Light(LightKind.SUN)
         assert light.place == pytest.approx((0.2 * 5.0 * 36.0 / 50.0, 0.0, 1.0), abs=0.1)
         assert len(ui.session.history.steps) == steps + 1
         assert "field lit.lights 1 reach" in ui.editor.places
         ui.keys("Ctrl+Z")
-        assert lights_of(ui.session.value(Port("lit", "lights")))[1] == start
+        assert lights_of(ui.session.graph.value(Port("lit", "lights")))[1] == start
 
     gui(body, tmp_path / "graph.json")
 
@@ -125,7 +125,7 @@ def test_the_first_node_that_makes_infinity_is_found(gui) -> None:
         broken[3, 5] = np.inf
         session.apply(AddInput("light", "Image"))
         session._bound["light"] = broken  # files are repaired when they are read
-        session.view(Port("inputs", "light"))
+        session.views.show(Port("inputs", "light"))
         ui.settled()
         ui.until(lambda: "viewer find" in ui.editor.places)
         ui.click("viewer find")
@@ -163,12 +163,12 @@ def test_says_why_there_is_nothing(gui) -> None:
         ui.wait(3)
         assert "viewer message" in ui.editor.places
         noise = ui.session.apply(AddNode("noise"))
-        ui.session.view(Port(noise, "value"))
+        ui.session.views.show(Port(noise, "value"))
         ui.settled()
         assert "viewer message" not in ui.editor.places
         low, high = ui.editor.viewer.span
         assert 0.0 < low < high < 1.0  # measured
-        ui.session.view(Port(ui.session.apply(AddNode("read_image")), "out"))
+        ui.session.views.show(Port(ui.session.apply(AddNode("read_image")), "out"))
         ui.settled()
         assert "viewer message" in ui.editor.places
 
@@ -195,12 +195,12 @@ def test_at_any_size_tools_and_numbers_fit(gui) -> None:
 def test_keys_keep_and_recall_what_is_viewed(gui) -> None:
     def body(ui) -> None:
         ui.settled()
-        ui.session.view(Port("halo", "glow"))
+        ui.session.views.show(Port("halo", "glow"))
         hover(ui)
         ui.keys("Ctrl+3")
-        ui.session.view(Port("outputs", "image"))
+        ui.session.views.show(Port("outputs", "image"))
         ui.keys("3")
-        assert ui.session.find_viewed_port("A") == Port("halo", "glow")
+        assert ui.session.views.find_port("A") == Port("halo", "glow")
 
     gui(body, PRESET)
 
@@ -209,7 +209,7 @@ def test_a_color_is_picked_from_the_picture(gui) -> None:
     def body(ui) -> None:
         ui.settled()
         constant = ui.session.apply(AddNode("constant"))
-        ui.session.view(Port("inputs", "beauty"))
+        ui.session.views.show(Port("inputs", "beauty"))
         ui.settled()
         hover(ui, 0.3, 0.7)
         ui.keys("Ctrl+C")
@@ -218,7 +218,7 @@ def test_a_color_is_picked_from_the_picture(gui) -> None:
         ui.wait(2)
         ui.click(inside(ui, 0.3, 0.7))
         assert ui.editor.viewer.picking == ""
-        assert ui.session.value(Port(constant, "color"))[:3] == pytest.approx(expected[:3], rel=1e-6)
+        assert ui.session.graph.value(Port(constant, "color"))[:3] == pytest.approx(expected[:3], rel=1e-6)
 
     gui(body, PRESET)
 

@@ -27,7 +27,7 @@ from .linking import (
 )
 from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll
 from .values import DescribeControl, ExposeValue, HideControl, RenameControl, ResetNode, ResetValue, SetValue, SetValues
-from .viewing import AssignViewer, ReplaceGraph
+from .viewing import AssignViewer, ReplaceDocument, ReplaceGraph
 
 __all__ = [
     "KEEP",
@@ -80,6 +80,7 @@ __all__ = [
     "RenameControl",
     "RenameEnd",
     "RenameNode",
+    "ReplaceDocument",
     "ReplaceGraph",
     "ReplaceNode",
     "ResetNode",

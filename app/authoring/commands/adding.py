@@ -69,7 +69,7 @@ class AddCodeFile(EditCommand[str]):
     output: bool = True
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        item = coding.make_file_node(document.relative(self.path), document.root.folder, sandbox=document.sandbox)
+        item = _make_code_node(document, self.path)
         return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
 
 
@@ -198,7 +198,7 @@ def load_group(document: OpenDocument, path: str | Path) -> Group:
         raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
     if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
         return Group(paths.rebase_paths(without_samples(body), document.root.folder))
-    return Group(body, document.relative(path))
+    return Group(body, paths.make_relative(path, document.root.folder))
 
 
 def _make_file_item(document: OpenDocument, path: str | Path) -> Item:
@@ -206,9 +206,15 @@ def _make_file_item(document: OpenDocument, path: str | Path) -> Item:
     if suffix == ".json":
         return load_group(document, path)
     if suffix in coding.ENDINGS:
-        return coding.make_file_node(document.relative(path), document.root.folder, sandbox=document.sandbox)
+        return _make_code_node(document, path)
     reads_render = "read_render" in document.types and is_render(
         representative_file(Path(path), sandbox=document.sandbox), sandbox=document.sandbox
     )
     node = make_node(document, "read_render" if reads_render else "read_image")
-    return node.with_values(path=document.relative(path))
+    return node.with_values(path=paths.make_relative(path, document.root.folder))
+
+
+def _make_code_node(document: OpenDocument, path: str | Path) -> Item:
+    """A node made of the code in a file."""
+    folder = document.root.folder
+    return coding.make_file_node(paths.make_relative(path, folder), folder, sandbox=document.sandbox)

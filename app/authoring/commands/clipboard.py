@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..edits import clipboard, deleting, naming
+from ..edits.clipboard import copy_elements
 from ..edits.element_id import ElementId
 from ..edits.elements import Place
 from ..state.open_document import OpenDocument
@@ -16,7 +17,7 @@ class CutSelection(EditCommand[str]):
     """Remove the selection; gives it as text."""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        text = document.copy()
+        text = copy_elements(document.graph, document.selection)
         graph = deleting.delete_elements(document.graph, document.selection)
         return Edited(f"Cut {naming.describe_elements(document.selection)}", text, graph, ())
 

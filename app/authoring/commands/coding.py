@@ -7,6 +7,7 @@ from pathlib import Path
 
 from msgspec import structs
 
+from ...custom_nodes import Code
 from ...errors import GraphError
 from ..edits import coding, folding, paths
 from ..state.open_document import OpenDocument
@@ -50,7 +51,7 @@ class EmbedCode(EditCommand[None]):
     id: str
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        code = document.code_in_file(self.id)
+        code = read_linked_code(document, self.id)
         graph = coding.set_code(document.graph, self.id, structs.replace(code, file=""))
         return Edited(f"Move code of {self.id} into the graph", None, graph)
 
@@ -63,10 +64,18 @@ class LinkCodeFile(EditCommand[None]):
     path: str | Path
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        code = document.code(self.id)
+        code = coding.read_node_code(document.graph.nodes.get(self.id), document.graph.folder, sandbox=document.sandbox)
         if code is None:
             raise GraphError(f"node '{self.id}' is not made of code")
         document.check_editable()
-        name = paths.relative(self.path, document.graph.folder)
+        name = paths.make_relative(self.path, document.graph.folder)
         graph = coding.set_code(document.graph, self.id, structs.replace(code, file=name))
         return Edited(f"Move code of {self.id} to {Path(self.path).name}", None, graph)
+
+
+def read_linked_code(document: OpenDocument, id: str) -> Code:
+    """The code of a node of the current graph whose code is in a file. Raises GraphError for other nodes."""
+    code = coding.read_node_code(document.graph.nodes.get(id), document.graph.folder, sandbox=document.sandbox)
+    if code is None or not code.file:
+        raise GraphError(f"the code of node '{id}' is in no file")
+    return code

@@ -11,6 +11,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, Graph, Input, Output, Port, problems
 from ..edits.element_id import ElementId
 from ..edits.elements import Place, clean_text, with_places
+from ..edits.selection import order_selection
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
@@ -74,7 +75,8 @@ class RenameEnd(EditCommand[None]):
         rename = graph.rename_input if port.node == INPUTS else graph.rename_output
         graph, new_port = rename(port.socket, self.new), Port(port.node, self.new)
         new_end = ElementId.of_port(new_port)
-        selection = [new_end if element == self.end else element for element in document.ordered_selection]
+        selected = order_selection(document.selection, document.active)
+        selection = [new_end if element == self.end else element for element in selected]
         label = f"Rename {self.end} to {self.new}"
         return Edited(label, None, graph, selection, moves={port: new_port}, renamed=(self.end, new_end))
 

@@ -58,7 +58,7 @@ class LinkGroup(EditCommand[None]):
     body: Graph
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        linked = Group(self.body, document.relative(self.path))
+        linked = Group(self.body, paths.make_relative(self.path, document.root.folder))
         return Edited(f"Link {self.id} to {self.path.name}", None, _with_group(document.graph, self.id, linked))
 
 

@@ -15,6 +15,7 @@ from ...errors import GraphError
 from ...graph import Animation, Expression, Graph, Key, Keys, Port
 from ...graph.frames import list_range
 from ..edits.elements import clean_text
+from ..edits.values import find_expression_fault
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
@@ -29,16 +30,16 @@ class SetKey(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         check_not_animated_outside(document, self.port)
-        before = document.animation(self.port)
+        before = document.graph.animation.get(self.port)
         if isinstance(before, Expression):
             raise GraphError(f"{self.port} follows an expression: bake it into keys, or remove it first")
         keys = before or Keys()
         if self.value is not None:
-            keys = keys.set(document.frame, _to_plain(self.value))
+            keys = keys.set(document.time.frame, _to_plain(self.value))
         elif keys.keys:
-            keys = keys.insert(document.frame)
+            keys = keys.insert(document.time.frame)
         else:
-            keys = keys.set(document.frame, document.value_now(self.port))
+            keys = keys.set(document.time.frame, document.time.evaluate(self.port))
         return Edited(f"Key {self.port}", None, document.graph.animate(self.port, keys), merge=self.merge)
 
 
@@ -49,10 +50,10 @@ class RemoveKey(EditCommand[None]):
     port: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        keys = document.animation(self.port)
-        if not isinstance(keys, Keys) or keys.key(document.frame) is None:
-            raise GraphError(f"{self.port} has no key at frame {document.frame}")
-        graph = _animate(document, document.graph, self.port, keys.remove(document.frame))
+        keys = document.graph.animation.get(self.port)
+        if not isinstance(keys, Keys) or keys.key(document.time.frame) is None:
+            raise GraphError(f"{self.port} has no key at frame {document.time.frame}")
+        graph = _animate(document, document.graph, self.port, keys.remove(document.time.frame))
         return Edited(f"Remove a key of {self.port}", None, graph)
 
 
@@ -63,7 +64,7 @@ class ToggleKey(EditCommand[None]):
     port: Port
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        command = SetKey(self.port) if document.key_at(self.port) is None else RemoveKey(self.port)
+        command = SetKey(self.port) if document.time.find_key(self.port) is None else RemoveKey(self.port)
         return command.apply(document)
 
 
@@ -106,7 +107,7 @@ class SetExpression(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         check_not_animated_outside(document, self.port)
         text = clean_text(self.text).strip().removeprefix("=").strip()
-        if text and (fault := document.expression_fault(self.port, text)):
+        if text and (fault := find_expression_fault(document.graph, self.port, text)):
             raise GraphError(fault)
         graph = _animate(document, document.graph, self.port, Expression(text) if text else None)
         return Edited(f"Expression of {self.port}", None, graph, merge=self.merge)
@@ -121,11 +122,11 @@ class BakeKeys(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         check_not_animated_outside(document, self.port)
-        first, last = document.frames
+        first, last = document.time.frames
         frames = list_range(first, last) if self.frames is None else tuple(self.frames)
         if not frames:
             raise GraphError(f"{self.port}: there are no frames to bake")
-        values = {frame: document.value_then(self.port, frame) for frame in frames}
+        values = {frame: document.time.evaluate(self.port, frame) for frame in frames}
         keys = (
             Key(frame, plain, "constant" if isinstance(plain, bool) else "linear") for frame, plain in values.items()
         )
@@ -135,15 +136,15 @@ class BakeKeys(EditCommand[None]):
 def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
     """The keys of a value with one at the current frame; None if it has none. Raises GraphError for an expression."""
     check_not_animated_outside(document, port)
-    before = document.animation(port)
+    before = document.graph.animation.get(port)
     if isinstance(before, Expression):
         raise GraphError(f"{port} follows an expression: edit it, or remove it first")
-    return before and before.set(document.frame, _to_plain(value))
+    return before and before.set(document.time.frame, _to_plain(value))
 
 
 def check_not_animated_outside(document: OpenDocument, port: Port) -> None:
     """Raise GraphError for a value that is animated as a control of the group around it."""
-    if outer := document.find_outer_animation(port):
+    if outer := document.time.find_outer_animation(port):
         where = "/".join(outer[0]) or "the graph outside"
         raise GraphError(f"{port} is animated as '{outer[1]}' in {where}: change it there")
 
@@ -155,7 +156,7 @@ def _animate(document: OpenDocument, graph: Graph, port: Port, animation: Animat
     if port not in graph.animation:
         return graph
     try:
-        return graph.set(port, document.value_now(port))
+        return graph.set(port, document.time.evaluate(port))
     except GraphError:
         return graph.animate(port, None)
 

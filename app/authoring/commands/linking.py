@@ -9,6 +9,7 @@ from ...errors import GraphError
 from ...graph import Port
 from ..edits import deleting, elements, naming, wiring
 from ..edits.element_id import ElementId
+from ..edits.selection import order_selection
 from ..state.open_document import OpenDocument
 from .adding import make_node
 from .command import EditCommand, Edited, count_links, require_nodes, require_selection
@@ -129,7 +130,8 @@ class RenameNode(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.rename(self.id, self.new)
         old, new = ElementId(self.id), ElementId(self.new)
-        selection = [new if element == old else element for element in document.ordered_selection]
+        selected = order_selection(document.selection, document.active)
+        selection = [new if element == old else element for element in selected]
         return Edited(f"Rename {old} to {new}", None, graph, selection, renamed=(old, new))
 
 

@@ -8,7 +8,8 @@ from halation.nodes import ColorSettings, Size
 
 from ...errors import GraphError
 from ...graph import Settings
-from ..state.open_document import MAX_FRAME, OpenDocument
+from ..state.document_time import MAX_FRAME
+from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 
 
@@ -28,7 +29,7 @@ class SetFrameRange(EditCommand[None]):
             raise GraphError(f"the first frame, {frames[0]}, comes after the last one, {frames[1]}")
         if frames and max(map(abs, frames)) > MAX_FRAME:
             raise GraphError(f"frames go from {-MAX_FRAME} to {MAX_FRAME}")
-        return _set(document, "Set frames", replace(document.settings, frames=frames), self.merge)
+        return _set(document, "Set frames", replace(document.root.settings, frames=frames), self.merge)
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class SetFrameRate(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         if not 0.01 <= self.rate <= 1000.0:
             raise GraphError(f"{self.rate:g} frames per second: give 0.01 to 1000")
-        return _set(document, "Set rate", replace(document.settings, rate=float(self.rate)), self.merge)
+        return _set(document, "Set rate", replace(document.root.settings, rate=float(self.rate)), self.merge)
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class SetPreroll(EditCommand[None]):
     def apply(self, document: OpenDocument) -> Edited[None]:
         if self.preroll is not None and not 0 <= self.preroll <= MAX_FRAME:
             raise GraphError(f"a pre-roll of {self.preroll} frames: give 0 or more")
-        return _set(document, "Set pre-roll", replace(document.settings, preroll=self.preroll), self.merge)
+        return _set(document, "Set pre-roll", replace(document.root.settings, preroll=self.preroll), self.merge)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,10 +67,10 @@ class SetColorSettings(EditCommand[None]):
     merge: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[None]:
-        color = document.settings.color
+        color = document.root.settings.color
         config = color.config if self.config is None else self.config
         working = color.working if self.working is None else self.working
-        settings = replace(document.settings, color=ColorSettings(config, working))
+        settings = replace(document.root.settings, color=ColorSettings(config, working))
         return _set(document, "Set color", settings, self.merge)
 
 

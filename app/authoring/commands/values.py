@@ -9,7 +9,7 @@ from ...errors import GraphError
 from ...graph import Control, Port, signature
 from ...graph.names import fresh_name
 from ..edits.elements import clean_text
-from ..edits.values import fit_color, reset_value
+from ..edits.values import find_control, fit_color, reset_value
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
 from .keys import add_key
@@ -80,7 +80,7 @@ class ExposeValue(EditCommand[str]):
     name: str = ""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        if control := document.control_of(self.port):
+        if control := find_control(document.graph, self.port):
             raise GraphError(f"'{self.port}' is the control '{control}' already")
         graph = document.graph
         name = self.name or fresh_name(self.port.socket, {*graph.controls, *graph.inputs})

@@ -1,4 +1,4 @@
-"""The command that lets a number key show a port, and the one for edits that panels compute themselves."""
+"""The command that assigns a port to a number key, and those that put another graph in the place of this one."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class AssignViewer(EditCommand[None]):
         if self.number not in VIEWER_NUMBERS:
             raise GraphError(f"there is no viewer {self.number}: choose 1 to 9")
         graph = document.graph
-        port = self.port or _find_active_port(document) or document.find_viewed_port()
+        port = self.port or _find_active_port(document) or document.views.find_port()
         if port is None or not is_viewable(graph, port):
             raise GraphError("there is nothing to show: select a node first")
         section = graph.ui.get("viewers")
@@ -44,6 +44,17 @@ class ReplaceGraph(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         return Edited(self.label, None, self.graph, self.select, self.merge)
+
+
+@dataclass(frozen=True)
+class ReplaceDocument(EditCommand[None]):
+    """Put another document in the place of this one, as one step: what was read again from its file."""
+
+    label: str
+    root: Graph
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        return Edited(self.label, None, root=self.root)
 
 
 def _find_active_port(document: OpenDocument) -> Port | None:

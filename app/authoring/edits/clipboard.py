@@ -50,7 +50,12 @@ def cut_part(graph: Graph, chosen: Collection[ElementId]) -> Graph:
 
 
 def copy_elements(graph: Graph, chosen: Collection[ElementId]) -> str:
-    """The chosen elements as text: a graph file, which says in `from` where its relative paths start."""
+    """The chosen elements as text: a graph file, which says in `from` where its relative paths start.
+
+    Raises GraphError if no element is chosen.
+    """
+    if not chosen:
+        raise GraphError("nothing is selected: select what to copy")
     copied_graph = cut_part(graph, chosen)
     folder = str(Path(graph.folder).absolute())
     return dumps(replace(copied_graph, extra={**copied_graph.extra, "": {_FROM: folder}}))

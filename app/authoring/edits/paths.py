@@ -10,10 +10,10 @@ from ...errors import UsageError
 from ...graph import Graph, Group
 from ...graph.paths import rebase_paths, relocate_path, resolve_path
 
-__all__ = ["check_target", "group_files", "rebase_paths", "relative", "relocate_path", "resolve_path"]
+__all__ = ["check_target", "group_files", "make_relative", "rebase_paths", "relocate_path", "resolve_path"]
 
 
-def relative(path: str | Path, folder: str) -> str:
+def make_relative(path: str | Path, folder: str) -> str:
     """How a graph in `folder` names a file: relative if the file is below that folder, else absolute."""
     full = Path(os.path.abspath(path))  # noqa: PTH100
     base = Path(folder).absolute()

@@ -37,6 +37,11 @@ def combine_selection(
             return [*sorted(old - set(picked)), *added], added[-1] if added else active
 
 
+def order_selection(selection: Collection[ElementId], active: ElementId) -> list[ElementId]:
+    """The selected elements by name, the active one last."""
+    return [*sorted(set(selection) - {active}), *([active] if active else [])]
+
+
 def invert_selection(elements: Iterable[ElementId], selection: Collection[ElementId]) -> tuple[ElementId, ...]:
     """The elements that are not selected."""
     return tuple(key for key in elements if key not in selection)

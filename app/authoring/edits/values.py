@@ -6,7 +6,9 @@ from dataclasses import replace
 
 from halation.nodes import Node
 
-from ...graph import ANIMATED, Graph, Group, Port, signature
+from ...errors import GraphError
+from ...graph import ANIMATED, Expression, Graph, Group, Port, animation_fault, signature
+from ...graph.graph import find_value
 
 
 def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
@@ -14,6 +16,29 @@ def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
     if id not in graph.nodes:
         return ()
     return tuple(Port(id, name) for name, value in signature(graph.nodes[id]).values.items() if value.type in ANIMATED)
+
+
+def can_animate(graph: Graph, port: Port) -> bool:
+    """True if a value can change over time."""
+    try:
+        return find_value(graph.node(port.node), port.socket, port.node).type in ANIMATED
+    except GraphError:
+        return False
+
+
+def find_expression_fault(graph: Graph, port: Port, text: str) -> str | None:
+    """Why a value cannot follow an expression that the user typed, with a caret below its text, or None."""
+    return animation_fault(graph, port, Expression(text.strip().removeprefix("=").strip()))
+
+
+def find_control(graph: Graph, port: Port) -> str | None:
+    """The name of the control of a group that shows a value, if any."""
+    return next((name for name, control in graph.controls.items() if control.target == port), None)
+
+
+def is_default(graph: Graph, port: Port) -> bool:
+    """True if a value is as it is in a new node, at all frames."""
+    return port not in graph.animation and graph.value(port) == reset_value(graph, port).value(port)
 
 
 def fit_color(graph: Graph, port: Port, value: object) -> object:

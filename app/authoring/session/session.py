@@ -1,39 +1,31 @@
 """A session: the document that the user works on, and the one way to change it.
 
-`apply(command)` changes the document and adds a step to the history. Everything else is either a question, which
-`OpenDocument` answers, or no change of the document: where the user is, what is selected, what the viewer shows, which
-frame is current, which file the document belongs to.
+`apply(command)` changes the document and adds a step to the history. Everything else changes only what is not part of
+the document: the group that the user is in (`place`), the selection, and what the parts of a session know: `time` the
+current frame, `views` the ports in the viewer, `files` how the document is opened and saved, `code_files` the files
+with code of its nodes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from halation.nodes import Node
 
-from ...document import load, loads, save
-from ...errors import GraphError, UsageError
-from ...graph import INPUTS, Graph, Output, Port
-from ...graph.keys import round_keys
-from ...renderer.provenance.file_finder import load_graph_of_picture
-from ...resources.atomic_write import write_text_atomically
+from ...errors import GraphError
+from ...graph import INPUTS, Graph
 from ...resources.sandbox import Sandbox
-from ..commands.coding import LinkCodeFile
 from ..commands.command import EditCommand, Edited
-from ..commands.grouping import LinkGroup
-from ..edits import coding, elements, folding, layout, paths, routes
+from ..edits import elements, folding, layout, routes
 from ..edits.element_id import NO_ELEMENT, ElementId
 from ..edits.folding import GroupPath
-from ..edits.ports import is_viewable, output_ports
 from ..edits.selection import SelectMode, combine_selection
-from ..state.code_files import CodeFiles
 from ..state.history import History, HistoryStep, Snapshot
-from ..state.open_document import MAX_FRAME, OpenDocument, Side
-
-if TYPE_CHECKING:
-    from ..recovery import RecoveredWork
+from ..state.open_document import OpenDocument
+from .code_files import CodeFiles
+from .document_files import DocumentFiles
 
 T = TypeVar("T")
 
@@ -46,10 +38,9 @@ class Session(OpenDocument):
 
     def __init__(self, types: Mapping[str, type[Node]] | None = None, *, sandbox: Sandbox) -> None:
         super().__init__(types, sandbox=sandbox)
-        self.revision = 0
-        """Greater after every change of the document, the selection or the view."""
-        self.code_files = CodeFiles(sandbox=self.sandbox)
-        self.new()
+        self.code_files = CodeFiles(self)
+        self.files = DocumentFiles(self)
+        self.files.new()
 
     # --- changes of the document -------------------------------------------------------------------------------------
 
@@ -60,12 +51,11 @@ class Session(OpenDocument):
             self._follow_rename(*edited.renamed)
         if edited.root is not None:
             if edited.root != self.root:
-                after = Snapshot(edited.root, self.place, self.selection, self.active)
-                self._add_step(edited.label, after, edited.merge)
+                self._add_step(edited.label, self._show_root(edited.root), edited.merge)
         elif edited.graph is not None:
             self._apply_graph(edited, edited.graph)
         if edited.view is not None:
-            self.view(edited.view)
+            self.views.show(edited.view)
         return edited.outcome
 
     def undo(self) -> None:
@@ -119,39 +109,6 @@ class Session(OpenDocument):
         group = ElementId(self.place[len(place)] if self.place[: len(place)] == place else "")
         self._move_to(Snapshot(self.root, place, frozenset({group} if group else ()), group))
 
-    def seek(self, frame: float) -> None:
-        """Make a frame the current one; it may lie outside of the range."""
-        self._frame = min(max(round_keys(frame), -MAX_FRAME), MAX_FRAME)
-
-    def view(self, port: Port, side: Side = "A") -> None:
-        """Show an output of a node, or an end of the graph, on one side of the viewer."""
-        if not is_viewable(self.graph, port):
-            raise GraphError(f"there is no '{port}' to show")
-        self._views[self.place, side] = (port,)
-        self.revision += 1
-
-    def view_element(self, element: ElementId, side: Side = "A") -> None:
-        """Show a node's first output, or the one after that which is shown; an input or output of the graph itself."""
-        if end := element.port:
-            self.view(end, side)
-            return
-        ports = output_ports(self.graph, element)
-        if not ports:
-            raise GraphError(f"node '{element}' has no output to show")
-        viewed = self.find_viewed_port(side) if (self.place, side) in self._views else None
-        self.view(ports[(ports.index(viewed) + 1) % len(ports)] if viewed in ports else ports[0], side)
-
-    def view_nothing(self, side: Side = "B") -> None:
-        """Let a side show what it shows by default: nothing on B."""
-        self._views.pop((self.place, side), None)
-        self.revision += 1
-
-    def recall_viewer(self, number: int, side: Side = "A") -> None:
-        """Show the port that a number key recalls."""
-        if number not in self.viewers:
-            raise GraphError(f"nothing is assigned to viewer {number}: select a node and assign it first")
-        self.view(self.viewers[number], side)
-
     def bind(self, name: str, path: str | None) -> None:
         """Bind an input of the document to a file (`path` or `path:layer`), or to none; this is not saved."""
         if name not in self.root.inputs:
@@ -161,85 +118,16 @@ class Session(OpenDocument):
             self._bound[name] = path
         self.revision += 1
 
-    # --- the document as a file --------------------------------------------------------------------------------------
+    # --- another document --------------------------------------------------------------------------------------------
 
-    def new(self) -> None:
-        """Begin an empty document: one output, and nothing to show yet."""
-        root = layout.pin_places(Graph(outputs={"image": Output()}))
-        self._restart(root, None, root)
-
-    def open(self, path: str | Path) -> None:
-        """Open a graph file. Raises DocumentError; then everything is as before."""
-        root = load(path, self.types, sandbox=self.sandbox)
-        self._restart(root, Path(path), root)
-
-    def open_copy(self, path: str | Path) -> None:
-        """Open a graph file as a new document, as presets are: saving asks for a name. Raises DocumentError."""
-        root = load(path, self.types, sandbox=self.sandbox)
-        self._restart(root, None, root)
-
-    def open_made(self, path: str | Path) -> None:
-        """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
-        root = load_graph_of_picture(Path(path), self.types, sandbox=self.sandbox)
-        self._restart(root, None, root)
-        self._title = Path(path).stem
-
-    def open_text(self, text: str) -> None:
-        """Open the text of a graph file as a document without a file."""
-        self._restart(loads(text, "text", catalogue=self.types, sandbox=self.sandbox), None, None)
-
-    def restore(self, recovered: RecoveredWork) -> None:
-        """Open work that was recovered; it has the file that it was to be saved as, but is not saved."""
-        self._restart(recovered.load(self.sandbox), recovered.path, None)
-
-    def save(self) -> None:
-        """Save to the file that was opened. Raises UsageError if there is none."""
-        if self.path is None:
-            raise UsageError("this document has no file yet: choose one with Save As")
-        self.save_as(self.path)
-
-    def save_as(self, path: str | Path) -> None:
-        """Save to a file; relative paths are rewritten so that they lead to the same files. Raises OutputError."""
-        target = Path(path)
-        paths.check_target(self.root, target)
-        self.seal()
-        folder = str(target.parent)
-        root = paths.rebase_paths(self.root, folder)
-        save(root, target, sandbox=self.sandbox)
-        if root is not self.root:
-            self.migrate(lambda graph: paths.rebase_paths(graph, folder))
-        self.path, self._saved = target, self.root
-        self.revision += 1
-
-    def revert(self) -> None:
-        """Go back to what was saved; this can be undone."""
-        self._read_file_again("Revert")
-
-    def reload(self) -> None:
-        """Read the file again after another program changed it; this can be undone."""
-        self._read_file_again("Reload")
-
-    def reload_groups(self) -> None:
-        """Read the files of all groups again; this is no step. Raises DocumentError, and then nothing changes."""
-        bodies: dict[Path, Graph] = {}
-
-        def read_body(path: Path) -> Graph:
-            if path not in bodies:
-                bodies[path] = load(path, self.types, sandbox=self.sandbox)
-            return bodies[path]
-
-        self.migrate(lambda graph: folding.reread_groups(graph, read_body))
-
-    def save_group(self, id: str, path: str | Path, link: bool = False) -> None:
-        """Save what is in a group as a graph file; with `link`, the group comes from that file from now on."""
-        target = Path(path)
-        body = paths.rebase_paths(folding.find_group(self.graph, id).body(), str(target.parent))
-        paths.check_target(body, target)
-        if self.path and self.path.resolve() == target.resolve():
-            raise UsageError(f"{target}: this is the file of the document itself: choose another name")
-        save(body, target, sandbox=self.sandbox)
-        if link:
-            self.apply(LinkGroup(id, target, body))
+    def restart(self, root: Graph, path: Path | None = None, saved: Graph | None = None, title: str = "") -> None:
+        """Open another document, which has no history. `files` knows where documents come from."""
+        self.path, self.saved, self._title, self._bound = path, saved, title, {}
+        self.history = History()
+        self._memo.clear()
+        for part in (self.time, self.views, self.code_files):
+            part.reset()
+        self._move_to(Snapshot(root))
 
     def migrate(self, change: Callable[[Graph], Graph]) -> None:
         """Change the document, its whole history and what was saved, keeping what they mean; this is no step."""
@@ -251,67 +139,10 @@ class Session(OpenDocument):
             return changed[id(graph)]
 
         root = change_once(self.root)
-        saved = None if self._saved is None else change_once(self._saved)
+        saved = None if self.saved is None else change_once(self.saved)
         self.history.map_documents(change_once)
-        self._saved = saved
-        self._show_document(root)
-
-    def look_again(self) -> None:
-        """Find the frame range anew: files have changed."""
-        self._memo.forget("frames")
-
-    # --- files of code -----------------------------------------------------------------------------------------------
-
-    @property
-    def drafts(self) -> Mapping[Path, str]:
-        """Code that differs from the file that it belongs to, by file."""
-        return self.code_files.drafts(self.root)
-
-    @property
-    def recoverable(self) -> Graph:
-        """The document with drafts in it: nothing else would bring them back."""
-        root, drafts, sandbox = self.root, self.drafts, self.sandbox
-        make = (lambda: coding.embed_drafts(root, drafts, sandbox)) if drafts else (lambda: root)
-        return self._memo.get("recoverable", (root, drafts), make)
-
-    def export_code(self, id: str, path: str | Path) -> None:
-        """Write the code of a node to a file, from which it comes from then on. Raises OutputError."""
-        command = LinkCodeFile(id, path)
-        command.apply(self)  # nothing is written where the command makes no sense
-        code = self.code(id)
-        assert code is not None
-        write_text_atomically(Path(path), code.text, sandbox=self.sandbox)
-        self.code_files.note(paths.resolve_path(paths.relative(path, self.graph.folder), self.graph.folder), code.text)
-        self.apply(command)
-
-    def save_code(self, id: str) -> Path:
-        """Write the code of a node to its file; returns that. Raises OutputError."""
-        path = paths.resolve_path(self.code_in_file(id).file, self.graph.folder)
-        return self._write_code(path, coding.file_texts(self.root)[path])
-
-    def save_drafts(self) -> tuple[Path, ...]:
-        """Write all code that differs from its file; returns the files. Raises OutputError."""
-        return tuple(self._write_code(path, text) for path, text in self.drafts.items())
-
-    def reread_code(self, path: Path) -> None:
-        """Take over what another program wrote to a file of code, drafts of it included; this is no step."""
-        self.code_files.forget(path)
-        self.migrate(lambda graph: coding.reread_file_code(graph, path, sandbox=self.sandbox))
-        self.note_code_files()
-
-    def note_code_files(self) -> None:
-        """Read the files of code that were not read yet."""
-        self.code_files.read_missing(self.root)
-
-    def differs_from_disk(self, path: Path) -> bool:
-        """True if there is a draft of a file, and the file holds something else now."""
-        drafts = self.drafts
-        return path in drafts and self.code_files.differs(path, drafts[path])
-
-    def keep_draft(self, path: Path) -> None:
-        """Keep the code as it is here though another program changed its file: it is a draft now."""
-        self.code_files.forget(path)
-        self.note_code_files()
+        self.saved = saved
+        self._move_to(self._show_root(root))
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
@@ -348,52 +179,17 @@ class Session(OpenDocument):
         if (frozenset(chosen), active) != (self.selection, self.active):
             self._move_to(Snapshot(self.root, self.place, frozenset(chosen), active))
 
-    def _restart(self, root: Graph, path: Path | None, saved: Graph | None) -> None:
-        """Open another document, which has no history."""
-        self.history = History()
-        self.path, self._saved, self._title = path, saved, ""
-        self._bound, self._views, self._frame = {}, {}, None
-        self._memo.clear()
-        self.code_files.clear()
-        self._move_to(Snapshot(root))
-
-    def _read_file_again(self, label: str) -> None:
-        if self.path is None:
-            raise UsageError("this document has no file to read again")
-        self.seal()
-        root = load(self.path, self.types, sandbox=self.sandbox)
-        before = self._snapshot
-        self._saved = root
-        self.code_files.clear()
-        self._show_document(root)
-        if root != before.root:
-            self.history.add(HistoryStep(label, before, self._snapshot))
-
-    def _show_document(self, root: Graph) -> None:
-        """Show another document where this one was shown, as far as it has the same groups and elements."""
+    def _show_root(self, root: Graph) -> Snapshot:
+        """Another document, shown as this one is, as far as it has the same groups and elements."""
         place = self.place
         while place and not folding.is_place(root, place):
             place = place[:-1]
         keys = set(elements.list_elements(folding.body_at(root, place))) if place == self.place else set()
-        self._move_to(Snapshot(root, place, self.selection & keys, self.active if self.active in keys else NO_ELEMENT))
-
-    def _write_code(self, path: Path, text: str) -> Path:
-        write_text_atomically(path, text, sandbox=self.sandbox)
-        self.code_files.note(path, text)
-        if self._saved is not None:
-            self._saved = coding.set_file_code(self._saved, path, text, sandbox=self.sandbox)
-            self.revision += 1
-        return path
+        return Snapshot(root, place, self.selection & keys, self.active if self.active in keys else NO_ELEMENT)
 
     def _follow_rename(self, old: ElementId, new: ElementId) -> None:
         """Let views and bound files follow an element to its new name; the old one stays for when that is undone."""
         old_end, new_end = old.port, new.port
         if old_end and new_end and old_end.node == INPUTS and not self.place and old_end.socket in self._bound:
             self._bound[new_end.socket] = self._bound[old_end.socket]
-
-        def follow(port: Port) -> Port:
-            return new_end or Port(new, port.socket) if old in (port.node, str(port)) else port
-
-        for key, ports in self._views.items():
-            if key[0] == self.place:
-                self._views[key] = tuple(dict.fromkeys((*map(follow, ports), *ports)))
+        self.views.follow_rename(old, new)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...authoring.commands import CutSelection, DeleteSelection, DuplicateSelection, PasteText
+from ...authoring.edits.clipboard import copy_elements
 from ...authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
 from ..shared.action import Action
 
@@ -49,7 +50,7 @@ EDITS: tuple[Action[EditContext], ...] = (
     Action(
         "edit.copy",
         "Copy",
-        lambda context: context.clipboard.put(context.session.copy()),
+        lambda context: context.clipboard.put(copy_elements(context.session.graph, context.session.selection)),
         "Edit",
         "Ctrl+C",
         "graph",

@@ -67,7 +67,7 @@ def _save_group(context: CanvasContext) -> None:
     id = context.session.active
 
     def save(path: Path) -> None:
-        context.log.attempt(lambda: context.session.save_group(id, path.with_suffix(".json"), link=True))
+        context.log.attempt(lambda: context.session.files.save_group(id, path.with_suffix(".json"), link=True))
 
     context.dialogs.browse = Browse("Save the group as", "graph", save, saving=True, name=f"{id}.json")
 
@@ -140,7 +140,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
     Action(
         "node.view",
         "View",
-        lambda context: context.session.view_element(context.session.active),
+        lambda context: context.session.views.show_element(context.session.active),
         "Graph",
         "V",
         "graph",
@@ -151,7 +151,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
     Action(
         "node.view_b",
         "View as B",
-        lambda context: context.session.view_element(context.session.active, "B"),
+        lambda context: context.session.views.show_element(context.session.active, "B"),
         "Graph",
         "Shift+V",
         "graph",

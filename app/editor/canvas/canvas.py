@@ -152,8 +152,8 @@ class Canvas:
         session, pictures = self._context.session, self._pictures.list_elements(self._context)
         gesture = self._mouse.gesture
         expanded_key = self._expanded_key if isinstance(gesture, LinkGesture) else NO_ELEMENT
-        graph = session.graph_now
-        frame = None if graph is session.graph else session.frame
+        graph = session.time.evaluated_graph
+        frame = None if graph is session.graph else session.time.frame
         inputs = (session.revision, frame, pictures, expanded_key, frozenset(self._builder.expanded))
         if self._scene is None or inputs != self._scene_inputs:
             positions, background = session.positions, session.selection - {session.active}

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetExpression, SetValue
+from ...authoring.edits import paths
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.session import Session
 from ...graph import Port
@@ -143,14 +145,12 @@ class LiveFields:
         if port.node not in self.context.session.graph.nodes:
             self.open = None
             return
-        plain = self.context.session.graph_now.value(port)
+        plain = self.context.session.time.evaluated_graph.value(port)
         if opening == "path":
             self.open = None
             self.context.dialogs.browse = browse(
                 value,
-                lambda path: self.context.log.attempt(
-                    lambda: self.context.session.apply(SetValue(port, self.context.session.relative(path)))
-                ),
+                lambda path: self.context.log.attempt(lambda: _apply_path(self.context.session, port, path)),
             )
             return
         if opening:
@@ -184,6 +184,10 @@ class LiveFields:
 def _port_of(field_id: str) -> Port:
     """The port whose field has that id; a field of a vector adds `#` and the number of its part."""
     return Port.parse(field_id.removeprefix(_FIELD).partition("#")[0])
+
+
+def _apply_path(session: Session, port: Port, path: Path) -> None:
+    session.apply(SetValue(port, paths.make_relative(path, session.root.folder)))
 
 
 def _apply_edit(session: Session, port: Port, edit: Edit) -> None:

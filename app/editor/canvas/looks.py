@@ -91,10 +91,10 @@ def gather_look_facts(context: CanvasContext, ink: CanvasColors, gesture: Gestur
     session = context.session
     viewed: dict[ElementId, str] = {}
     for side in ("A", "B"):
-        if port := session.find_viewed_port(side):
+        if port := session.views.find_port(side):
             viewed[ElementId.of_port(port)] = viewed.get(ElementId.of_port(port), "") + side
     badges: dict[ElementId, str] = {}
-    for number, port in session.viewers.items():
+    for number, port in session.views.numbered_ports.items():
         badges[ElementId.of_port(port)] = f"{badges.get(ElementId.of_port(port), '')} {number}".strip()
     lit: dict[ElementId, frozenset[tuple[bool, str]]] | None = None
     if isinstance(gesture, LinkGesture):

@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import AddDot, CutLinks, Disconnect, EditFrame, ExposeValue, HideControl, ResetValue
 from ...authoring.edits.element_id import ElementId
+from ...authoring.edits.values import find_control, is_default
 from ...graph import Group, Port
 from ..shared.action import ListedAction
 from ..toolkit.buttons import entry
@@ -76,7 +77,7 @@ class CanvasMenus:
         if isinstance(self.context.session.graph.nodes.get(hit.key), Group):
             for action in self.context.actions.in_menu("group"):
                 _draw_action(self.context, action)
-        if self.context.session.code(hit.key) is not None:
+        if self.context.session.code_files.find_code(hit.key) is not None:
             for action in self.context.actions.in_menu("code"):
                 _draw_action(self.context, action)
         imgui.end_popup()
@@ -84,8 +85,8 @@ class CanvasMenus:
     def _draw_pin_items(self, port: Port, output: bool) -> None:
         session = self.context.session
         if output:
-            _draw_item(self.context, "View", lambda: session.view(port))
-            _draw_item(self.context, "View as B", lambda: session.view(port, "B"))
+            _draw_item(self.context, "View", lambda: session.views.show(port))
+            _draw_item(self.context, "View as B", lambda: session.views.show(port, "B"))
             fed = [target for target, source in session.graph.links.items() if source == port]
             _draw_item(self.context, "Cut its links", lambda: session.apply(CutLinks(fed)), bool(fed))
         else:
@@ -98,9 +99,12 @@ class CanvasMenus:
     def _draw_field_items(self, port: Port) -> None:
         session = self.context.session
         _draw_item(
-            self.context, f"Reset {port.socket}", lambda: session.apply(ResetValue(port)), not session.is_default(port)
+            self.context,
+            f"Reset {port.socket}",
+            lambda: session.apply(ResetValue(port)),
+            not is_default(session.graph, port),
         )
-        control = session.control_of(port)
+        control = find_control(session.graph, port)
         if control:
             _draw_item(self.context, f"Hide the control '{control}'", lambda: session.apply(HideControl(control)))
         else:

@@ -21,8 +21,10 @@ from ...authoring.commands import (
     ResizeFrame,
     SpliceChain,
 )
+from ...authoring.edits.decor import find_frame_members
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.selection import SelectMode
+from ...authoring.edits.wiring import why_not_linkable
 from ...graph import Group, Port
 from .frame import CanvasFrame, apply_wheel, pan_at_border
 from .geometry import Point, contains
@@ -147,7 +149,7 @@ class CanvasMouse:
                 self.gesture = ResizeGesture(hit.key, hit.name, frame.pointer, rect, rect)
             case "title" | "body":
                 if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
-                    context.log.attempt(lambda: session.view_element(hit.key))
+                    context.log.attempt(lambda: session.views.show_element(hit.key))
                 elif io.key_ctrl or io.key_shift:
                     self._select(context, hit.key, "toggle")
                 else:
@@ -181,11 +183,11 @@ class CanvasMouse:
             self.requests.rename = hit.key
         elif hit.part in ("title", "body") and hit.key.kind != "dot":
             item = session.graph.nodes.get(hit.key)
-            if session.code(hit.key) is not None:
+            if session.code_files.find_code(hit.key) is not None:
                 context.code_files.show()
                 return
             context.log.attempt(
-                lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_element(hit.key)
+                lambda: session.enter(hit.key) if isinstance(item, Group) else session.views.show_element(hit.key)
             )
         elif hit.part == "empty":
             context.canvas.searching = True
@@ -244,7 +246,9 @@ class CanvasMouse:
             if not frame.is_far(move.start):
                 return move
             members = [
-                session.frame_members(key, frame.scene.sizes) for key in session.selection if key.kind == "frame"
+                find_frame_members(session.graph, key, session.positions, frame.scene.sizes)
+                for key in session.selection
+                if key.kind == "frame"
             ]
             move = replace(move, keys=add_members(session.selection, frame.scene, members))
             if extract and any(wire.crosses_border(move.keys) for wire in frame.scene.wires):
@@ -301,7 +305,7 @@ class CanvasMouse:
                 context.log.attempt(lambda: session.apply(Connect(source, target)))
         elif not frame.is_far(self._find_link_start(frame, link)):
             if link.output and link.detached is None:
-                context.log.attempt(lambda: session.view(link.port))
+                context.log.attempt(lambda: session.views.show(link.port))
         elif find_refused_pin(frame.scene, link, frame.pointer, frame.reach) is None and not frame.scene.find_node(
             *frame.pointer
         ):
@@ -338,7 +342,9 @@ class CanvasMouse:
                 if refused_port := find_refused_pin(frame.scene, gesture, frame.pointer, frame.reach):
                     source, target = (gesture.port, refused_port) if gesture.output else (refused_port, gesture.port)
                     if refused_port != gesture.port and source.node != target.node:
-                        frame.context.canvas.refusal = frame.context.session.refusal(source, target) or ""
+                        frame.context.canvas.refusal = (
+                            why_not_linkable(frame.context.session.graph, source, target) or ""
+                        )
                     self.preview.snap = None
             case _:
                 pass

@@ -20,6 +20,9 @@ from ...authoring.commands import (
     AddOutput,
     ReplaceNode,
 )
+from ...authoring.edits.coding import with_code_type
+from ...authoring.edits.wiring import fits_picture, list_fitting_types
+from ...authoring.state.group_files import GroupFiles
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Port
 from ...graph.names import fresh_name
@@ -69,6 +72,7 @@ class NodeSearch:
     """True while a search for the shader files of this machine runs; its shaders are added at the end."""
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
+    _groups: GroupFiles = field(default_factory=GroupFiles)
 
     @cached_property
     def _fixed(self) -> tuple[CatalogEntry, ...]:
@@ -83,10 +87,25 @@ class NodeSearch:
             self._link, self._entries = None, (*nodes, *self._fixed)
         else:
             self._link = port, output
-            fits = self.context.log.attempt(lambda: session.list_fitting_types(port, output), ()) or ()
-            files = self.context.log.attempt(lambda: session.list_fitting_files(preset_paths(), port, output), ()) or ()
+            fits = (
+                self.context.log.attempt(
+                    lambda: list_fitting_types(session.graph, port, output, with_code_type(session.types)), ()
+                )
+                or ()
+            )
+            files = (
+                self.context.log.attempt(lambda: self._groups.list_fitting(preset_paths(), session, port, output), ())
+                or ()
+            )
             self._entries = keep_fitting((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
+
+    def _list_fitting(self, port: Port, output: bool) -> frozenset[str]:
+        """The node types and presets that could be linked with a port."""
+        session = self.context.session
+        types = list_fitting_types(session.graph, port, output, with_code_type(session.types))
+        files = self._groups.list_fitting(preset_paths(), session, port, output)
+        return frozenset((*types, *map(str, files)))
 
     def begin_replacing(self, id: str) -> None:
         """Open the search for another type of a node."""
@@ -125,7 +144,7 @@ class NodeSearch:
         self._awaits = False
         if self._link is not None:
             port, output = self._link
-            takes = self.context.log.attempt(lambda: self.context.session.fits_picture(port, output), False)
+            takes = self.context.log.attempt(lambda: fits_picture(self.context.session.graph, port, output), False)
             files = [shader for shader in files if takes and (shader.has_image_input or not output)]
         self._entries = (*self._entries, *shader_entries(files))
 

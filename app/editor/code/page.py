@@ -97,7 +97,7 @@ class Page:
         if not self._pending:
             return
         self._pending = False
-        if self.place != self.context.session.place or self.context.session.code(self.id) is None:
+        if self.place != self.context.session.place or self.context.session.code_files.find_code(self.id) is None:
             return
         self._committed = self._text
         merge = f"code {self.path} {id(self)} {self._bursts}"
@@ -114,7 +114,7 @@ class Page:
 
     def _follow(self) -> None:
         """Show the text of the document if something else has changed it."""
-        code = self.context.session.code(self.id)
+        code = self.context.session.code_files.find_code(self.id)
         if code is None or code.text == self._committed or self._pending:
             return
         at = self.widget.get_main_cursor_position()
@@ -143,7 +143,7 @@ class Page:
         """The error in the text, or else the shader error of the last render."""
         item = self.context.session.graph.nodes.get(self.id)
         if isinstance(item, Unknown):
-            code = self.context.session.code(self.id)
+            code = self.context.session.code_files.find_code(self.id)
             if code is not None and self._checked_code[0] != code:
                 self._checked_code = code, _find_code_fault(code)
             return self._checked_code[1] or Fault(0, item.fault)

@@ -46,7 +46,7 @@ class CodePanel:
         """Draw into the current window."""
         self._context.code.flush = self._flush
         page = self._choose_page()
-        code = self._context.session.code(page.id) if page else None
+        code = self._context.session.code_files.find_code(page.id) if page else None
         if page is None or code is None:
             draw_empty_panel(
                 self._context,
@@ -83,7 +83,7 @@ class CodePanel:
     def _choose_page(self) -> Page | None:
         """The page of the active node, or else the last page."""
         session = self._context.session
-        if session.code(session.active) is not None:
+        if session.code_files.find_code(session.active) is not None:
             key = (*session.place, session.active)
             if key not in self._pages:
                 self._pages[key] = Page(self._context, session.active, session.place)
@@ -93,7 +93,7 @@ class CodePanel:
             if self._page is not self._pages[key]:
                 self._flush()
                 self._page = self._pages[key]
-        elif self._page and (self._page.place != session.place or session.code(self._page.id) is None):
+        elif self._page and (self._page.place != session.place or session.code_files.find_code(self._page.id) is None):
             self._page = None
         return self._page
 
@@ -128,7 +128,7 @@ class CodePanel:
         imgui.same_line()
         glyphs = (icons.ICON_FA_FLOPPY_DISK, icons.ICON_FA_FILE_IMPORT, icons.ICON_FA_CIRCLE_QUESTION)
         glyphs = glyphs if code.file else (icons.ICON_FA_FILE_EXPORT, icons.ICON_FA_CIRCLE_QUESTION)
-        draft = bool(code.file) and paths.resolve_path(code.file, session.graph.folder) in session.drafts
+        draft = bool(code.file) and paths.resolve_path(code.file, session.graph.folder) in session.code_files.drafts
         where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else "in the graph"
         room = imgui.get_content_region_avail().x - len(glyphs) * (imgui.get_frame_height() + style.item_spacing.x)
         imgui.align_text_to_frame_padding()

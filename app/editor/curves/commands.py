@@ -133,7 +133,7 @@ def cut(context: CurvesContext) -> None:
 def paste(context: CurvesContext) -> None:
     """Paste keys from the clipboard at the current frame, and select them."""
     session, state = context.session, context.curves
-    change = paste_keys(session.graph, decode_keys(context.clipboard.get()), session.frame, state.chosen_rows)
+    change = paste_keys(session.graph, decode_keys(context.clipboard.get()), session.time.frame, state.chosen_rows)
     set_keys(context, change.new_keys, f"Paste {describe_keys(change.spots)}")
     state.spots = change.spots
 
@@ -182,10 +182,10 @@ def key_here(context: CurvesContext) -> None:
     """Insert a key at the current frame in every selected row, or in all rows."""
     state, session = context.curves, context.session
     rows = state.list_curve_rows(state.list_rows(session.graph, session.selection))
-    new_keys = {row.port: row.keys.insert(float(session.frame)) for row in rows if row.port and row.keys}
-    set_keys(context, new_keys, f"Key at frame {session.frame}")
+    new_keys = {row.port: row.keys.insert(float(session.time.frame)) for row in rows if row.port and row.keys}
+    set_keys(context, new_keys, f"Key at frame {session.time.frame}")
     state.choose(
-        frozenset().union(*(list_spots(port, keys, (float(session.frame),)) for port, keys in new_keys.items()))
+        frozenset().union(*(list_spots(port, keys, (float(session.time.frame),)) for port, keys in new_keys.items()))
     )
 
 
@@ -209,13 +209,13 @@ def fit_view(context: CurvesContext, samples: ExpressionSamples) -> View:
             and (value_range := find_value_range(keys, channel, lambda key, frames=frames: key.frame in frames))
         ]
         return state.view.fit(find_frame_range(spots), _join_ranges(value_ranges))
-    first, last = session.frames
+    first, last = session.time.frames
     key_frames = [frame for row in rows if row.keys for frame in row.keys.frames]
     frame_range = min([first, *key_frames]), max([last, *key_frames])
     value_ranges = [
         value_range
         for row in rows
-        for value_range in _find_value_ranges(graph, session.settings, row, state.hidden, samples, frame_range)
+        for value_range in _find_value_ranges(graph, session.root.settings, row, state.hidden, samples, frame_range)
     ]
     return state.view.fit(frame_range, _join_ranges(value_ranges) or (0.0, 1.0))
 
@@ -233,7 +233,7 @@ def list_animatable(context: CurvesContext) -> tuple[Port, ...]:
         for id in session.graph.nodes
         if id in session.selection
         for port in animatable_values(session.graph, id)
-        if port not in session.graph.animation and session.find_source(port) is None
+        if port not in session.graph.animation and session.graph.links.get(port) is None
     )
 
 

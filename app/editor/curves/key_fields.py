@@ -6,6 +6,7 @@ from halation.nodes import Value
 from imgui_bundle import imgui
 from msgspec import structs
 
+from ...authoring.edits.values import can_animate
 from ...graph import Keys, Port
 from ...graph.graph import find_value
 from ..fields.fields import Edit, Fields
@@ -80,7 +81,7 @@ class KeyFields:
         index = keys.frames.index(at)
         key = keys.keys[index]
         declaration = find_value(frame.graph.node(port.node), port.socket, port.node)
-        first, last = frame.context.session.frames
+        first, last = frame.context.session.time.frames
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
         rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
         if key.channels and len(key.channels) <= 4:
@@ -132,7 +133,7 @@ def _find_single_key(frame: CurvesFrame) -> tuple[Port, Keys, float] | None:
     keys = frame.graph.animation.get(single[0]) if single else None
     if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:
         return None
-    if not frame.context.session.can_animate(single[0]):
+    if not can_animate(frame.context.session.graph, single[0]):
         return None
     return single[0], keys, single[1]
 

@@ -76,7 +76,7 @@ class CurvesMouse:
             self.part, self.tip = "tip", tip
         elif mark := frame.find_mark(x, y, reach):
             self.part, self.mark = "key", mark
-        elif abs(x - frame.plane.x(frame.context.session.frame)) <= _FRAME_REACH * frame.scale:
+        elif abs(x - frame.plane.x(frame.context.session.time.frame)) <= _FRAME_REACH * frame.scale:
             self.part = "now"
         else:
             self.lane = frame.find_lane(x, y, reach)
@@ -212,7 +212,7 @@ class CurvesMouse:
                     state.scroll = gesture.scroll - y
             case Seek():
                 context.interface.dragging = True
-                context.session.seek(at[0])
+                context.session.time.seek(at[0])
             case KeyMove():
                 if not gesture.started and not self._is_dragged(frame):
                     return

@@ -160,12 +160,12 @@ class NameColumn:
         """What the value is now, right-aligned. Returns its width."""
         assert row.port
         session = frame.context.session
-        inputs = session.graph, session.settings, session.frame
+        inputs = session.graph, session.root.settings, session.time.frame
         if inputs[:2] != self._inputs[:2] or inputs[2] != self._inputs[2]:
             self._values, self._inputs = {}, inputs
         if row.port not in self._values:
             try:
-                self._values[row.port] = session.value_now(row.port)
+                self._values[row.port] = session.time.evaluate(row.port)
             except HalationError:
                 self._values[row.port] = None
         value = self._values[row.port]
@@ -196,7 +196,7 @@ class NameColumn:
         half = 7.0 * scale
         frame.context.places[f"keys diamond {row.port}"] = (x - half, y - half, x + half, y + half)
         lit = hot and frame.pointer[0] > frame.list[2] - _KEY * scale
-        if frame.context.session.key_at(row.port):
+        if frame.context.session.time.find_key(row.port):
             paint_key(draw, x, y, 4.5 * scale, "linear", u32(palette.accent))
         else:
             color = u32(palette.accent if lit else palette.dim, 1.0 if lit else 0.7)
@@ -217,9 +217,9 @@ def draw_value_menu(context: CurvesContext, port: Port) -> None:
         if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
             context.log.attempt(act)  # type: ignore[arg-type]
 
-    animation = session.animation(port)
+    animation = session.graph.animation.get(port)
     keyed = isinstance(animation, Keys)
-    has_key = session.key_at(port) is not None
+    has_key = session.time.find_key(port) is not None
     draw_entry(icons.ICON_FA_KEY, "Remove Key" if has_key else "Set Key", lambda: session.apply(ToggleKey(port)), keyed)
     draw_entry(icons.ICON_FA_WAVE_SQUARE, "Bake to Keys", lambda: session.apply(BakeKeys(port)), animation is not None)
     draw_entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select(ElementId.of_port(port)))

@@ -39,7 +39,7 @@ def paint_background(frame: CurvesFrame) -> None:
     draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
     left, top, right, bottom = plane.rect
     draw.add_rect_filled((left, top), (right, bottom), find_background(palette))
-    first, last = frame.context.session.frames
+    first, last = frame.context.session.time.frames
     shade = u32(palette.shadow, 0.26 if palette.name == "dark" else 0.09)
     a, b = min(max(plane.x(first), left), right), min(max(plane.x(last), left), right)
     draw.add_rect_filled((left, top), (a, bottom), shade)
@@ -57,7 +57,7 @@ def paint_ruler(frame: CurvesFrame) -> None:
     left, top, right, bottom = frame.ruler
     draw.push_clip_rect((left, top), (right, bottom), True)
     draw.add_rect_filled((left, top), (right, bottom), u32(palette.window))
-    first, last = session.frames
+    first, last = session.time.frames
     a, b = max(plane.x(first), left), min(plane.x(last), right)
     if b > a:
         draw.add_rect_filled((a, top), (b, bottom), u32(palette.raised, 0.75 if palette.name == "dark" else 1.0))
@@ -87,8 +87,8 @@ def paint_current_frame(frame: CurvesFrame, held: bool) -> None:
     """The current frame, over everything."""
     draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
     left, top, right, bottom = frame.ruler
-    x = round(plane.x(frame.context.session.frame)) + 0.5
-    text = str(frame.context.session.frame)
+    x = round(plane.x(frame.context.session.time.frame)) + 0.5
+    text = str(frame.context.session.time.frame)
     wide = imgui.calc_text_size(text).x * 0.8 * 0.5 + 6.0 * scale
     frame.context.places["keys now"] = (x - wide, top, x + wide, top + (bottom - top) * 0.55)
     if not left - wide <= x <= right + wide:

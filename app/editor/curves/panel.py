@@ -109,7 +109,7 @@ class AnimationPanel:
     def _has_keys_outside_view(self) -> bool:
         """True if there are new keys outside of a view that shows everything and that the user has not moved."""
         state, session = self._context.curves, self._context.session
-        inputs = session.graph.animation, session.frames
+        inputs = session.graph.animation, session.time.frames
         if state.view != self._fitted_view or (
             self._fitted_inputs[0] is inputs[0] and self._fitted_inputs[1] == inputs[1]
         ):

@@ -84,7 +84,7 @@ class Plot:
             self._bundle_inputs = rows, hidden
             self._bundle = self._builder.make(rows, hidden)
         graph = frame.graph
-        inputs = self._bundle, graph.animation, graph.nodes, graph.controls, frame.context.session.settings
+        inputs = self._bundle, graph.animation, graph.nodes, graph.controls, frame.context.session.root.settings
         view_inputs = frame.plane, frame.scale
         if not _is_same(self._visible_inputs[:5], inputs) or self._visible_inputs[5:] != view_inputs:
             self._visible_inputs = *inputs, *view_inputs
@@ -121,7 +121,7 @@ class Plot:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
         lane_dashes: list[tuple[Lane, ScreenPoints]] = []
         lane = port, channel
-        settings = frame.context.session.settings
+        settings = frame.context.session.root.settings
         for line in self.samples.sample_lines(frame.graph, settings, port, channel, view.first, view.last):
             line[:, 0] = plane.rect[0] + (line[:, 0] - view.first) * plane.across
             line[:, 1] = (plane.rect[3] - (line[:, 1] - view.low) * plane.up).clip(-1e6, 1e6)

@@ -75,7 +75,7 @@ def from_text(text: str) -> Plain:
 
 
 def _for_one(session: Session, port: Port, declaration: Value, edit: Edit) -> Plain:
-    old = session.value_now(port)
+    old = session.time.evaluate(port)
     if not edit.text or declaration.type not in ("float", "int") or not isinstance(old, int | float):
         return edit.value
     try:

@@ -9,6 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import SetColorSettings
+from ...authoring.edits import paths
 from ...color.management import ColorManager, list_builtin_configs, load_ocio
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
@@ -72,7 +73,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
                 "Choose a Color Config",
                 "config",
                 lambda path: context.log.attempt(
-                    lambda: session.apply(SetColorSettings(config=session.relative(path)))
+                    lambda: session.apply(SetColorSettings(config=paths.make_relative(path, session.root.folder)))
                 ),
             )
         elif index is not None:

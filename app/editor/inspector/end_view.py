@@ -148,7 +148,7 @@ class EndView:
         context, name, key = rows.context, port.socket, str(port)
         session = context.session
         rows.name(key, "from", doc="What leaves the graph here", color=rows.palette.kinds[end.kind])
-        source, width = session.find_source(port), rows.field()
+        source, width = session.graph.links.get(port), rows.field()
         if source is not None:
             link_chip(rows, port, source, width)
         else:

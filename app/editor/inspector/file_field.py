@@ -10,6 +10,7 @@ from halation.nodes import Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.edits import paths
 from ...errors import HalationError
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
@@ -71,7 +72,8 @@ class FileField:
         if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
             context = rows.context
             context.dialogs.browse = browse(
-                declaration, lambda path: context.log.attempt(lambda: then(context.session.relative(path)))
+                declaration,
+                lambda path: context.log.attempt(lambda: then(paths.make_relative(path, context.session.root.folder))),
             )
         rows.context.places[f"field {key}"] = union(first, item_rect())
         return edit
@@ -159,7 +161,7 @@ class FileField:
     def _file(self, rows: Rows, value: str) -> Path:
         """The file; of a sequence one that is there."""
         return representative_file(
-            self._full(rows, value), rows.context.session.frames[0], sandbox=rows.context.session.sandbox
+            self._full(rows, value), rows.context.session.time.frames[0], sandbox=rows.context.session.sandbox
         )
 
     def _full(self, rows: Rows, value: str) -> Path:

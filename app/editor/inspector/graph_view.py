@@ -155,7 +155,7 @@ class GraphView:
     def _time(self, rows: Rows) -> None:
         """Range, rate and pre-roll."""
         session = rows.context.session
-        settings, (first, last) = session.settings, session.frames
+        settings, (first, last) = session.root.settings, session.time.frames
         rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
         stated = settings.frames is not None
         width = rows.field() - (imgui.get_frame_height() if stated else 0.0)
@@ -185,7 +185,7 @@ class GraphView:
 
     def _preroll(self, rows: Rows) -> None:
         session = rows.context.session
-        preroll = session.settings.preroll
+        preroll = session.root.settings.preroll
         doc = "How many frames before the one that is wanted nodes with a memory look back. Without one they begin "
         doc += "at the first frame, so that a frame is the same wherever a rendering begins."
         rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)

@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import AnimateValues, BakeKeys, SetExpression, ToggleKey
+from ...authoring.edits.values import find_expression_fault
 from ...document.animation import describe_animation, read_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
@@ -42,12 +43,12 @@ _DOCS: dict[Look, str] = {
 
 def look_of(session: Session, port: Port) -> Look:
     """How a value changes over time, as seen from the frame that is looked at."""
-    animation = session.animation(port)
+    animation = session.graph.animation.get(port)
     if animation is None:
         return "still"
     if isinstance(animation, Expression):
         return "expression"
-    return "keys" if session.key_at(port) is None else "key"
+    return "keys" if session.time.find_key(port) is None else "key"
 
 
 def color_of(palette: Palette, look: Look) -> RGB:
@@ -60,9 +61,9 @@ def color_of(palette: Palette, look: Look) -> RGB:
 def value_now(session: Session, port: Port) -> tuple[Plain, str]:
     """What a value is at the frame that is looked at; why an expression has none, with a caret below it."""
     try:
-        return session.value_now(port), ""
+        return session.time.evaluate(port), ""
     except GraphError as error:
-        return session.value(port), str(error)
+        return session.graph.value(port), str(error)
 
 
 def spoken(value: Plain) -> str:
@@ -77,15 +78,15 @@ def toggle(session: Session, ports: Ports) -> None:
     if len(ports) == 1:
         session.apply(ToggleKey(ports[0]))
         return
-    removes, animations = session.key_at(ports[0]) is not None, dict[Port, Animation | None]()
+    removes, animations = session.time.find_key(ports[0]) is not None, dict[Port, Animation | None]()
     for port in ports:
-        keys = session.animation(port)
+        keys = session.graph.animation.get(port)
         if isinstance(keys, Expression):
             continue
         if removes:
-            animations[port] = keys and keys.remove(session.frame)
+            animations[port] = keys and keys.remove(session.time.frame)
         else:
-            animations[port] = (keys or Keys()).set(session.frame, session.value_now(port))
+            animations[port] = (keys or Keys()).set(session.time.frame, session.time.evaluate(port))
     session.apply(
         AnimateValues(animations, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
     )
@@ -119,14 +120,14 @@ class Keying:
 
     def begin(self, session: Session, port: Port, text: str = "") -> None:
         """Type an expression."""
-        key, animation = str(port), session.animation(port)
+        key, animation = str(port), session.graph.animation.get(port)
         current_text = animation.text if isinstance(animation, Expression) else text
         self._drafts[key] = current_text
         self._fields.next_field = f"{key} expression"
 
     def take_expression(self, session: Session, port: Port, text: str) -> None:
         """An expression was typed where a number stood: one that cannot be stays to be mended."""
-        if session.expression_fault(port, text):
+        if find_expression_fault(session.graph, port, text):
             self._drafts[str(port)] = text.strip().removeprefix("=").strip()
         else:
             self._drafts.pop(str(port), None)
@@ -136,7 +137,7 @@ class Keying:
         """The expression of a value in place of its field; False if it has none."""
         context, fields, key = rows.context, self._fields, str(port)
         session = context.session
-        animation, id = session.animation(port), f"{key} expression"
+        animation, id = session.graph.animation.get(port), f"{key} expression"
         expression = animation.text if isinstance(animation, Expression) else ""
         if not expression and key not in self._drafts:
             return False
@@ -152,7 +153,7 @@ class Keying:
             fields.type_in(id, text, text)
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.text_input)
-        fault = session.expression_fault(port, text) or value_now(session, port)[1]
+        fault = find_expression_fault(session.graph, port, text) or value_now(session, port)[1]
         background(rows.palette, rect, hovered=imgui.is_item_hovered(), fault=bool(fault))
         rows.record(key)
         with font(context, "mono", SMALL):
@@ -163,11 +164,11 @@ class Keying:
     def note(self, rows: Rows, port: Port, field_text: str) -> None:
         """Below the field: what the expression comes to, or what is wrong with it."""
         session, key = rows.context.session, str(port)
-        animation = session.animation(port)
+        animation = session.graph.animation.get(port)
         text = self._drafts.get(key, animation.text if isinstance(animation, Expression) else "")
         if self._fields.typing and self._fields.typing.id == f"{key} expression":
             return
-        fault = session.expression_fault(port, text) if text else None
+        fault = find_expression_fault(session.graph, port, text) if text else None
         fault = fault or value_now(session, port)[1]
         if fault:
             with font(rows.context, "mono", SMALL * 0.92):
@@ -200,7 +201,7 @@ class Keying:
         def jump(frame: int | None) -> None:
             if frame is not None:
                 context.timeline.stop()
-                session.seek(frame)
+                session.time.seek(frame)
 
         imgui.separator()
         entry(icons.ICON_FA_DIAMOND, "Set Key", look in ("still", "keys"), lambda: toggle(session, ports))
@@ -209,14 +210,14 @@ class Keying:
         entry(
             icons.ICON_FA_CHEVRON_LEFT,
             "Previous Key",
-            keyed and session.previous_key(port) is not None,
-            lambda: jump(session.previous_key(port)),
+            keyed and session.time.find_previous_key(port) is not None,
+            lambda: jump(session.time.find_previous_key(port)),
         )
         entry(
             icons.ICON_FA_CHEVRON_RIGHT,
             "Next Key",
-            keyed and session.next_key(port) is not None,
-            lambda: jump(session.next_key(port)),
+            keyed and session.time.find_next_key(port) is not None,
+            lambda: jump(session.time.find_next_key(port)),
         )
         imgui.separator()
         entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", is_single, lambda: self.begin(session, port, field_text))
@@ -240,7 +241,7 @@ class Keying:
         rows.record(str(port))
         typing = fields.typing
         if typing and typing.id == id:
-            fault = session.expression_fault(port, typing.text) if typing.text.strip() else None
+            fault = find_expression_fault(session.graph, port, typing.text) if typing.text.strip() else None
             if fault and not typing.starting:
                 with font(context, "mono", SMALL):
                     note_below(rows.palette, item_rect(), fault.removeprefix(f"{port}: "), rows.palette.error)
@@ -255,13 +256,13 @@ class Keying:
                     else session.apply(SetExpression(port, ""))
                 )
             )
-        elif text and session.expression_fault(port, text):
+        elif text and find_expression_fault(session.graph, port, text):
             self._drafts[str(port)] = text
 
 
 def as_text(session: Session, port: Port) -> str:
     """The animation of a value for the clipboard."""
-    animation = session.animation(port)
+    animation = session.graph.animation.get(port)
     return json.dumps({"animation": None if animation is None else describe_animation(animation)})
 
 

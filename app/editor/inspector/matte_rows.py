@@ -50,10 +50,10 @@ class MatteRows:
             rows.field_note("The file has no manifest: names are typed, and hashed as the renderer did.")
             return
         session = rows.context.session
-        pick = str(session.value(port))
+        pick = str(session.graph.value(port))
         picked = self._of(pick, matte)
         rows.field_note(f"{len(picked)} of {len(matte.ids)} picked. A click in the viewer picks, too.")
-        if session.find_source(port) is not None:
+        if session.graph.links.get(port) is not None:
             return
         names = self._find_names(rows, key, matte)
         self._list(

@@ -52,7 +52,7 @@ class NodeView:
         draw_faults(rows, ElementId(id))
         if isinstance(item, Group):
             self._group(rows, id, item)
-        if code := session.code(id):
+        if code := session.code_files.find_code(id):
             self._code(rows, id, code)
             if isinstance(item, Unknown):
                 return
@@ -96,7 +96,7 @@ class NodeView:
         context = rows.context
         session = context.session
         if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
-            rows.act(lambda: session.view_element(ElementId(id)))
+            rows.act(lambda: session.views.show_element(ElementId(id)))
         imgui.same_line()
         self._mute(rows, (id,))
         imgui.same_line()
@@ -119,9 +119,8 @@ class NodeView:
         context = rows.context
         if code.file:
             rows.name(f"{id} file", "file", doc="The file that the code of this node is in")
-            draft = (
-                " *" if paths.resolve_path(code.file, context.session.graph.folder) in context.session.drafts else ""
-            )
+            file = paths.resolve_path(code.file, context.session.graph.folder)
+            draft = " *" if file in context.session.code_files.drafts else ""
             rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
         label = f"{icons.ICON_FA_CODE}  Edit Code"
         if rows.wide_button(label, f"code {id}", f"Show the {LANGUAGES[code.language]} of this node"):
@@ -152,7 +151,7 @@ def _input(rows: Rows, port: Port, socket: Socket) -> None:
     """A socket: what is linked to it, or what it does without a link."""
     doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
     rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
-    source = rows.context.session.find_source(port)
+    source = rows.context.session.graph.links.get(port)
     width = rows.field()
     if source is not None:
         link_chip(rows, port, source, width)

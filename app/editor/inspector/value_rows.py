@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 
 from ...authoring.commands import Disconnect, ExposeValue, HideControl, RenameControl
 from ...authoring.edits.element_id import ElementId
+from ...authoring.edits.values import can_animate, find_control
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
@@ -51,13 +52,13 @@ class ValueRows:
         context, port = rows.context, ports[0]
         session, key = context.session, str(port)
         graph = session.graph
-        source = session.find_source(port)
-        moves = source is None and session.can_animate(port)
+        source = session.graph.links.get(port)
+        moves = source is None and can_animate(session.graph, port)
         value = value_now(session, port)[0] if moves else graph.value(port)
         changed = any(
             row_port in graph.animation or graph.value(row_port) != default_of(graph, row_port) for row_port in ports
         )
-        control = session.control_of(port) if len(ports) == 1 else None
+        control = find_control(session.graph, port) if len(ports) == 1 else None
         rows.name(
             key,
             label or declaration.label or port.socket,
@@ -131,7 +132,9 @@ class ValueRows:
         session = rows.context.session
         if edit.expression:
             self._keying.take_expression(session, ports[0], edit.expression)
-        elif edit.merge and imgui.is_key_pressed(imgui.Key.escape) and session.animation(ports[0]) is not None:
+        elif (
+            edit.merge and imgui.is_key_pressed(imgui.Key.escape) and session.graph.animation.get(ports[0]) is not None
+        ):
             session.abandon(edit.merge)  # a key that the drag set goes with it
         else:
             apply(session, ports, declaration, edit)
@@ -223,7 +226,7 @@ class ValueRows:
             entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.apply(ExposeValue(port)))
         else:
             entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.apply(HideControl(control)))
-        if source is None and session.can_animate(port):
+        if source is None and can_animate(session.graph, port):
             self._keying.menu(rows, ports, as_text(value))
         if source is not None:
             imgui.separator()

@@ -85,8 +85,8 @@ class RenderForm:
     def extents(self) -> dict[Extent, tuple[int, ...]]:
         """The frames that can be chosen. Typed ones are none while they make no sense."""
         session = self.context.session
-        first, last = session.frames
-        extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
+        first, last = session.time.frames
+        extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.time.frame,)}
         if first < last < first + MOST_FRAMES:
             extents["all frames"] = tuple(range(first, last + 1))
             low, high = self.context.timeline.span(session)

@@ -27,10 +27,10 @@ def _step(by: int) -> Callable[[TimelineContext], object]:
         context.timeline.stop()
         session = context.session
         first, last = context.timeline.span(session)
-        target = session.frame + by
-        if session.frame in (first, last) and not first <= target <= last and context.timeline.loop == "loop":
+        target = session.time.frame + by
+        if session.time.frame in (first, last) and not first <= target <= last and context.timeline.loop == "loop":
             target = first if by > 0 else last
-        session.seek(target)
+        session.time.seek(target)
 
     return step
 
@@ -39,7 +39,7 @@ def _end(place: int) -> Callable[[TimelineContext], object]:
     def jump(context: TimelineContext) -> None:
         if context.timeline.playback.playing and place:
             context.timeline.stop()
-        context.session.seek(context.timeline.span(context.session)[place])
+        context.session.time.seek(context.timeline.span(context.session)[place])
 
     return jump
 
@@ -47,10 +47,10 @@ def _end(place: int) -> Callable[[TimelineContext], object]:
 def _to_key(later: bool) -> Callable[[TimelineContext], object]:
     def jump(context: TimelineContext) -> None:
         session = context.session
-        frame = session.next_key() if later else session.previous_key()
+        frame = session.time.find_next_key() if later else session.time.find_previous_key()
         context.timeline.stop()
         if frame is not None:
-            session.seek(frame)
+            session.time.seek(frame)
 
     return jump
 
@@ -68,12 +68,12 @@ def _every(context: TimelineContext) -> None:
 
 def _in(context: TimelineContext) -> None:
     session, timeline = context.session, context.timeline
-    timeline.set_part(session, session.frame, max(timeline.span(session)[1], session.frame))
+    timeline.set_part(session, session.time.frame, max(timeline.span(session)[1], session.time.frame))
 
 
 def _out(context: TimelineContext) -> None:
     session, timeline = context.session, context.timeline
-    timeline.set_part(session, min(timeline.span(session)[0], session.frame), session.frame)
+    timeline.set_part(session, min(timeline.span(session)[0], session.time.frame), session.time.frame)
 
 
 def _whole(context: TimelineContext) -> None:

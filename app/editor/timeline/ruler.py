@@ -54,7 +54,7 @@ class Ruler:
         plane = _plane(self.context, rect)
         timeline.hovered = hovered or active
         self._paint(plane)
-        for frame in (session.frame, *session.frames):
+        for frame in (session.time.frame, *session.time.frames):
             x = plane.x(frame)
             self.context.places[f"ruler {frame}"] = (x - 2.0, rect[1], x + 2.0, rect[3])
         if hovered and not active and self._hold == "":
@@ -83,7 +83,7 @@ class Ruler:
         frame = math.floor(plane.frame(mouse.x) + 0.5)
         if self._hold == "now":
             self._edge(plane, mouse.x)
-            session.seek(frame)
+            session.time.seek(frame)
         elif self._hold == "pan":
             timeline.pan(session, -io.mouse_delta.x / plane.across)
         elif self._hold in ("in", "out"):
@@ -107,7 +107,7 @@ class Ruler:
         low, high = self.context.timeline.span(session)
         draw.add_rect_filled((left, top), (right, bottom), u32(mix(palette.window, palette.field, 0.35)), rounding)
         draw.push_clip_rect((left, top), (right, bottom), True)
-        first, last = session.frames
+        first, last = session.time.frames
         whole = plane.x(first - 0.5), plane.x(last + 0.5)
         draw.add_rect_filled((whole[0], top), (whole[1], bottom), u32(palette.field), rounding)
         if (low, high) != (first, last):
@@ -174,10 +174,10 @@ def _keys(context: TimelineContext, plane: Plane) -> None:
     draw, palette, session, size = imgui.get_window_draw_list(), context.palette, context.session, KEY * ui_scale()
     y = plane.rect[3] - 8.0 * ui_scale()
     edge = u32(palette.window, 0.9)
-    for frame in session.key_frames():
+    for frame in session.time.list_key_frames():
         x = plane.x(frame)
         if plane.rect[0] - size <= x <= plane.rect[2] + size:
-            color = palette.accent if frame == session.frame else mix(palette.warning, palette.text, 0.15)
+            color = palette.accent if frame == session.time.frame else mix(palette.warning, palette.text, 0.15)
             draw.add_ngon_filled((x, y), size * 1.45, edge, 4)
             draw.add_ngon_filled((x, y), size, u32(color), 4)
 
@@ -207,7 +207,7 @@ def _now(context: TimelineContext, plane: Plane, held: bool) -> None:
     """The frame that is looked at."""
     draw, palette, scale = imgui.get_window_draw_list(), context.palette, ui_scale()
     left, top, right, bottom = plane.rect
-    frame = context.session.frame
+    frame = context.session.time.frame
     wide = plane.across
     x = plane.x(frame)
     if 6.0 * scale < wide < 90.0 * scale:
@@ -228,9 +228,9 @@ def _tell(context: TimelineContext, plane: Plane) -> None:
     """What is at the frame under the mouse."""
     frame = math.floor(plane.frame(imgui.get_mouse_pos().x) + 0.5)
     session = context.session
-    seconds = (frame - session.frames[0]) / session.settings.rate
+    seconds = (frame - session.time.frames[0]) / session.root.settings.rate
     facts = [f"frame {frame}, {seconds:.2f} s"]
-    if frame in session.key_frames():
+    if frame in session.time.list_key_frames():
         facts.append("a key")
     if frame in context.preview.frames:
         facts.append("ready")

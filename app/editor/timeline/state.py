@@ -40,7 +40,7 @@ class TimelineState:
 
     def span(self, session: Session) -> tuple[int, int]:
         """The frames that are played: the chosen part as far as it lies in the range."""
-        first, last = session.frames
+        first, last = session.time.frames
         if self.part is None:
             return first, last
         low, high = max(self.part[0], first), min(self.part[1], last)
@@ -48,22 +48,22 @@ class TimelineState:
 
     def set_part(self, session: Session, low: int, high: int) -> None:
         """Play only some frames; all of them is no part."""
-        first, last = session.frames
+        first, last = session.time.frames
         low, high = min(max(low, first), last), max(min(high, last), first)
         self.part = None if (min(low, high), max(low, high)) == (first, last) else (min(low, high), max(low, high))
 
     def course(self, session: Session, every: bool) -> Course:
         """What is played as things are; a history cannot leave frames out."""
         first, last = self.span(session)
-        return Course(first, last, session.settings.rate, self.loop, self.every or every)
+        return Course(first, last, session.root.settings.rate, self.loop, self.every or every)
 
     def play(self, session: Session, time_now: float, every: bool = False) -> None:
         """Play from this second on, or stop."""
         if self.playback.playing:
             self.stop()
         else:
-            self.playback.start(self.course(session, every), session.frame, time_now)
-            session.seek(self.playback.frame)
+            self.playback.start(self.course(session, every), session.time.frame, time_now)
+            session.time.seek(self.playback.frame)
 
     def stop(self) -> None:
         """Stay where it is; how it went is told until something else is done."""
@@ -76,7 +76,7 @@ class TimelineState:
 
     def visible_range(self, session: Session) -> tuple[float, float]:
         """The frames at the borders of the ruler."""
-        first, last = session.frames
+        first, last = session.time.frames
         if self.view is None:
             return first - 0.5, max(last, first + 1) + 0.5
         return self.view
@@ -84,7 +84,7 @@ class TimelineState:
     def zoom(self, session: Session, frame: float, factor: float) -> None:
         """See so many times as much detail, with one frame staying where it is; all of it is what is seen at most."""
         low, high = self.visible_range(session)
-        first, last = session.frames
+        first, last = session.time.frames
         widest = max(last - first + 1.0, LEAST_VIEW) * 1.5
         wide = min(max((high - low) / factor, LEAST_VIEW), widest)
         ratio = wide / (high - low)
@@ -97,6 +97,6 @@ class TimelineState:
         if self.view is None:
             return
         low, high = self.view
-        first, last = session.frames
+        first, last = session.time.frames
         by = min(max(frames, first - high + 1.0), last - low - 1.0)
         self.view = low + by, high + by

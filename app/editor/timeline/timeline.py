@@ -101,16 +101,16 @@ class Timeline:
             timeline.next_loop()
 
     def _frame(self, width: float) -> None:
-        edit = self._number("timeline frame", self._context.session.frame, width, "The frame that is looked at")
+        edit = self._number("timeline frame", self._context.session.time.frame, width, "The frame that is looked at")
         if edit and isinstance(edit.value, int | float):
             self._context.timeline.stop()
-            self._context.session.seek(edit.value)
+            self._context.session.time.seek(edit.value)
 
     def _range(self, scale: float) -> None:
         """The range and the rate, which are the document's."""
         session = self._context.session
-        first, last = session.frames
-        stated = session.settings.frames is not None
+        first, last = session.time.frames
+        stated = session.root.settings.frames is not None
         doc = "frame of the graph" + ("" if stated else ": as what it reads, or its keys, say; a number here states it")
         for name, value, gap in (("first", first, 3.0), ("last", last, 8.0)):
             edit = self._number(f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
@@ -122,7 +122,7 @@ class Timeline:
                     lambda low=low, high=high, merge=merge: session.apply(SetFrameRange(low, high, merge=merge))
                 )
         rate = number_field(
-            self._fields, "timeline rate", session.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
+            self._fields, "timeline rate", session.root.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
         )
         self._context.places["field timeline rate"] = item_rect()
         tip("Frames per second of the graph")
@@ -146,7 +146,7 @@ class Timeline:
             text = f"pre-roll {computed} of {total}" if kind == "pre-roll" else f"planning {computed} of {total} frames"
             color = palette.accent
         elif not text:
-            first, last = self._context.session.frames
+            first, last = self._context.session.time.frames
             ready = sum(first <= frame <= last for frame in preview.frames)
             text, color = timeline.report, palette.dim
             if last > first and not text:

@@ -73,10 +73,10 @@ def _toggle(context: ViewerContext) -> None:
 
 def _swap(context: ViewerContext) -> None:
     session = context.session
-    first, second = session.find_viewed_port("A"), session.find_viewed_port("B")
+    first, second = session.views.find_port("A"), session.views.find_port("B")
     if first and second:
-        session.view(second, "A")
-        session.view(first, "B")
+        session.views.show(second, "A")
+        session.views.show(first, "B")
 
 
 def _region(context: ViewerContext) -> None:
@@ -87,7 +87,7 @@ def _region(context: ViewerContext) -> None:
 
 
 def _views_picture(context: ViewerContext) -> bool:
-    return context.session.find_viewed_port("A") is not None
+    return context.session.views.find_port("A") is not None
 
 
 def _background(name: Background) -> Action[ViewerContext]:
@@ -124,10 +124,10 @@ def _make_bookmark_actions(number: int) -> tuple[Action[ViewerContext], Action[V
     recall: Action[ViewerContext] = Action(
         f"viewer.recall.{number}",
         f"Show {number}",
-        lambda context: context.session.recall_viewer(number),
+        lambda context: context.session.views.recall(number),
         "Viewer/Bookmarks",
         str(number),
-        enabled=lambda context: number in context.session.viewers,
+        enabled=lambda context: number in context.session.views.numbered_ports,
         doc="Show what this key was given to.",
     )
     assign: Action[ViewerContext] = Action(
@@ -203,7 +203,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Viewer/Compare",
         "Shift+X",
         "viewer",
-        lambda context: _views_picture(context) and context.session.find_viewed_port("B") is not None,
+        lambda context: _views_picture(context) and context.session.views.find_port("B") is not None,
     ),
     Action(
         "viewer.brighter",

@@ -30,7 +30,7 @@ class InvalidPixelSearch:
         if not self._context.viewer.finding:
             self._stop()
             return
-        port = self._context.session.find_viewed_root_port("A")
+        port = self._context.session.views.find_root_port("A")
         if port is None:
             self._context.viewer.finding = False
             return

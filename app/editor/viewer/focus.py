@@ -25,8 +25,8 @@ def find_focus_port(session: Session) -> Port | None:
     item = session.graph.nodes.get(session.active)
     if item is None or not focuses(item):
         return None
-    port = Port(session.active, f"{_CHOICE}_{session.value(Port(session.active, _CHOICE))}")
-    return port if session.find_source(port) is None else None
+    port = Port(session.active, f"{_CHOICE}_{session.graph.value(Port(session.active, _CHOICE))}")
+    return port if session.graph.links.get(port) is None else None
 
 
 def is_distance(port: Port) -> bool:
@@ -42,7 +42,7 @@ def is_idle(session: Session, port: Port) -> bool:
 
 def read_focus_choice(session: Session, id: str) -> str:
     """What a node that focuses goes by."""
-    return str(session.value(Port(id, _CHOICE)))
+    return str(session.graph.value(Port(id, _CHOICE)))
 
 
 def pick_focus(context: ViewerContext) -> None:

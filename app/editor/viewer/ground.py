@@ -33,9 +33,9 @@ def depths(context: ViewerContext) -> dict[str, Port]:
         ports[SCENE] = Port(context.viewer.scene, "depth")
     item = session.graph.nodes.get(session.active)
     if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
-        linked = {DEPTH: session.find_source(Port(session.active, "depth"))}
+        linked = {DEPTH: session.graph.links.get(Port(session.active, "depth"))}
         if not focuses(item):
-            linked[PLACE] = session.find_source(Port(session.active, "position"))
+            linked[PLACE] = session.graph.links.get(Port(session.active, "position"))
         ports |= {name: port for name, port in linked.items() if port is not None}
     return ports
 

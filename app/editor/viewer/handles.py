@@ -30,8 +30,8 @@ def handles(session: Session) -> tuple[ViewerHandle, ...]:
     free_handles: list[ViewerHandle] = []
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
-        if value.handle and session.find_source(port) is None and not is_idle(session, port):
-            x, y = cast("Point", session.graph_now.value(port))
+        if value.handle and session.graph.links.get(port) is None and not is_idle(session, port):
+            x, y = cast("Point", session.time.evaluated_graph.value(port))
             free_handles.append(ViewerHandle(port, (x, y)))
     return tuple(free_handles)
 

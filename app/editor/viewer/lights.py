@@ -100,11 +100,11 @@ def lists(context: ViewerContext) -> tuple[Port, ...]:
     if item is None or isinstance(item, Unknown):
         return ()
     ports = (Port(session.active, name) for name, value in signature(item).values.items() if value.type == "lights")
-    return tuple(port for port in ports if session.find_source(port) is None)
+    return tuple(port for port in ports if session.graph.links.get(port) is None)
 
 
 def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
-    value = context.session.value(port)
+    value = context.session.graph.value(port)
     return value if isinstance(value, tuple) else ()
 
 
@@ -121,7 +121,7 @@ def _camera(context: ViewerContext) -> CameraModel | None:
         return None
     path = "/".join((*session.place, session.active))
     inputs = [name for name, socket in signature(item).inputs.items() if socket.kind is Kind.CAMERA]
-    linked = (name for name in inputs if session.find_source(Port(session.active, name)) is not None)
+    linked = (name for name in inputs if session.graph.links.get(Port(session.active, name)) is not None)
     cameras = (context.preview.camera(Port(path, name)) for name in linked)
     return next((camera for camera in cameras if camera is not None), None)
 

@@ -60,7 +60,7 @@ def find_matte_hit(context: ViewerContext, sight: Sight, at: Point) -> MatteHit 
         return None
     name = id_map.names.get(id, "")
     alone = {name: matte.ids[name]} if name in matte.ids else {}
-    on = bool(alone) and float_bits(matte.ids[name]) in pick_ids(str(context.session.value(port)), alone)
+    on = bool(alone) and float_bits(matte.ids[name]) in pick_ids(str(context.session.graph.value(port)), alone)
     return MatteHit(port, matte, id, name if alone else "", on)
 
 
@@ -73,7 +73,7 @@ def click(context: ViewerContext, sight: Sight, at: Point) -> None:
         context.log.add(f"the file has no name for the id {hit.id:08x}: it cannot be picked by name")
         return
     session = context.session
-    pick = toggle_name(str(session.value(hit.port)), hit.name, hit.matte.ids)
+    pick = toggle_name(str(session.graph.value(hit.port)), hit.name, hit.matte.ids)
     context.log.attempt(lambda: session.apply(SetValue(hit.port, pick)))
 
 

@@ -105,7 +105,7 @@ def find_orbit_node(session: Session) -> str:
 
     One that is selected must be seen too. Values that links or keys set are not for the mouse.
     """
-    graph, viewed_port = session.graph, session.find_viewed_port("A")
+    graph, viewed_port = session.graph, session.views.find_port("A")
     scenes = [id for id, item in graph.nodes.items() if _goes_around(item)]
     if not scenes or viewed_port is None:
         return ""

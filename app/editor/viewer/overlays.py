@@ -35,7 +35,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
         frame(lines, sight.rectangle(viewer.measured), context.palette.accent)
     for number, marker in enumerate(viewer.markers, 1):
         _marker(lines, sight.place(marker), str(number))
-    if viewer.compare == "wipe" and context.session.find_viewed_port("B") is not None:
+    if viewer.compare == "wipe" and context.session.views.find_port("B") is not None:
         _wipe(context, lines, sight)
     _handles(context, lines, sight)
     draw_lamps(context, lines, sight)

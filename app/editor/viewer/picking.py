@@ -48,16 +48,16 @@ def pick_port(context: ViewerContext, side: str, label: str) -> None:
 def list_ports(context: ViewerContext, side: str) -> None:
     """Everything that a side can show, as entries of the menu that is open."""
     session = context.session
-    chosen = session.find_viewed_port("A" if side == "A" else "B")
-    numbers = {port: number for number, port in session.viewers.items()}
+    chosen = session.views.find_port("A" if side == "A" else "B")
+    numbers = {port: number for number, port in session.views.numbered_ports.items()}
     if side == "B" and imgui.menu_item("Nothing", "", chosen is None)[0]:
-        session.view_nothing("B")
+        session.views.clear("B")
     for heading, ports in ports_of(session.graph):
         imgui.separator_text(heading)
         for port in ports:
             key = str(numbers[port]) if port in numbers else ""
             if imgui.menu_item(f"{title(session.graph, port)}##{port}", key, port == chosen)[0]:
-                context.log.attempt(lambda port=port: session.view(port, cast("Literal['A', 'B']", side)))
+                context.log.attempt(lambda port=port: session.views.show(port, cast("Literal['A', 'B']", side)))
 
 
 def _order_nodes(graph: Graph) -> tuple[str, ...]:

@@ -152,7 +152,7 @@ class ScopesPanel:
         if viewer.scopes_of_scene:
             return rgb_of(part)
         meaning = choose_meaning(viewer, image.kind, lambda: whole)
-        port = self._context.session.find_viewed_port("A")
+        port = self._context.session.views.find_port("A")
         view = find_requested_view(self._context.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), image.full_size)
         span = choose_range(viewer, meaning, lambda: whole)

@@ -188,7 +188,7 @@ def _menu(
 
 
 def _port(context: ViewerContext, side: str) -> _ViewerTool:
-    port = context.session.find_viewed_port("A" if side == A else "B")
+    port = context.session.views.find_port("A" if side == A else "B")
     name = str(port) if port else "nothing"
     label = f"{side}  {name if len(name) <= 22 else f'{name[:21]}…'}"
 

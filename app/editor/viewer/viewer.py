@@ -86,7 +86,7 @@ class Viewer:
     def draw(self) -> None:
         """Everything, into the current window."""
         viewer, preview = self._context.viewer, self._context.preview
-        port = self._context.session.find_viewed_port("A")
+        port = self._context.session.views.find_port("A")
         b = preview.find_visible_image(B) if viewer.compares else None
         images = _FrameImages(
             preview.find_visible_image(A), b, find_requested_view(self._context.session.graph, port) if port else ""
@@ -210,7 +210,7 @@ class Viewer:
             draw_message(self._context, sight, fault, palette.error, dim=images.a is not None)
         elif images.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
-        elif viewer.compares and self._context.session.find_viewed_port("B") is None:
+        elif viewer.compares and self._context.session.views.find_port("B") is None:
             draw_badge(self._context, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
         elif viewer.picking:
             draw_badge(self._context, sight, "Click to pick; right click ends", palette.accent)
@@ -277,7 +277,7 @@ class Viewer:
         viewer = self._context.viewer
         assert viewer.pixel is not None
         if viewer.copying:
-            port = self._context.session.find_viewed_port("A")
+            port = self._context.session.views.find_port("A")
             self._context.clipboard.put(format_pixel(str(port), viewer.pixel, values))
             self._context.log.add(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
         if self._hand.picked_point is not None and viewer.picking:
@@ -302,7 +302,7 @@ class Viewer:
         return None if depth is None else float(f"{depth:.7g}")
 
     def _hint(self) -> str:
-        port = self._context.session.find_viewed_port("A")
+        port = self._context.session.views.find_port("A")
         if port is not None and port.node == OUTPUTS:
             return f"Nothing is linked to the output '{port.socket}' yet."
         return _EMPTY

@@ -66,4 +66,4 @@ def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
 
 def _sides(context: ViewerContext) -> dict[str, Port]:
     sides = (A, B) if context.viewer.compares else (A,)
-    return {side: port for side in sides if (port := context.session.find_viewed_port(side)) is not None}
+    return {side: port for side in sides if (port := context.session.views.find_port(side)) is not None}

@@ -44,7 +44,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
     store, log = PreferenceStore(folder), Log()
     renderer = Renderer(device, budget=store.current.memory_budget * 2**20, sandbox=sandbox)
     renders, session = RenderOverviews(sandbox), Session(sandbox=sandbox)
-    session.measure = lambda graph, bindings: _measure(graph, bindings, sandbox)
+    session.time.measure_frames = lambda graph, bindings: _measure(graph, bindings, sandbox)
     renderer.pictures.describer = renders.describe_render
     display = Display(device)
     return Editor(
@@ -75,7 +75,7 @@ def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -
     if path is None:
         editor.dialogs.open.add("start")
         return
-    editor.session.open(path)
+    editor.session.files.open(path)
     editor.store.note_opened(path)
     for name, file in bindings.items():
         editor.session.bind(name, file)

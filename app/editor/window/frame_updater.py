@@ -62,7 +62,7 @@ class FrameUpdater:
         for change in editor.watcher.poll():
             editor.log.attempt(lambda change=change: self._take_change(change))
         editor.recovery.claim(editor.session.path)
-        editor.recovery.note(editor.session.recoverable, editor.session.path, editor.session.dirty)
+        editor.recovery.note(editor.session.code_files.recoverable_root, editor.session.path, editor.session.dirty)
         if imgui.get_time() - self._flushed > 1.0:
             self._flushed = imgui.get_time()
             editor.store.flush()
@@ -102,7 +102,7 @@ class FrameUpdater:
         preview.glimpse = find_visible_region(context)
         place = session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
-        preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.frame)
+        preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.time.frame)
         preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
 
     def _play(self, session: Session) -> None:
@@ -110,14 +110,14 @@ class FrameUpdater:
         timeline, preview = self._editor.timeline, self._editor.preview
         playback, time_now = timeline.playback, imgui.get_time()
         if playback.playing:
-            playback.keep(timeline.course(session, preview.remembers), session.frame, time_now)
+            playback.keep(timeline.course(session, preview.remembers), session.time.frame, time_now)
             if not preview.busy:
                 playback.note(time_now)
             words = playback.words
             frame = playback.tick(time_now, preview.busy and not preview.paused, preview.under_way)
             timeline.report = words
             if frame is not None:
-                session.seek(frame)
+                session.time.seek(frame)
         preview.skims = playback.playing or timeline.scrubbing
         preview.ahead = playback.ahead(preview.seconds)
 
@@ -137,7 +137,7 @@ class FrameUpdater:
             [self._nodes.folder],
             code_files(session.root),
         )
-        session.note_code_files()
+        session.code_files.read_missing()
 
     def _take_change(self, change: FileChange) -> None:
         """Read a file again after another program wrote it."""
@@ -152,10 +152,10 @@ class FrameUpdater:
             case "graph":
                 self._contexts.documents.load_changed_file(change.path)
             case "group":
-                editor.session.reload_groups()
+                editor.session.files.reload_groups()
             case "picture":
                 editor.preview.refresh()
-                editor.session.look_again()
+                editor.session.time.remeasure()
                 editor.log.add(f"{change.path.name} changed on disk and was read again")
             case "code":
                 self._contexts.code_files.reread(change.path)

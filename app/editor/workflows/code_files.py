@@ -51,7 +51,7 @@ class CodeFileWorkflow:
     @property
     def active_code(self) -> Code | None:
         """The code of the active node."""
-        return self.session.code(self.session.active)
+        return self.session.code_files.find_code(self.session.active)
 
     @property
     def active_has_file(self) -> bool:
@@ -66,27 +66,27 @@ class CodeFileWorkflow:
 
     def save(self, id: str) -> None:
         """Write the code of a node to its file. Raises OutputError."""
-        path = self.session.save_code(id)
+        path = self.session.code_files.save(id)
         self.watcher.expect(path)
         self.log.add(f"saved {path.name}")
 
     def save_drafts(self) -> None:
         """Write all code that differs from its file, as when its graph is saved. Raises OutputError."""
         self.editor.flush()
-        for path in self.session.save_drafts():
+        for path in self.session.code_files.save_drafts():
             self.watcher.expect(path)
             self.log.add(f"saved {path.name}")
 
     def export(self, id: str) -> None:
         """Ask for a file, write the code of a node to it, and let the node read it from there."""
-        code = self.session.code(id)
+        code = self.session.code_files.find_code(id)
         ending = ".fs" if code and code.language == "isf" else ".glsl"
 
         def save(path: Path) -> None:
             target = path if path.suffix else path.with_suffix(ending)
 
             def export() -> None:
-                self.session.export_code(id, target)
+                self.session.code_files.export(id, target)
                 self.watcher.expect(target)
 
             self.log.attempt(export)
@@ -97,15 +97,15 @@ class CodeFileWorkflow:
         """Read a file of code again after another program wrote it; ask first if its draft differs."""
 
         def load() -> None:
-            self.session.reread_code(path)
+            self.session.code_files.reread(path)
             self.log.add(f"{path.name} changed on disk and was loaded again")
 
         def keep() -> None:
-            self.session.keep_draft(path)
+            self.session.code_files.keep_draft(path)
             self.log.add("kept; saving will replace the other version")
 
         self.editor.flush()
-        if not self.session.differs_from_disk(path):
+        if not self.session.code_files.differs_from_disk(path):
             load()
             return
         self.dialogs.question = Question(

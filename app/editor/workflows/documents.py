@@ -68,7 +68,7 @@ class DocumentWorkflow:
 
     def start_new(self) -> None:
         """Start an empty graph."""
-        self.session.new()
+        self.session.files.new()
         self._show_document()
 
     def ask_for_graph(self) -> None:
@@ -79,7 +79,7 @@ class DocumentWorkflow:
         """Open a file, after asking about unsaved work."""
 
         def open_file() -> None:
-            self.session.open(path)
+            self.session.files.open(path)
             self.store.note_opened(path)
             self._show_document()
 
@@ -89,7 +89,7 @@ class DocumentWorkflow:
         """Open a preset as a new document, after asking about unsaved work."""
 
         def open_copy() -> None:
-            self.session.open_copy(path)
+            self.session.files.open_copy(path)
             self._show_document()
 
         self._unless_unsaved(lambda: self.log.attempt(open_copy), "open the preset")
@@ -98,7 +98,7 @@ class DocumentWorkflow:
         """Open the graph that rendered a picture as a new document, after asking about unsaved work."""
 
         def open_recipe() -> None:
-            self.session.open_made(path)
+            self.session.files.open_graph_of_picture(path)
             self._show_document()
             self.log.add(f"the graph of {path.name}, as a new document")
 
@@ -108,7 +108,7 @@ class DocumentWorkflow:
         """Open work that was not saved, after asking about other unsaved work."""
 
         def restore() -> None:
-            self.session.restore(recovered)
+            self.session.files.open_recovered(recovered)
             self.recovery.adopt(recovered, self.session.sandbox)
             self._show_document()
 
@@ -125,7 +125,7 @@ class DocumentWorkflow:
 
         def write() -> None:
             self.code_files.save_drafts()
-            self.session.save()
+            self.session.files.save()
             self.watcher.expect(path)
             self.log.add(f"saved {path.name}")
             then()
@@ -147,7 +147,7 @@ class DocumentWorkflow:
 
             def write() -> None:
                 self.code_files.save_drafts()
-                self.session.save_as(target)
+                self.session.files.save_as(target)
                 self.watcher.expect(target)
                 self.store.note_opened(target)
                 self.log.add(f"saved {target.name}")
@@ -163,20 +163,20 @@ class DocumentWorkflow:
         self.dialogs.question = Question(
             "Revert",
             "Go back to what was saved last? This can be undone.",
-            (("Revert", lambda: self.log.attempt(self.session.revert)), ("Cancel", _do_nothing)),
+            (("Revert", lambda: self.log.attempt(self.session.files.revert)), ("Cancel", _do_nothing)),
         )
 
     def load_changed_file(self, path: Path) -> None:
         """Load the document's file again after another program wrote it; ask first if there is unsaved work."""
         if not self.session.dirty:
-            self.session.reload()
+            self.session.files.reload()
             self.log.add(f"{path.name} changed on disk and was loaded again")
             return
         self.dialogs.question = Question(
             "Changed on disk",
             f"{path.name} was changed by another program, and here are changes that are not saved.",
             (
-                ("Load theirs", lambda: self.log.attempt(self.session.reload)),
+                ("Load theirs", lambda: self.log.attempt(self.session.files.reload)),
                 ("Keep mine", lambda: self.log.add("kept; saving will replace the other version")),
             ),
         )

@@ -51,9 +51,9 @@ class FlipbookPlayer:
     def open(self, *strips: FlipbookStrip) -> None:
         """Play sequences in the viewer; two are side by side unless they are compared otherwise already."""
         document, before = self.stage.document, self.stage.flipbook
-        watched = before.watched if before else document.find_viewed_root_port("A")
-        frame = before.session.frame if before else document.frame
-        flipbook = Flipbook(strips, document.settings.rate, frame, watched)
+        watched = before.watched if before else document.views.find_root_port("A")
+        frame = before.session.time.frame if before else document.time.frame
+        flipbook = Flipbook(strips, document.root.settings.rate, frame, watched)
         self.timeline.stop()
         self.viewer.begin_flipbook(len(strips), again=before is not None)
         self.stage.flipbook = flipbook
@@ -89,7 +89,7 @@ class FlipbookPlayer:
         flipbook = self.stage.flipbook
         if flipbook is None:
             return
-        if self.stage.document.find_viewed_root_port("A") != flipbook.watched:
+        if self.stage.document.views.find_root_port("A") != flipbook.watched:
             self.close()
         elif flipbook.follow(self.preview.frames):
             self.preview.refresh()

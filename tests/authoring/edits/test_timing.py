@@ -92,8 +92,8 @@ def test_copies_have_keys_and_read_each_other(session):
     text = copy_elements(session.graph, session.selection)
     keys = session.apply(PasteText(text))
     first, second = (key for key in keys if key in session.graph.nodes)
-    assert session.animation(Port(first, "gain")) == KEYS
-    assert session.animation(Port(second, "gain")) == Expression(f"{first}.gain * 2")
+    assert session.graph.animation.get(Port(first, "gain")) == KEYS
+    assert session.graph.animation.get(Port(second, "gain")) == Expression(f"{first}.gain * 2")
 
 
 def test_a_control_of_a_group_that_is_renamed_or_hidden(session):

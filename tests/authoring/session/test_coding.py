@@ -25,8 +25,10 @@ from halation.authoring.commands import (
     Ungroup,
 )
 from halation.authoring.edits import coding
+from halation.authoring.edits.clipboard import copy_elements
 from halation.authoring.edits.coding import BrokenCodeNode
 from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.wiring import list_fitting_types
 from halation.authoring.session import Session
 from halation.custom_nodes import CustomNode
 from halation.document import dumps, loads
@@ -59,11 +61,12 @@ def written(session: Session, id: str = "code") -> CustomNode:
 def test_a_new_node_is_linked_and_says_what_it_is() -> None:
     session = Session(sandbox=UNRESTRICTED)
     session.apply(ReplaceGraph("Begin", Graph().add_input("image", Input())))
-    assert "glsl" in session.list_fitting_types(Port("inputs", "image"), True)
+    types = coding.with_code_type(session.types)
+    assert "glsl" in list_fitting_types(session.graph, Port("inputs", "image"), True, types)
     id = session.apply(AddNode("glsl", link=Port("inputs", "image")))
     item = written(session, id)
     assert (id, item.title, item.category) == ("code", "tint", "code")
-    assert session.find_source(Port("code", "image")) == Port("inputs", "image")
+    assert session.graph.links.get(Port("code", "image")) == Port("inputs", "image")
     assert item.values["amount"].doc == "How much of it." and item.values["shade"].length == 3
 
 
@@ -96,7 +99,7 @@ def test_typing_is_one_step_whatever_was_typed_between() -> None:
     session.undo()
     assert session.root == before
     session.redo()
-    assert session.code("code").text == GAIN + "\n"  # pyright: ignore[reportOptionalMemberAccess]
+    assert session.code_files.find_code("code").text == GAIN + "\n"  # pyright: ignore[reportOptionalMemberAccess]
     session.apply(SetCode("code", GAIN + "\n// more", merge="another"))
     session.apply(SetCode("code", GAIN + "\n", merge="another"))
     session.seal()
@@ -125,7 +128,7 @@ def test_a_color_without_alpha_takes_what_pickers_make() -> None:
     assert written(session).shade == (0.1, 0.2, 0.3)
     session.apply(SetKey(Port("code", "shade")))
     session.apply(SetValue(Port("code", "shade"), (0.4, 0.5, 0.6, 0.7)))
-    assert session.value_now(Port("code", "shade")) == (0.4, 0.5, 0.6)
+    assert session.time.evaluate(Port("code", "shade")) == (0.4, 0.5, 0.6)
 
 
 @pytest.fixture
@@ -134,74 +137,82 @@ def filed(tmp_path: Path) -> Session:
     (tmp_path / "shaders").mkdir()
     (tmp_path / "shaders/gain.glsl").write_text(GAIN)
     session = start()
-    session.save_as(tmp_path / "graph.json")
+    session.files.save_as(tmp_path / "graph.json")
     session.apply(DropFiles([tmp_path / "shaders/gain.glsl"]))
     session.apply(MakeGroup())
     session.apply(DropFiles([tmp_path / "shaders/gain.glsl"]))
-    session.save()
-    session.note_code_files()
+    session.files.save()
+    session.code_files.read_missing()
     return session
 
 
 def test_code_in_a_file_is_a_draft_until_it_is_saved(filed: Session, tmp_path: Path) -> None:
     file = tmp_path / "shaders/gain.glsl"
-    assert filed.code("gain").file == "shaders/gain.glsl" and not filed.drafts and not filed.dirty  # pyright: ignore
+    assert (
+        filed.code_files.find_code("gain").file == "shaders/gain.glsl"
+        and not filed.code_files.drafts
+        and not filed.dirty
+    )  # pyright: ignore
     more = GAIN.replace("k;", "k * 2.0;")
     filed.apply(SetCode("gain", more))
-    assert filed.drafts == {file: more} and filed.dirty and file.read_text() == GAIN
+    assert filed.code_files.drafts == {file: more} and filed.dirty and file.read_text() == GAIN
     inside = next(item for item in filed.root.nodes.values() if hasattr(item, "graph"))
     assert [coding.read_node_code(item, "", sandbox=UNRESTRICTED).text for item in inside.graph.nodes.values()] == [
         more
     ]  # pyright: ignore
-    kept = loads(dumps(filed.recoverable), folder=str(tmp_path), sandbox=UNRESTRICTED)
+    kept = loads(dumps(filed.code_files.recoverable_root), folder=str(tmp_path), sandbox=UNRESTRICTED)
     assert kept.nodes["gain"].code.text == more and not kept.nodes["gain"].code.file  # pyright: ignore
-    assert filed.save_code("gain") == file
-    assert file.read_text() == more and not filed.drafts and not filed.dirty
+    assert filed.code_files.save("gain") == file
+    assert file.read_text() == more and not filed.code_files.drafts and not filed.dirty
     filed.undo()
-    assert filed.drafts == {file: GAIN} and filed.save_drafts() == (file,) and file.read_text() == GAIN
+    assert (
+        filed.code_files.drafts == {file: GAIN}
+        and filed.code_files.save_drafts() == (file,)
+        and file.read_text() == GAIN
+    )
 
 
 def test_what_another_program_writes_is_taken_over(filed: Session, tmp_path: Path) -> None:
     file = tmp_path / "shaders/gain.glsl"
     steps = filed.history.steps
     file.write_text(GAIN.replace("= 2", "= 3"))
-    filed.reread_code(file)
+    filed.code_files.reread(file)
     assert written(filed, "gain").k == 3.0 and filed.history.steps == steps and not filed.dirty
     file.write_text("nonsense")
-    filed.reread_code(file)
+    filed.code_files.reread(file)
     assert isinstance(filed.graph.nodes["gain"], Unknown) and "gain.glsl" in filed.problems["gain"][0].sentence
     file.unlink()
-    filed.reread_code(file)
+    filed.code_files.reread(file)
     assert "there is no such file" in filed.problems["gain"][0].sentence
     file.write_text(GAIN)
-    filed.reread_code(file)
+    filed.code_files.reread(file)
     assert written(filed, "gain").k == 2.0 and not filed.dirty
 
 
 def test_code_moves_between_the_graph_and_a_file(filed: Session, tmp_path: Path) -> None:
     filed.apply(EmbedCode("gain"))
-    assert filed.code("gain").file == "" and filed.code("gain").text == GAIN  # pyright: ignore
+    assert filed.code_files.find_code("gain").file == "" and filed.code_files.find_code("gain").text == GAIN  # pyright: ignore
     with pytest.raises(GraphError, match="in no file"):
         filed.apply(EmbedCode("gain"))
-    filed.export_code("gain", tmp_path / "other.glsl")
-    assert filed.code("gain").file == "other.glsl" and (tmp_path / "other.glsl").read_text() == GAIN  # pyright: ignore
-    assert not filed.drafts
+    filed.code_files.export("gain", tmp_path / "other.glsl")
+    assert filed.code_files.find_code("gain").file == "other.glsl" and (tmp_path / "other.glsl").read_text() == GAIN  # pyright: ignore
+    assert not filed.code_files.drafts
     with pytest.raises(GraphError, match="not made of code"):
         filed.apply(SetCode(next(id for id in filed.root.nodes if id.startswith("group")), ""))
 
 
 def test_files_of_code_are_found_from_another_folder(filed: Session, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
-    filed.save_as(tmp_path / "elsewhere/copy.json")
-    assert filed.code("gain").file == "../shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
+    filed.files.save_as(tmp_path / "elsewhere/copy.json")
+    assert filed.code_files.find_code("gain").file == "../shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
     again = Session(sandbox=UNRESTRICTED)
-    again.open(tmp_path / "elsewhere/copy.json")
+    again.files.open(tmp_path / "elsewhere/copy.json")
     assert again.root == filed.root
     filed.select(ElementId("gain"))
     other = Session(sandbox=UNRESTRICTED)
-    other.save_as(tmp_path / "third.json")
-    other.apply(PasteText(filed.copy()))
-    assert other.code("gain").file == "shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
+    other.files.save_as(tmp_path / "third.json")
+    other.apply(PasteText(copy_elements(filed.graph, filed.selection)))
+    assert other.code_files.find_code("gain").file == "shaders/gain.glsl"  # pyright: ignore[reportOptionalMemberAccess]
     broken = Graph(folder=str(tmp_path)).add(
         "x", coding.make_file_node("none.glsl", str(tmp_path), sandbox=UNRESTRICTED)
     )
@@ -219,7 +230,7 @@ def acts(session: Session) -> None:
     """What editors do with nodes."""
     session.select(ElementId("code"))
     session.apply(DuplicateSelection())
-    session.apply(PasteText(session.copy()))
+    session.apply(PasteText(copy_elements(session.graph, session.selection)))
     session.select(ElementId("code"))
     session.apply(ToggleMute())
     session.apply(ToggleMute())
@@ -254,7 +265,7 @@ def test_code_is_replaced_and_replaces() -> None:
 
 def test_code_of_a_group_from_a_file_is_not_changed_here(filed: Session, tmp_path: Path) -> None:
     group = next(id for id in filed.root.nodes if hasattr(filed.root.nodes[id], "graph"))
-    filed.save_group(group, tmp_path / "group.json", link=True)
+    filed.files.save_group(group, tmp_path / "group.json", link=True)
     filed.enter(group)
     with pytest.raises(GraphError, match="make it local first"):
         filed.apply(SetCode(next(iter(filed.graph.nodes)), "x"))

@@ -31,10 +31,10 @@ def written(path: Path, graph: Graph) -> Path:
 
 def test_open_save_and_open_again(session, tmp_path):
     path = written(tmp_path / "a.json", chain(2))
-    session.open(path)
+    session.files.open(path)
     assert (session.name, session.path, session.dirty, session.history.steps) == ("a", path, False, ())
     session.apply(SetValue(Port("n0", "gain"), 3.0))
-    session.save()
+    session.files.save()
     assert not session.dirty and session.history.can_undo
     assert load(path, TOYS, sandbox=UNRESTRICTED) == session.root
 
@@ -43,9 +43,9 @@ def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
     session.apply(ReplaceGraph("Start", chain(1)))
     (tmp_path / "bad.json").write_text("{")
     for act in (
-        lambda: session.open(tmp_path / "bad.json"),
-        lambda: session.open_text("nothing"),
-        lambda: session.open_copy(tmp_path / "none.json"),
+        lambda: session.files.open(tmp_path / "bad.json"),
+        lambda: session.files.open_text("nothing"),
+        lambda: session.files.open_copy(tmp_path / "none.json"),
     ):
         with pytest.raises(DocumentError):
             act()
@@ -54,12 +54,12 @@ def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
 
 def test_save_needs_a_file_and_a_folder(session, tmp_path):
     with pytest.raises(UsageError, match="Save As"):
-        session.save()
+        session.files.save()
     with pytest.raises(UsageError, match="no file to read again"):
-        session.reload()
+        session.files.reload()
     session.apply(ReplaceGraph("Start", chain(1)))
     with pytest.raises(OutputError):
-        session.save_as(tmp_path / "none" / "a.json")
+        session.files.save_as(tmp_path / "none" / "a.json")
     assert session.path is None and session.dirty
 
 
@@ -69,11 +69,11 @@ def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
     graph = Graph(inputs={"plate": Input(file="plates/a.exr")}, folder=str(tmp_path / "one"))
     graph = graph.add("g", Group(load(tmp_path / "one/lib/inner.json", TOYS, sandbox=UNRESTRICTED), "lib/inner.json"))
     graph = graph.add("p", Photo(path="plates/c.exr")).add("q", Photo(path="/far/d.exr")).add("r", Photo())
-    session.open(written(tmp_path / "one/doc.json", graph))
+    session.files.open(written(tmp_path / "one/doc.json", graph))
     session.select(ElementId("p"))
     session.apply(MakeGroup("local"))
     (tmp_path / "two").mkdir()
-    session.save_as(tmp_path / "two/doc.json")
+    session.files.save_as(tmp_path / "two/doc.json")
     root = load(tmp_path / "two/doc.json", TOYS, sandbox=UNRESTRICTED)
     assert root == session.root and not session.dirty
     assert root.inputs["plate"].file == "../one/plates/a.exr"
@@ -90,24 +90,24 @@ def test_a_document_is_not_saved_into_itself(session, tmp_path):
     path = written(tmp_path / "lib.json", chain(1))
     session.apply(AddGroupFile(path))
     with pytest.raises(UsageError, match="used as a group"):
-        session.save_as(path)
-    session.save_as(tmp_path / "doc.json")
+        session.files.save_as(path)
+    session.files.save_as(tmp_path / "doc.json")
     with pytest.raises(GraphError, match="cannot hold itself"):
         session.apply(AddGroupFile(tmp_path / "doc.json"))
     with pytest.raises(UsageError, match="of the document itself"):
         session.select(ElementId(session.apply(AddNode("gain"))))
-        session.save_group(session.apply(MakeGroup()), tmp_path / "doc.json")
+        session.files.save_group(session.apply(MakeGroup()), tmp_path / "doc.json")
     outer = Session(TOYS, sandbox=UNRESTRICTED)
-    outer.open(path)
+    outer.files.open(path)
     with pytest.raises(GraphError, match="cannot hold itself"):
         outer.apply(AddGroupFile(tmp_path / "doc.json"))
 
 
 def test_a_preset_opens_as_a_new_document_that_finds_its_files(session, tmp_path):
     path = written(tmp_path / "presets/look.json", Graph(nodes={"p": Photo(path="samples/a.exr")}))
-    session.open_copy(path)
+    session.files.open_copy(path)
     assert session.path is None and not session.dirty
-    session.save_as(tmp_path / "mine.json")
+    session.files.save_as(tmp_path / "mine.json")
     assert session.graph.value(Port("p", "path")) == "presets/samples/a.exr"
     assert load(path, TOYS, sandbox=UNRESTRICTED).nodes["p"] == Photo(path="samples/a.exr")
 
@@ -120,31 +120,31 @@ def test_a_preset_as_a_node_depends_on_no_file(tmp_path):
     assert [end.file for end in item.graph.inputs.values()] == ["" for _ in item.graph.inputs]
     session.enter(id)
     assert session.borrowed == ""
-    session.save_as(tmp_path / "doc.json")
+    session.files.save_as(tmp_path / "doc.json")
     assert "sample" not in (tmp_path / "doc.json").read_text()
 
 
 def test_pasted_text_is_an_unsaved_document(session):
-    session.open_text(dumps(chain(2)))
+    session.files.open_text(dumps(chain(2)))
     assert session.dirty and session.path is None and "n1" in session.graph.nodes
 
 
 def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
     path = written(tmp_path / "a.json", chain(3))
-    session.open(path)
+    session.files.open(path)
     session.select([ElementId("n1"), ElementId("n2")])
-    session.view_element(ElementId("n1"))
+    session.views.show_element(ElementId("n1"))
     session.apply(SetValue(Port("n0", "gain"), 3.0))
-    session.revert()
-    assert session.value(Port("n0", "gain")) == 1.5 and not session.dirty
-    assert session.selection == {"n1", "n2"} and session.find_viewed_port() == Port("n1", "out")
+    session.files.revert()
+    assert session.graph.value(Port("n0", "gain")) == 1.5 and not session.dirty
+    assert session.selection == {"n1", "n2"} and session.views.find_port() == Port("n1", "out")
     session.undo()
-    assert session.value(Port("n0", "gain")) == 3.0 and session.dirty
+    assert session.graph.value(Port("n0", "gain")) == 3.0 and session.dirty
     written(path, chain(2))
-    session.reload()
+    session.files.reload()
     assert set(session.graph.nodes) == {"n0", "n1"} and session.selection == {"n1"}
     assert session.history.steps == ("Set n0.gain", "Reload")
-    session.reload()
+    session.files.reload()
     assert session.history.steps == ("Set n0.gain", "Reload"), "nothing was new"
 
 
@@ -152,9 +152,9 @@ def test_reloading_leaves_a_group_that_is_gone(session, tmp_path):
     session.apply(ReplaceGraph("Start", chain(2)))
     session.select(ElementId("n0"))
     session.enter(session.apply(MakeGroup()))
-    session.save_as(tmp_path / "a.json")
+    session.files.save_as(tmp_path / "a.json")
     written(tmp_path / "a.json", chain(1))
-    session.reload()
+    session.files.reload()
     assert session.place == ()
 
 
@@ -162,15 +162,15 @@ def test_groups_are_read_again_everywhere(session, tmp_path):
     path = written(tmp_path / "lib.json", chain(1))
     id = session.apply(AddGroupFile(path, (5.0, 5.0)))
     session.apply(AddNode("gain"))
-    session.save_as(tmp_path / "doc.json")
+    session.files.save_as(tmp_path / "doc.json")
     written(path, chain(4))
-    session.reload_groups()
+    session.files.reload_groups()
     assert len(session.graph.nodes[id].graph.nodes) == 4 and not session.dirty
     session.undo()
     assert len(session.graph.nodes[id].graph.nodes) == 4, "in the past too"
     path.write_text("{")
     with pytest.raises(DocumentError):
-        session.reload_groups()
+        session.files.reload_groups()
     assert len(session.graph.nodes[id].graph.nodes) == 4
 
 
@@ -185,7 +185,7 @@ def test_a_change_of_classes_reaches_the_whole_history(session):
 
 def test_dropped_files(tmp_path):
     session = Session(sandbox=UNRESTRICTED)
-    session.save_as(tmp_path / "doc.json")
+    session.files.save_as(tmp_path / "doc.json")
     path = written(tmp_path / "my look.json", Graph(outputs={"image": Output()}))
     ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0)))
     assert ids == ("shot_1", "b", "my_look")

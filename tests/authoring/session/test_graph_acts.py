@@ -42,9 +42,12 @@ from halation.authoring.commands import (
     ToggleCollapse,
     ToggleMute,
 )
+from halation.authoring.edits.decor import find_frame_members
 from halation.authoring.edits.element_id import ElementId
 from halation.authoring.edits.selection import find_downstream, find_linked, find_upstream, invert_selection
+from halation.authoring.edits.values import find_control, is_default
 from halation.authoring.session import Session
+from halation.authoring.state.group_files import GroupFiles
 from halation.document import load
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Port
@@ -159,21 +162,21 @@ def test_values(session):
     session.apply(SetValue(gain, 2, "drag"))
     session.apply(SetValue(gain, 3, "drag"))
     session.apply(SetValue(tint, [1, 0, 0, 1]))
-    assert (session.value(gain), session.value(tint)) == (3.0, (1.0, 0.0, 0.0, 1.0))
-    assert len(session.history.steps) == 3 and not session.is_default(gain)
+    assert (session.graph.value(gain), session.graph.value(tint)) == (3.0, (1.0, 0.0, 0.0, 1.0))
+    assert len(session.history.steps) == 3 and not is_default(session.graph, gain)
     session.apply(ResetValue(gain))
-    assert session.is_default(gain) and session.value(gain) == 1.0
+    assert is_default(session.graph, gain) and session.graph.value(gain) == 1.0
     session.apply(ResetNode("n0"))
     assert session.graph.nodes["n0"] == Gain()
     for value, said in ((99.0, "outside the range"), ("a", "takes a number"), (float("nan"), "not a finite")):
         with pytest.raises(GraphError, match=said):
             session.apply(SetValue(gain, value))
-    assert session.find_source(port("n1.image")) == port("n0.out") and session.find_source(gain) is None
+    assert session.graph.links.get(port("n1.image")) == port("n0.out") and session.graph.links.get(gain) is None
 
 
 def test_controls(session):
     gain = port("n0.gain")
-    assert session.apply(ExposeValue(gain)) == "gain" and session.control_of(gain) == "gain"
+    assert session.apply(ExposeValue(gain)) == "gain" and find_control(session.graph, gain) == "gain"
     assert session.apply(ExposeValue(port("n1.gain"))) == "gain2"
     with pytest.raises(GraphError, match="control 'gain' already"):
         session.apply(ExposeValue(gain))
@@ -182,7 +185,7 @@ def test_controls(session):
     session.apply(DescribeControl("glow", doc="How much."))
     assert session.graph.controls["glow"] == Control(gain, "Glow", "How much.")
     session.apply(HideControl("glow"))
-    assert session.control_of(gain) is None
+    assert find_control(session.graph, gain) is None
 
 
 def test_values_of_a_group_and_of_what_is_inside(session):
@@ -191,14 +194,14 @@ def test_values_of_a_group_and_of_what_is_inside(session):
     id = session.apply(MakeGroup("look"))
     glow = Port(id, "glow")
     session.apply(SetValue(glow, 4.0))
-    assert not session.is_default(glow)
+    assert not is_default(session.graph, glow)
     session.enter(id)
-    assert session.value(port("n1.gain")) == 4.0, "the value that the group sets"
+    assert session.graph.value(port("n1.gain")) == 4.0, "the value that the group sets"
     session.apply(SetValue(port("n0.gain"), 0.5))
     session.apply(RenameControl("glow", "shine"))
     session.apply(RenameEnd(ElementId("inputs.image"), "plate"))
     session.leave()
-    assert session.value(Port(id, "shine")) == 4.0
+    assert session.graph.value(Port(id, "shine")) == 4.0
     assert session.graph.controls["glow"].target == Port(id, "shine")
     assert links(session)["look.plate"] == "inputs.beauty"
     session.enter(id)
@@ -214,17 +217,17 @@ def test_values_of_a_group_and_of_what_is_inside(session):
 def test_groups_from_files(session, tmp_path):
     session.select([ElementId("n0"), ElementId("n1")])
     id = session.apply(MakeGroup("look"))
-    session.save_as(tmp_path / "doc.json")
-    session.save_group(id, tmp_path / "look.json")
+    session.files.save_as(tmp_path / "doc.json")
+    session.files.save_group(id, tmp_path / "look.json")
     assert session.borrowed == "" and not session.dirty
-    session.save_group(id, tmp_path / "look.json", link=True)
+    session.files.save_group(id, tmp_path / "look.json", link=True)
     assert session.graph.nodes[id].path == "look.json"
     session.enter(id)
     assert session.borrowed == "look.json" and session.crumbs == (("doc", ()), ("look", ("look",)))
     with pytest.raises(GraphError, match=r"'look' comes from the file 'look.json': make it local first"):
         session.apply(SetValue(port("n0.gain"), 2.0))
     session.leave()
-    session.save()
+    session.files.save()
     assert load(tmp_path / "doc.json", TOYS, sandbox=UNRESTRICTED) == session.root
     session.apply(MakeGroupLocal(id))
     session.enter(id)
@@ -292,12 +295,12 @@ def test_bound_files_follow_their_input(session):
 def test_frames_hold_what_lies_inside(session):
     session.select([ElementId("n0"), ElementId("n1")])
     frame = session.apply(AddFrame("Grade"))
-    assert session.frame_members(frame) == {"n0", "n1"} and session.active == frame
+    assert find_frame_members(session.graph, frame, session.positions) == {"n0", "n1"} and session.active == frame
     session.select(frame)
     outer = session.apply(AddFrame())
-    assert session.frame_members(outer) == {"n0", "n1", frame}
-    session.apply(MoveElements([*session.frame_members(outer), outer], 1000.0, 0.0))
-    assert session.frame_members(frame) == {"n0", "n1"}
+    assert find_frame_members(session.graph, outer, session.positions) == {"n0", "n1", frame}
+    session.apply(MoveElements([*find_frame_members(session.graph, outer, session.positions), outer], 1000.0, 0.0))
+    assert find_frame_members(session.graph, frame, session.positions) == {"n0", "n1"}
     session.apply(ResizeFrame(frame, 0.0, 0.0, 1.0, 1.0))
     assert session.graph.ui["frames"][frame.name]["w"] == 40.0, "never too small to be grabbed"
     session.apply(EditFrame(frame, color=(0.5, 0.25, 0.125)))
@@ -346,8 +349,11 @@ def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(se
 def test_presets_that_fit_a_port():
     session, files = Session(sandbox=UNRESTRICTED), presets.paths()
     session.apply(AddNode("gaussian_blur"))
-    some = session.list_fitting_files(files, port("gaussian_blur.out"), True)
+    groups = GroupFiles()
+    some = groups.list_fitting(files, session, port("gaussian_blur.out"), True)
     assert some and set(some) <= set(files)
     id = session.apply(AddGroupFile(some[0], link=port("gaussian_blur.out")))
     assert [str(end.node) for end, start in session.graph.links.items() if str(start) == "gaussian_blur.out"] == [id]
-    assert session.list_fitting_files(files, port("gaussian_blur.image"), False) == files, "all of them make a picture"
+    assert groups.list_fitting(files, session, port("gaussian_blur.image"), False) == files, (
+        "all of them make a picture"
+    )

@@ -104,11 +104,11 @@ def test_only_so_many_steps_are_kept(session, monkeypatch):
         session.apply(SetValue(Port("n0", "gain"), float(gain)))
     assert len(session.history.steps) == session.history.position == 5
     session.go_to(0)
-    assert session.value(Port("n0", "gain")) == 3.0
+    assert session.graph.value(Port("n0", "gain")) == 3.0
 
 
 def test_dirty_is_about_the_document_not_about_steps(session, tmp_path):
-    session.save_as(tmp_path / "a.json")
+    session.files.save_as(tmp_path / "a.json")
     assert not session.dirty
     session.apply(SetValue(Port("n0", "gain"), 3.0))
     assert session.dirty
@@ -128,7 +128,7 @@ def test_the_revision_grows_with_every_change(session):
         lambda: session.apply(ToggleMute()),
         session.undo,
         session.redo,
-        lambda: session.view_element(ElementId("n1")),
+        lambda: session.views.show_element(ElementId("n1")),
     )
     for act in acts:
         act()
@@ -150,13 +150,14 @@ def test_problems_by_element(session):
     session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup()))
     assert set(session.problems) == {"n1"}, "the output of the group is linked inside"
-    assert {problem.node for problem in session.all_problems} == {"group/n1", "outputs"}
+    session.leave()
+    assert {problem.node for some in session.problems.values() for problem in some} == {"group/n1", "outputs"}
 
 
 def test_layout_is_saved_with_the_first_edit_so_that_nothing_jumps():
     session = Session(TOYS, sandbox=UNRESTRICTED)
     graph = replace(chain(3), ui={})
-    session._restart(graph, None, graph)
+    session.restart(graph, saved=graph)
     assert not session.dirty
     before = dict(session.positions)
     session.apply(Disconnect(Port("n1", "image")))

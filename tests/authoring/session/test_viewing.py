@@ -37,63 +37,63 @@ def session() -> Session:
 
 
 def test_without_a_choice_a_shows_the_output_and_b_nothing(session):
-    assert session.find_viewed_port() == port("outputs.image") and session.find_viewed_port("B") is None
+    assert session.views.find_port() == port("outputs.image") and session.views.find_port("B") is None
     session.apply(Disconnect(port("outputs.image")))
-    assert session.find_viewed_port() == port("n2.out"), "the last node"
+    assert session.views.find_port() == port("n2.out"), "the last node"
     session.select(session.elements, "extend")
     session.apply(DeleteSelection())
-    assert session.find_viewed_port() is None
+    assert session.views.find_port() is None
 
 
 def test_a_port_that_vanishes_comes_back(session):
-    session.view(port("n1.out"))
-    session.view(port("n0.out"), "B")
+    session.views.show(port("n1.out"))
+    session.views.show(port("n0.out"), "B")
     session.select([ElementId("n0"), ElementId("n1")])
     session.apply(DeleteSelection())
-    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("outputs.image"), None)
+    assert (session.views.find_port(), session.views.find_port("B")) == (port("outputs.image"), None)
     session.undo()
-    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("n1.out"), port("n0.out"))
-    session.view_nothing("B")
-    assert session.find_viewed_port("B") is None
+    assert (session.views.find_port(), session.views.find_port("B")) == (port("n1.out"), port("n0.out"))
+    session.views.clear("B")
+    assert session.views.find_port("B") is None
 
 
 def test_the_view_follows_a_new_name_and_back(session):
-    session.view(port("n1.out"))
-    session.view(port("inputs.beauty"), "B")
+    session.views.show(port("n1.out"))
+    session.views.show(port("inputs.beauty"), "B")
     session.apply(RenameNode("n1", "middle"))
     session.apply(RenameEnd(ElementId("inputs.beauty"), "plate"))
-    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("middle.out"), port("inputs.plate"))
+    assert (session.views.find_port(), session.views.find_port("B")) == (port("middle.out"), port("inputs.plate"))
     session.undo()
     session.undo()
-    assert (session.find_viewed_port(), session.find_viewed_port("B")) == (port("n1.out"), port("inputs.beauty"))
+    assert (session.views.find_port(), session.views.find_port("B")) == (port("n1.out"), port("inputs.beauty"))
 
 
 def test_viewing_a_node_again_shows_its_next_output(session):
     id = session.apply(AddNode("split", link=port("n2.out")))
     seen = []
     for _ in range(3):
-        session.view_element(ElementId(id))
-        seen.append(str(session.find_viewed_port()))
+        session.views.show_element(ElementId(id))
+        seen.append(str(session.views.find_port()))
     assert seen == ["split.grey", "split.rest", "split.grey"]
-    session.view_element(ElementId("outputs.image"))
-    assert session.find_viewed_port() == port("outputs.image")
+    session.views.show_element(ElementId("outputs.image"))
+    assert session.views.find_port() == port("outputs.image")
     with pytest.raises(GraphError, match=r"no 'n9\.out' to show"):
-        session.view(port("n9.out"))
+        session.views.show(port("n9.out"))
 
 
 def test_every_group_has_a_view_of_its_own(session):
-    session.view(port("n0.out"))
+    session.views.show(port("n0.out"))
     session.select(ElementId("n1"))
     session.enter(session.apply(MakeGroup("look")))
-    assert session.find_viewed_port() == port("outputs.out")
-    session.view_element(ElementId("n1"))
+    assert session.views.find_port() == port("outputs.out")
+    session.views.show_element(ElementId("n1"))
     session.leave()
-    assert session.find_viewed_port() == port("n0.out")
+    assert session.views.find_port() == port("n0.out")
     session.enter("look")
-    assert session.find_viewed_port() == port("n1.out")
-    assert session.find_viewed_root_port() == port("look/n1.out")
-    session.view(port("inputs.image"))
-    assert session.find_viewed_root_port() == port("n0.out"), "what feeds the group"
+    assert session.views.find_port() == port("n1.out")
+    assert session.views.find_root_port() == port("look/n1.out")
+    session.views.show(port("inputs.image"))
+    assert session.views.find_root_port() == port("n0.out"), "what feeds the group"
 
 
 def test_what_the_compiler_is_asked_for():
@@ -115,36 +115,36 @@ def test_what_the_compiler_is_asked_for():
     session.select([ElementId("b")])
     session.enter(session.apply(MakeGroup("inner")))
     for name, same in (("inputs.image", "a.out"), ("b.out", "b.out"), ("outputs.out", "b.out")):
-        session.view(port(name))
-        assert key(session.find_viewed_root_port()) == wanted[same]
+        session.views.show(port(name))
+        assert key(session.views.find_root_port()) == wanted[same]
     session.leave()
     for name, same in (("inputs.image", "inputs.image"), ("a.out", "a.out"), ("inner.out", "b.out")):
-        session.view(port(name))
-        assert key(session.find_viewed_root_port()) == wanted[same]
+        session.views.show(port(name))
+        assert key(session.views.find_root_port()) == wanted[same]
 
 
 def test_viewer_keys(session):
     session.select(ElementId("n1"))
     session.apply(AssignViewer(1))
     session.apply(AssignViewer(2, port("inputs.beauty")))
-    assert session.viewers == {1: port("n1.out"), 2: port("inputs.beauty")}
+    assert session.views.numbered_ports == {1: port("n1.out"), 2: port("inputs.beauty")}
     assert session.graph.ui["viewers"] == {"1": "n1.out", "2": "inputs.beauty"}
-    session.recall_viewer(1, "B")
-    assert session.find_viewed_port("B") == port("n1.out") and session.find_viewed_port() == port("inputs.beauty")
+    session.views.recall(1, "B")
+    assert session.views.find_port("B") == port("n1.out") and session.views.find_port() == port("inputs.beauty")
     session.apply(RenameNode("n1", "middle"))
-    assert session.viewers[1] == port("middle.out")
+    assert session.views.numbered_ports[1] == port("middle.out")
     session.select(ElementId("middle"))
     session.apply(DeleteSelection())
-    assert set(session.viewers) == {2}
+    assert set(session.views.numbered_ports) == {2}
     for number, said in ((3, "nothing is assigned"), (1, "nothing is assigned")):
         with pytest.raises(GraphError, match=said):
-            session.recall_viewer(number)
+            session.views.recall(number)
     with pytest.raises(GraphError, match="choose 1 to 9"):
         session.apply(AssignViewer(0))
 
 
 def test_another_document_forgets_what_was_viewed(session):
-    session.view(port("n0.out"))
-    session.new()
+    session.views.show(port("n0.out"))
+    session.files.new()
     session.apply(ReplaceGraph("Start", chain(3)))
-    assert session.find_viewed_port() == port("outputs.image")
+    assert session.views.find_port() == port("outputs.image")

@@ -103,7 +103,7 @@ def test_sizes(size: int, said: str) -> None:
 
 
 def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     desk.store.note_folder("export", tmp_path / "x.exr")
     form = RenderForm(desk)
     assert form.list_chosen_outputs() == ("image",)
@@ -119,14 +119,14 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
 
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     form = RenderForm(desk, chosen={"image": False})
     with pytest.raises(UsageError, match="where to write"):
         form.start()
 
 
 def test_a_render_is_started_and_its_folder_remembered(desk: Desk, tmp_path: Path) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     form = RenderForm(desk, sizing="scale", scale=0.1, format=".png")
     form.files["image"] = str(tmp_path / "small.png")
     made = form.start()

@@ -34,7 +34,7 @@ class Desk:
 def desk(tmp_path: Path) -> Desk:
     """A preset of 24 frames, whose renders go to a folder of their own."""
     made = Desk(PreferenceStore(tmp_path / "state"))
-    made.session.open(PRESET)
+    made.session.files.open(PRESET)
     made.session.apply(SetFrameRange(1, 24))
     (tmp_path / "out").mkdir()
     made.store.note_folder("export", tmp_path / "out" / "x.exr")
@@ -49,7 +49,7 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     aim = form.targets(0.0)
     assert (aim.files, aim.exist, aim.fault) == (24, 0, "")
     assert aim_text(aim) == "Writes 24 files: soft_bloom.0001.exr \u2026 soft_bloom.0024.exr"
-    desk.session.seek(7)
+    desk.session.time.seek(7)
     form.extend("this frame")
     assert form.frames() == (7,)
     assert aim_text(form.targets(0.0)) == "Writes soft_bloom.exr"

@@ -73,7 +73,7 @@ def test_no_two_actions_share_a_shortcut(desk: Editor, contexts: Contexts) -> No
 
 
 def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, contexts: Contexts) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     assert first(contexts, "save as") == "Save As"
     assert first(contexts, "gb") == "Add Gaussian Blur"
     assert first(contexts, "open preset night") == "Open Preset Night Street"
@@ -147,7 +147,7 @@ def test_columns_are_as_equal_as_order_allows() -> None:
 
 
 def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Contexts) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     assert list_problems(contexts.problems) == ()
     desk.session.apply(Disconnect(Port("outputs", "image")))
     desk.preview.faults = {"inputs.beauty": "there is no such file", "outputs.image": "the same in other words"}
@@ -162,7 +162,7 @@ def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Context
 
 
 def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> None:
-    desk.session.open(PRESET)
+    desk.session.files.open(PRESET)
     desk.session.select(["bloom"])
     group = desk.session.apply(MakeGroup())
     show_element(contexts.problems, f"{group}/bloom")

@@ -76,7 +76,7 @@ def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
     ramp = session.apply(AddNode("ramp"))
     assert [str(one.port) for one in handles(session)] == ["ramp.start", "ramp.end"]
     assert drag(editor, (2.0, 201.0), (202.0, 101.0)) == "handle"
-    assert session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
+    assert session.graph.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
     assert editor.interface.dragging
     assert session.history.position == 2  # the node, and one step for the whole drag
     session.select(())
@@ -88,7 +88,7 @@ def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
     drag(editor, (0.0, 200.0), (200.0, 100.0))
     drag(editor, (200.0, 100.0), (400.0, 100.0))
     editor.session.undo()
-    assert editor.session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
+    assert editor.session.graph.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
 
 
 def lit(editor: Any, *lights: Light) -> Port:
@@ -109,12 +109,12 @@ def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
     ]
     steps = editor.session.history.position
     assert drag(editor, (561.0, 201.0), (401.0, 101.0)) == "light"
-    light = lights_of(editor.session.value(port))[3]
+    light = lights_of(editor.session.graph.value(port))[3]
     assert light.place == pytest.approx((0.0, 0.0, 0.625), abs=1e-4) and editor.interface.dragging
     assert editor.lights == {"lamps.lights": 3} and lamps(editor)[-1].chosen
     assert editor.session.history.position == steps + 1
     editor.session.undo()
-    assert lights_of(editor.session.value(port))[3] == SIDE
+    assert lights_of(editor.session.graph.value(port))[3] == SIDE
 
 
 def test_without_a_camera_lights_have_no_handles(editor: Any) -> None:

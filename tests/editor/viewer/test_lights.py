@@ -85,7 +85,7 @@ def editor() -> Any:
 
 
 def of(editor: Any) -> tuple[Light, ...]:
-    return lights_of(editor.session.value(PORT))
+    return lights_of(editor.session.graph.value(PORT))
 
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:

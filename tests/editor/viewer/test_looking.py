@@ -115,8 +115,8 @@ def test_only_what_is_seen_is_wanted(editor: Any) -> None:
     assert list_wanted_ports(editor) == ({}, 1.0)
     noise, light = session.apply(AddNode("noise")), "beauty"
     session.apply(AddInput(light, "Image"))
-    session.view(Port(noise, "value"))
-    session.view(Port("inputs", light), "B")
+    session.views.show(Port(noise, "value"))
+    session.views.show(Port("inputs", light), "B")
     assert list_wanted_ports(editor) == ({"A": Port(noise, "value")}, 1.0)
     editor.viewer.compare, editor.viewer.proxy = "wipe", 0.5
     assert list_wanted_ports(editor) == ({"A": Port(noise, "value"), "B": Port("inputs", light)}, 0.5)

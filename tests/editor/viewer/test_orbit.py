@@ -150,15 +150,15 @@ def test_the_scene_that_is_seen_or_selected(editor: Any) -> None:
     mixed = session.apply(AddNode("mix_images"))
     for source, socket in zip(("scene", other), session.graph.nodes[mixed].inputs, strict=False):
         session.apply(Connect(Port(source, "color"), Port(mixed, socket)))
-    session.view(Port(mixed, "out"))
+    session.views.show(Port(mixed, "out"))
     session.select(())
     assert find_orbit_node(session) == ""
     session.select([other])
     assert find_orbit_node(session) == other
-    session.view(Port("scene", "albedo"))
+    session.views.show(Port("scene", "albedo"))
     assert find_orbit_node(session) == "scene"
     noise = session.apply(AddNode("noise"))
-    session.view(Port(noise, "value"))
+    session.views.show(Port(noise, "value"))
     session.select([ElementId("scene")])
     assert find_orbit_node(session) == ""
 
@@ -169,9 +169,7 @@ def test_a_camera_that_something_else_moves_is_left_alone(editor: Any) -> None:
     assert find_orbit_node(session) == "scene"
     graph = session.graph
     linked = replace(graph, links={**graph.links, Port("scene", "azimuth"): Port(INPUTS, "angle")})
-    assert (
-        find_orbit_node(SimpleNamespace(graph=linked, find_viewed_port=session.find_viewed_port, active="scene")) == ""
-    )  # type: ignore[arg-type]
+    assert find_orbit_node(SimpleNamespace(graph=linked, views=session.views, active="scene")) == ""  # type: ignore[arg-type]
 
 
 def test_only_where_it_is_wanted_the_mouse_moves_the_camera(editor: Any) -> None:

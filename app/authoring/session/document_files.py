@@ -1,0 +1,117 @@
+"""The open document as a file: begin, open, save, and read again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...document import load, loads, save
+from ...errors import UsageError
+from ...graph import Graph, Output
+from ...renderer.provenance.file_finder import load_graph_of_picture
+from ..commands.grouping import LinkGroup
+from ..commands.viewing import ReplaceDocument
+from ..edits import folding, layout, paths
+
+if TYPE_CHECKING:
+    from ..recovery import RecoveredWork
+    from .session import Session
+
+
+class DocumentFiles:
+    """Opens and saves the document of a session, and the groups in it that come from files."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def new(self) -> None:
+        """Begin an empty document: one output, and nothing to show yet."""
+        root = layout.pin_places(Graph(outputs={"image": Output()}))
+        self._session.restart(root, saved=root)
+
+    def open(self, path: str | Path) -> None:
+        """Open a graph file. Raises DocumentError; then everything is as before."""
+        root = self._load(path)
+        self._session.restart(root, Path(path), saved=root)
+
+    def open_copy(self, path: str | Path) -> None:
+        """Open a graph file as a new document, as presets are: saving asks for a name. Raises DocumentError."""
+        root = self._load(path)
+        self._session.restart(root, saved=root)
+
+    def open_graph_of_picture(self, path: str | Path) -> None:
+        """Open the graph that rendered a picture, as a new document with the picture's name. Raises HalationError."""
+        session = self._session
+        root = load_graph_of_picture(Path(path), session.types, sandbox=session.sandbox)
+        session.restart(root, saved=root, title=Path(path).stem)
+
+    def open_text(self, text: str) -> None:
+        """Open the text of a graph file as a document without a file. Raises DocumentError."""
+        session = self._session
+        session.restart(loads(text, "text", catalogue=session.types, sandbox=session.sandbox))
+
+    def open_recovered(self, work: RecoveredWork) -> None:
+        """Open work that was recovered, which is not saved yet; it keeps the file that it belongs to."""
+        self._session.restart(work.load(self._session.sandbox), work.path)
+
+    def save(self) -> None:
+        """Save to the file that was opened. Raises UsageError if there is none."""
+        if self._session.path is None:
+            raise UsageError("this document has no file yet: choose one with Save As")
+        self.save_as(self._session.path)
+
+    def save_as(self, path: str | Path) -> None:
+        """Save to a file; relative paths are rewritten so that they lead to the same files. Raises OutputError."""
+        session, target = self._session, Path(path)
+        paths.check_target(session.root, target)
+        session.seal()
+        folder = str(target.parent)
+        root = paths.rebase_paths(session.root, folder)
+        save(root, target, sandbox=session.sandbox)
+        if root is not session.root:
+            session.migrate(lambda graph: paths.rebase_paths(graph, folder))
+        session.path, session.saved = target, session.root
+        session.revision += 1
+
+    def revert(self) -> None:
+        """Go back to what was saved; this can be undone."""
+        self._read_again("Revert")
+
+    def reload(self) -> None:
+        """Read the file again after another program changed it; this can be undone."""
+        self._read_again("Reload")
+
+    def reload_groups(self) -> None:
+        """Read the files of all groups again; this is no step. Raises DocumentError, and then nothing changes."""
+        bodies: dict[Path, Graph] = {}
+
+        def read_body(path: Path) -> Graph:
+            if path not in bodies:
+                bodies[path] = self._load(path)
+            return bodies[path]
+
+        self._session.migrate(lambda graph: folding.reread_groups(graph, read_body))
+
+    def save_group(self, id: str, path: str | Path, link: bool = False) -> None:
+        """Save what is in a group as a graph file; with `link`, the group comes from that file from now on."""
+        session, target = self._session, Path(path)
+        body = paths.rebase_paths(folding.find_group(session.graph, id).body(), str(target.parent))
+        paths.check_target(body, target)
+        if session.path and session.path.resolve() == target.resolve():
+            raise UsageError(f"{target}: this is the file of the document itself: choose another name")
+        save(body, target, sandbox=session.sandbox)
+        if link:
+            session.apply(LinkGroup(id, target, body))
+
+    def _load(self, path: str | Path) -> Graph:
+        return load(path, self._session.types, sandbox=self._session.sandbox)
+
+    def _read_again(self, label: str) -> None:
+        session = self._session
+        if session.path is None:
+            raise UsageError("this document has no file to read again")
+        root = self._load(session.path)
+        session.seal()
+        session.saved = root
+        session.code_files.reset()
+        session.apply(ReplaceDocument(label, root))
