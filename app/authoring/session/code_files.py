@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 from ...custom_nodes import Code
 from ...document.disk import read_text
@@ -15,9 +14,7 @@ from ...resources.atomic_write import write_text_atomically
 from ..commands.coding import LinkCodeFile, read_linked_code
 from ..edits import coding, paths
 from ..state.memo import Memo
-
-if TYPE_CHECKING:
-    from .session import Session
+from .undoable_document import UndoableDocument
 
 
 class CodeFiles:
@@ -27,7 +24,7 @@ class CodeFiles:
     that have their code in one file have the same text.
     """
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: UndoableDocument) -> None:
         self._session, self._sandbox = session, session.sandbox
         self._on_disk: dict[Path, str] = {}
         """What the files hold, as far as they were read."""

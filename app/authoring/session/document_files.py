@@ -12,47 +12,48 @@ from ...renderer.provenance.file_finder import load_graph_of_picture
 from ..commands.grouping import LinkGroup
 from ..commands.viewing import ReplaceDocument
 from ..edits import folding, layout, paths
+from .code_files import CodeFiles
+from .undoable_document import UndoableDocument
 
 if TYPE_CHECKING:
     from ..recovery import RecoveredWork
-    from .session import Session
 
 
 class DocumentFiles:
     """Opens and saves the document of a session, and the groups in it that come from files."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, session: UndoableDocument, code_files: CodeFiles) -> None:
+        self._session, self._code_files = session, code_files
 
     def new(self) -> None:
         """Begin an empty document: one output, and nothing to show yet."""
         root = layout.pin_places(Graph(outputs={"image": Output()}))
-        self._session.restart(root, saved=root)
+        self._restart(root, saved=root)
 
     def open(self, path: str | Path) -> None:
         """Open a graph file. Raises DocumentError; then everything is as before."""
         root = self._load(path)
-        self._session.restart(root, Path(path), saved=root)
+        self._restart(root, Path(path), saved=root)
 
     def open_copy(self, path: str | Path) -> None:
         """Open a graph file as a new document, as presets are: saving asks for a name. Raises DocumentError."""
         root = self._load(path)
-        self._session.restart(root, saved=root)
+        self._restart(root, saved=root)
 
     def open_graph_of_picture(self, path: str | Path) -> None:
         """Open the graph that rendered a picture, as a new document with the picture's name. Raises HalationError."""
         session = self._session
         root = load_graph_of_picture(Path(path), session.types, sandbox=session.sandbox)
-        session.restart(root, saved=root, title=Path(path).stem)
+        self._restart(root, saved=root, title=Path(path).stem)
 
     def open_text(self, text: str) -> None:
         """Open the text of a graph file as a document without a file. Raises DocumentError."""
         session = self._session
-        session.restart(loads(text, "text", catalogue=session.types, sandbox=session.sandbox))
+        self._restart(loads(text, "text", catalogue=session.types, sandbox=session.sandbox))
 
     def open_recovered(self, work: RecoveredWork) -> None:
         """Open work that was recovered, which is not saved yet; it keeps the file that it belongs to."""
-        self._session.restart(work.load(self._session.sandbox), work.path)
+        self._restart(work.load(self._session.sandbox), work.path)
 
     def save(self) -> None:
         """Save to the file that was opened. Raises UsageError if there is none."""
@@ -103,6 +104,10 @@ class DocumentFiles:
         if link:
             session.apply(LinkGroup(id, target, body))
 
+    def _restart(self, root: Graph, path: Path | None = None, saved: Graph | None = None, title: str = "") -> None:
+        self._code_files.reset()
+        self._session.restart(root, path, saved, title)
+
     def _load(self, path: str | Path) -> Graph:
         return load(path, self._session.types, sandbox=self._session.sandbox)
 
@@ -113,5 +118,5 @@ class DocumentFiles:
         root = self._load(session.path)
         session.seal()
         session.saved = root
-        session.code_files.reset()
+        self._code_files.reset()
         session.apply(ReplaceDocument(label, root))

@@ -6,7 +6,6 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from halation.nodes import Plain
 
@@ -16,10 +15,8 @@ from ...graph.keys import round_keys
 from ..edits import folding
 from ..edits.folding import GroupPath
 from ..edits.key_frames import list_key_frames, whole_key_frames
+from .document_state import DocumentState
 from .memo import Memo
-
-if TYPE_CHECKING:
-    from .open_document import OpenDocument
 
 MeasureFrames = Callable[[Graph, Mapping[str, str]], tuple[int, int]]
 """Finds the first and last frame of a graph with files bound to its inputs."""
@@ -34,7 +31,7 @@ class DocumentTime:
     `measure_frames` finds the range of a graph that does not state one; without it only keys count.
     """
 
-    def __init__(self, document: OpenDocument) -> None:
+    def __init__(self, document: DocumentState) -> None:
         self._document = document
         self._frame: int | None = None
         self._memo = Memo()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from ...errors import GraphError
 from ...graph import INPUTS, Port
@@ -11,10 +11,8 @@ from ..edits import folding
 from ..edits.element_id import ElementId
 from ..edits.folding import GroupPath
 from ..edits.ports import default_view, is_viewable, list_numbered_ports, output_ports
+from .document_state import DocumentState
 from .memo import Memo
-
-if TYPE_CHECKING:
-    from .open_document import OpenDocument
 
 Side = Literal["A", "B"]
 """The two sides of the viewer."""
@@ -26,7 +24,7 @@ class ViewedPorts:
     Only the keys 1 to 9 are saved with the document; which port is shown is not.
     """
 
-    def __init__(self, document: OpenDocument) -> None:
+    def __init__(self, document: DocumentState) -> None:
         self._document = document
         self._chosen: dict[tuple[GroupPath, Side], tuple[Port, ...]] = {}
         """For each graph and side the port that was chosen, then the names that it had before it was renamed."""
