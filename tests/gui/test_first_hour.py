@@ -76,13 +76,13 @@ def test_ctrl_enter_compiles_code_and_adds_no_line(gui) -> None:
         ui.click("code text")
         ui.ctx.key_press(chord("Ctrl+Home"))
         ui.wait(2)
-        lines = ui.session.code("code").text.count("\n")
+        lines = ui.session.code_files.find_code("code").text.count("\n")
         ui.keys("Ctrl+Enter")
         ui.wait(30)
-        assert ui.session.code("code").text.count("\n") == lines
+        assert ui.session.code_files.find_code("code").text.count("\n") == lines
         ui.keys("Enter")
         ui.wait(30)
-        assert ui.session.code("code").text.count("\n") == lines + 1
+        assert ui.session.code_files.find_code("code").text.count("\n") == lines + 1
 
     gui(body, presets.paths()[0])
 
@@ -137,7 +137,7 @@ def test_a_new_reader_without_a_file_is_no_error(gui) -> None:
         ui.settled()
         for kind in ("read_render", "read_image"):
             ui.session.apply(AddNode(kind))
-            ui.session.view_element(ui.session.active)
+            ui.session.views.show_element(ui.session.active)
             ui.settled()
             assert not ui.editor.preview.faults
             assert "no file is chosen" in ui.editor.preview.fault("A")

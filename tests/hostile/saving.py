@@ -53,11 +53,11 @@ def save_recovery() -> None:
 def save_session() -> None:
     """Edits and saves of a document, under its own name and a new one."""
     session = Session(sandbox=UNRESTRICTED)
-    session.open("graph.json")
+    session.files.open("graph.json")
     for number in range(3):
         session.apply(SetValue(Port("n", "size"), 10.0 + number))
-        session.save()
-    session.save_as("copy.json")
+        session.files.save()
+    session.files.save_as("copy.json")
 
 
 if __name__ == "__main__":

@@ -146,7 +146,7 @@ class FrameUpdater:
             editor.log.add(f"{change.path.name} was deleted or moved: {consequence}", "warning")
             if change.kind == "picture":
                 editor.preview.refresh()
-                editor.session.look_again()
+                editor.session.time.remeasure()
             return
         match change.kind:
             case "graph":
