@@ -1,4 +1,4 @@
-"""`halation nodes --check`: what nodes of plug-ins promise, and whether they keep it."""
+"""`halation nodes --check`: checks that nodes of plug-ins keep the promises of all nodes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
 
 
 def _find_file_faults(plugin: Plugin) -> Iterator[tuple[str, list[str]]]:
-    """What is wrong in each shader file of a plug-in."""
+    """The faults in each shader file of a plug-in."""
     from ..compiler import load_library
     from ..regression.node_promises import find_file_faults
 

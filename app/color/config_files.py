@@ -1,8 +1,9 @@
-"""The files that OpenColorIO reads: tables, and what tables and configs name. It is given bytes, and no paths to open.
+"""The files that OpenColorIO reads: tables, and files that tables and configs name. OpenColorIO gets their bytes, not
+their paths.
 
 A table in Academy Common LUT Format can refer to other files (`<Reference path="...">`), and a config names tables
-through search paths and variables. So whatever such a file names is opened by `SandboxedFiles`, which OpenColorIO asks
-in place of the disk. It checks the sandbox, and refuses what is no regular file: OpenColorIO would wait for a FIFO.
+through search paths and variables. OpenColorIO asks `SandboxedFiles` for these files, instead of the disk. It checks
+the sandbox and refuses special files, since OpenColorIO would wait for a FIFO.
 """
 
 from __future__ import annotations
@@ -17,26 +18,26 @@ from ..resources.input_files import check_file, fingerprint, open_file, read_byt
 from ..resources.sandbox import Sandbox
 
 _ARCHIVE = b"PK"
-"""How a zip file begins (PKWARE APPNOTE): OpenColorIO reads what an archive names from the archive alone."""
+"""How a zip file begins (PKWARE APPNOTE). OpenColorIO reads the files that an archive names from the archive only."""
 
 _PROLOG = 4096
-"""Bytes in which the first "<" of an XML file is looked for: before it there may be white space only."""
+"""Bytes in which the first "<" of an XML file is searched. Chosen by judgement: only white space may precede it."""
 
 _BLANK = b"\x00\t\n\r \xef\xbb\xbf\xfe\xff"
 """White space and marks of byte order (XML 1.0, section 2.3 and appendix F), with the zeros of UTF-16 and UTF-32."""
 
 _NO_TABLE = b"no table"
-"""What OpenColorIO is given in place of a file that it may not read."""
+"""The text that OpenColorIO gets instead of a file that it may not read."""
 
 _NO_TEXT = "\ufffd"
 """What Python decodes bytes to that are not UTF-8."""
 
 
 def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:
-    """The config in a file, and what opens its tables: keep that for as long as the config, which does not.
+    """The config in a file, and the object that opens its tables. Keep that object as long as the config.
 
-    Without the second, None for an archive, OpenColorIO opens files itself. Raises InputError for a file that cannot be
-    read, OpenColorIO's Exception for no config.
+    The object is None for an archive, whose files OpenColorIO opens itself. Raises InputError for a file that cannot be
+    read, OpenColorIO's Exception for a file that is no config.
     """
     check_file(source, sandbox)
     content = read_bytes(source, sandbox)
@@ -53,7 +54,7 @@ def open_config(api: Any, source: str, sandbox: Sandbox) -> tuple[Any, Any]:
 
 
 def find_config_fault(config: Any, sandbox: Sandbox) -> str:
-    """Why a config may not be used, as the rest of a sentence about it; "" if it may be."""
+    """Why a config may not be used, as the rest of a sentence; "" if it may be used."""
     for table in _find_tables(config) if sandbox.root else ():
         if reason := sandbox.fault(table):
             return f"its table {table} {reason}"
@@ -61,28 +62,28 @@ def find_config_fault(config: Any, sandbox: Sandbox) -> str:
 
 
 def may_name_files(path: str, sandbox: Sandbox) -> bool:
-    """True for a table that may refer to other files, whatever its name is: one that begins like XML.
+    """True for a table that may refer to other files: one that begins like XML, whatever its name is.
 
-    Raises InputError for what is no regular file; OSError.
+    Raises InputError for a special file; OSError.
     """
     with open_file(path, sandbox) as file:
         return file.read(_PROLOG).lstrip(_BLANK)[:1] in (b"<", b"")
 
 
 def make_sandboxed_files(sandbox: Sandbox) -> Any:
-    """The files of the disk as OpenColorIO may read them. `faults` are sentences about those that it may not."""
+    """Opens files for OpenColorIO. `faults` are sentences about files that it may not read."""
     return _define_sandboxed_files()(sandbox)
 
 
 @cache
 def _define_sandboxed_files() -> type[Any]:
-    """The class, which needs OpenColorIO to be loaded."""
+    """The class, which can be made only when OpenColorIO is loaded."""
     import PyOpenColorIO
 
     api: Any = PyOpenColorIO
 
     class SandboxedFiles(api.PyConfigIOProxy):
-        """What OpenColorIO asks in place of the disk."""
+        """The interface by which OpenColorIO asks for files."""
 
         def __init__(self, sandbox: Sandbox) -> None:
             super().__init__()
@@ -90,7 +91,7 @@ def _define_sandboxed_files() -> type[Any]:
             self.faults: list[str] = []
 
         def getConfigData(self) -> str:
-            """The text of a config, which is given as it is."""
+            """The text of a config, unchanged."""
             return ""
 
         def getFastLutFileHash(self, path: str) -> str:
@@ -105,7 +106,8 @@ def _define_sandboxed_files() -> type[Any]:
                 return ""
 
         def getLutData(self, path: str) -> list[int]:
-            """The bytes of a file; never none, and nothing is raised: OpenColorIO 2.6 would open the file itself."""
+            """The bytes of a file. It never returns None and raises nothing, since OpenColorIO 2.6 would then open the
+            file itself."""
             try:
                 return list(read_bytes(path, self._sandbox) or _NO_TABLE)
             except InputError as fault:
@@ -116,7 +118,7 @@ def _define_sandboxed_files() -> type[Any]:
 
 
 def _find_tables(config: Any) -> Iterator[str]:
-    """The tables that its color spaces, looks, views and named transforms name, where they would be found."""
+    """The paths of the tables that color spaces, looks, views and named transforms of a config name."""
     import PyOpenColorIO
 
     api: Any = PyOpenColorIO
@@ -138,7 +140,7 @@ def _find_tables(config: Any) -> Iterator[str]:
 
 
 def _find_sources(api: Any, transform: Any) -> Iterator[str]:
-    """The names of files in a transform, groups looked into."""
+    """The file names in a transform, also inside groups."""
     if isinstance(transform, api.FileTransform):
         yield transform.getSrc()
     elif isinstance(transform, api.GroupTransform):

@@ -1,7 +1,7 @@
-"""Displays, views and looks: color on its way to a screen.
+"""Displays, views and looks: color for a screen.
 
 A view of a display is a transform that a config offers, such as ACES tone mapping for an sRGB screen. `none` is a view
-of our own: it only encodes as sRGB. Where nobody chose a config, views come from OpenColorIO's built-in one and the
+of Halation: it only encodes as sRGB. If nobody chose a config, views come from OpenColorIO's built-in config and the
 working space from its studio config, so the processor is made across both (`_make_builtin_view_processor`).
 """
 
@@ -32,7 +32,7 @@ _PLAIN_VIEW = "Un-tone-mapped"
 
 
 def list_displays(manager: ColorManager | None = None) -> tuple[str, ...]:
-    """The kinds of screen that pictures can be shown on, the default first.
+    """The displays of the config, the default first.
 
     Raises:
         GraphError, UsageError: no config.
@@ -109,7 +109,7 @@ def to_display(
     look: str = "",
     manager: ColorManager | None = None,
 ) -> Array:
-    """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.
+    """Working-space pixels [h, w, 3 or 4] as a display shows them, sRGB by default, in the same shape.
 
     Four channels are premultiplied on the way in and straight on the way out, since no display transform is
     linear; color without alpha (a glow over nothing) stays as bright as it is. NaN becomes black.
@@ -129,7 +129,7 @@ def to_display(
 
 
 def make_display_processor(view: str, display: str, look: str = "", manager: ColorManager | None = None) -> Any:
-    """From the working space to what a display shows. A `look` stands in place of those of the view.
+    """The processor from the working space to a display. A `look` replaces the looks of the view.
 
     Raises:
         UsageError: unknown view, display or look.
@@ -149,7 +149,7 @@ def make_display_processor(view: str, display: str, look: str = "", manager: Col
 
 @lru_cache(maxsize=64)
 def _make_plain_processor(manager: ColorManager) -> Any:
-    """From the working space to sRGB."""
+    """The processor from the working space to sRGB."""
     return manager.attempt(
         lambda: _make_builtin_view_processor(manager, load_builtin_config(BUILT_IN), _DISPLAY, _PLAIN_VIEW)
     )

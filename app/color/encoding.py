@@ -1,4 +1,4 @@
-"""Color on its way out: through a view for people, or as the numbers of a color space for programs."""
+"""Encodes color for a file: through a view for people, or as numbers of a color space for programs."""
 
 from __future__ import annotations
 
@@ -17,23 +17,24 @@ _USE_DISPLAY_NAME = "<USE_DISPLAY_NAME>"
 
 
 class Encoding(Struct, frozen=True):
-    """How color leaves. Formats for people show it through a `view` of a `display`, with a `look` in place of those of
-    the view; with a `space` every format holds the numbers of that color space."""
+    """How color is written. Formats for people show it through a `view` of a `display`; a `look` replaces the looks of
+    the view. With a `space`, every format holds numbers of that color space."""
 
     view: str = ""
     display: str = ""
     look: str = ""
     space: str = ""
     manager: ColorManager = field(default_factory=get_default_color_manager)
-    """How colors are managed; by default as where no graph says so."""
+    """The color manager; by default the one for graphs without color settings."""
 
     @property
     def is_plain(self) -> bool:
-        """True for the numbers of linear Rec.709, as they are."""
+        """True if linear Rec.709 is written unchanged."""
         return not self.space and self.manager.is_plain
 
     def check_names(self) -> None:
-        """Refuse what there is not. Raises UsageError; GraphError where the graph's own config is at fault."""
+        """Raise UsageError for a view, display, look or space that does not exist; GraphError if the graph's own config
+        is at fault."""
         if self.space and (self.view or self.display or self.look):
             raise UsageError("a picture is written through a view or into a color space: give one of them")
         if self.space:
@@ -42,20 +43,20 @@ class Encoding(Struct, frozen=True):
             check_view(self.view, self.display, self.look, self.manager)
 
     def to_numbers(self, array: Array) -> Array:
-        """Working-space color [h, w, c], premultiplied where it has four channels, in the space that is written."""
+        """Working-space color [h, w, c] in the color space that is written; premultiplied if it has four channels."""
         if self.is_plain or not self.space or array.shape[2] < 3:
             return array
         return self._convert(array, self._target)
 
     def to_radiance(self, array: Array) -> Array:
-        """The same for Radiance files, which hold linear Rec.709 unless somebody says otherwise."""
+        """The same for Radiance files, which hold linear Rec.709 unless a space is given."""
         if self.is_plain:
             return array
         target = self._target if self.space else self.manager.find(LINEAR_REC709)
         return self._convert(array, target or OcioColorSpace(LINEAR_REC709, False))
 
     def to_codes(self, array: Array, bits: int) -> Array:
-        """Color [h, w, 3 or 4] as integers: through the view, or in the color space; alpha is straight."""
+        """Color [h, w, 3 or 4] as integers, through the view or in the color space; alpha is straight."""
         depth = 8 if bits == 8 else 16
         if not self.space:
             encoded = to_display(
@@ -77,21 +78,21 @@ class Encoding(Struct, frozen=True):
 
     @property
     def header_space(self) -> str:
-        """What a header calls the space of `numbers`."""
+        """The name of the space of `numbers` in a header."""
         if self.is_plain:
             return LINEAR_REC709
         return self.manager.find_header_name(self._target) if self.space else self.manager.header_name
 
     @property
     def header_chromaticities(self) -> tuple[float, ...]:
-        """The chromaticities of `numbers`, where they are not those that a header without any means."""
+        """The chromaticities of `numbers`, if they are not those of a header without any."""
         if self.is_plain or self.header_space == LINEAR_REC709:
             return ()
         return find_chromaticities(self.manager, self._target if self.space else self.manager.working)
 
     @property
     def display_space(self) -> str:
-        """What a header calls the space of `codes`."""
+        """The name of the space of `codes` in a header."""
         if self.space:
             return self.manager.find_header_name(self._target)
         if not self.display and self.manager.is_plain:
@@ -130,5 +131,5 @@ class Encoding(Struct, frozen=True):
 
 
 def choose_png_space(name: str) -> str:
-    """A space that PNG has chunks for; "" for others, which would be told wrongly."""
+    """The color space, if PNG has chunks for it; "" for others, which PNG would name wrongly."""
     return name if name in _IN_PNG else ""

@@ -1,4 +1,4 @@
-"""Which color space the numbers of a file are in, and how that is known."""
+"""Finds the color space of a file, and the reason for it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .header_space import REC709, HeaderSpace
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace
 
 AUTO = ("", "auto")
-"""What stands for finding out."""
+"""Values that ask to recognize the space."""
 
 SRGB = "srgb_rec709_scene"
 _LINEAR_TAGS = ("linear", "scene_linear")
@@ -37,10 +37,10 @@ and encoders round 1 / 2.2 to five digits."""
 
 
 class ColorHints(Struct, frozen=True):
-    """What a header says of color: a tag, what its format means without one, an ICC profile, the exponent that
-    decodes it, chromaticities, and whether it holds integers.
+    """The facts of a header about color: a tag, the meaning of the format without a tag, an ICC profile, the exponent
+    that decodes it, chromaticities, and whether it holds integers.
 
-    `is_own_tag`: whoever made the file wrote the tag; else OpenImageIO concluded it from other fields.
+    `is_own_tag`: the author of the file wrote the tag; otherwise OpenImageIO concluded it from other fields.
     """
 
     tag: str = ""
@@ -53,15 +53,15 @@ class ColorHints(Struct, frozen=True):
 
     @property
     def profile_space(self) -> str:
-        """The space of the ICC profile, "" for one that is not known."""
+        """The space of the ICC profile, "" if it is unknown."""
         return _PROFILES.get(self.profile, "")
 
 
 class FileSpace(Struct, frozen=True):
-    """A color space by name, and how it is known. Without a `space` or `described` the numbers are taken as they are.
+    """A color space by name, and the reason for it. Without a `space` or `described` the numbers are used unchanged.
 
-    `described` is one that only the numbers of the header define, `warning` the rest of a sentence about what of the
-    header could not be used, "" for nothing.
+    `described` is a space that the numbers of the header define. `warning` is the rest of a sentence about a part of
+    the header that cannot be used, or "".
     """
 
     name: str
@@ -72,8 +72,8 @@ class FileSpace(Struct, frozen=True):
 
 
 def find_file_space(path: str, hints: ColorHints, managed: ColorManager, requested: str = "") -> FileSpace:
-    """The space of color in a file: what is requested, what its header says, what a rule of the config says, else what
-    is usual for such files: sRGB for integers, the working space for the rest.
+    """The color space of a file: the requested one, that of its header, that of a file rule of the config, else the
+    usual one: sRGB for integers, the working space for the rest.
 
     Raises:
         GraphError: what is requested is unknown.
@@ -97,7 +97,7 @@ def find_file_space(path: str, hints: ColorHints, managed: ColorManager, request
 
 
 def _usual_space(hints: ColorHints, managed: ColorManager, is_doubtful: bool) -> FileSpace:
-    """What files of this kind are in where nobody says otherwise."""
+    """The usual space of files of this kind."""
     usual = hints.usual or (SRGB if hints.integer else "")
     if usual == SRGB:
         reason = "integers are sRGB unless someone says otherwise"
@@ -110,7 +110,7 @@ def _usual_space(hints: ColorHints, managed: ColorManager, is_doubtful: bool) ->
 
 
 def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | None:
-    """The space of that name; None for finding out. Raises GraphError for one that nobody knows."""
+    """The space of that name; None if it shall be recognized. Raises GraphError for an unknown name."""
     if name in AUTO:
         return None
     space = managed.find(name)
@@ -120,7 +120,7 @@ def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | N
 
 
 def _read_name(path: str, hints: ColorHints, managed: ColorManager) -> FileSpace | None:
-    """The space that the header names; None if it names none, or one that only OpenImageIO concluded and nobody knows.
+    """The space that the header names; None if it names none, or an unknown one that only OpenImageIO concluded.
 
     Raises:
         InputError: the author of the file wrote a name that is unknown.
@@ -168,7 +168,7 @@ def _read_chromaticities(primaries: tuple[float, ...], managed: ColorManager) ->
 
 
 def _apply_file_rule(path: str, managed: ColorManager) -> FileSpace | None:
-    """What a rule of the config says of a path; the last one, for whatever matches no other, says nothing."""
+    """The space that a file rule of the config gives a path. The last rule, which matches every path, is ignored."""
     config = managed.config
     full = Path(path).absolute().as_posix()
     if config.filepathOnlyMatchesDefaultRule(full):

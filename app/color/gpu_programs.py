@@ -1,4 +1,4 @@
-"""Changes of color as GLSL, written by OpenColorIO: what it computes on the CPU, exactly."""
+"""Color changes as GLSL, written by OpenColorIO. They compute exactly what it computes on the CPU."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def write_color_change(change: ColorChange, sandbox: Sandbox) -> ColorProgram:
 
 @cache
 def list_table_endings() -> frozenset[str]:
-    """Endings of names of files that hold tables of colors, such as `.cube`."""
+    """File name endings of color tables, such as `.cube`."""
     return frozenset(f".{ending.lower()}" for _, ending in load_ocio().FileTransform.getFormats())
 
 
@@ -100,7 +100,7 @@ def _make_file_processor(change: LookupFile, sandbox: Sandbox) -> Any:
     if may_name_files(change.path, sandbox):
         files = make_sandboxed_files(sandbox)
         config.setConfigIOProxy(files)
-    api.ClearAllCaches()  # files that have changed are to be read again; a config would remember them, too
+    api.ClearAllCaches()  # changed files are read again; a config would keep the old ones
     direction = api.TRANSFORM_DIR_INVERSE if change.inverse else api.TRANSFORM_DIR_FORWARD
     try:
         with name_for_library(change.path) as name:

@@ -1,4 +1,4 @@
-"""What is wrong with how a graph manages color, before anything is read."""
+"""Finds faults in the color settings of a graph, before any file is read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .management import get_color_manager
 
 @dataclass(frozen=True)
 class ColorFault:
-    """A fault, the end of the graph that has it, if any, and where the file of the graph says so."""
+    """A fault, the input or output of the graph that has it, if any, and its place in the file."""
 
     error: HalationError
     node: str
@@ -26,7 +26,8 @@ class ColorFault:
 
 
 def find_color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
-    """A config that cannot be read, a working space, views of outputs and color spaces of inputs that nobody knows."""
+    """Yields a config that cannot be read, an unknown working space, unknown views of outputs and unknown color spaces
+    of inputs."""
     color = color_settings(graph)
     manager = get_color_manager(color, sandbox)
     views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}

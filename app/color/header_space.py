@@ -14,10 +14,11 @@ Gamut = tuple[float, ...]
 REC709: Gamut = (0.640, 0.330, 0.300, 0.600, 0.150, 0.060, 0.3127, 0.3290)
 
 _BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
-"""From CIE XYZ to the responses of cones in which whites are adapted: Lam 1985, as in OpenColorIO's ACES matrices."""
+"""From CIE XYZ to cone responses, in which white points are adapted: Lam 1985, as in OpenColorIO's ACES matrices."""
 
 _LEAST_AREA = 1e-4
-"""Twice the smallest area of a triangle of primaries; that of Rec.709 is 0.22. A smaller one is a damaged header."""
+"""Twice the smallest area of a triangle of primaries. That of Rec.709 is 0.22; a triangle of less than a thousandth of
+that is a damaged header."""
 
 _FILM_BLACK, _FILM_WHITE, _FILM_STEP = 95.0, 685.0, 0.002 / 0.6
 """Codes of 10 bits for black and for 90 % white, and log exposure for each code: 0.002 of printing density, at the
@@ -25,7 +26,7 @@ gamma of negative film (Kodak, Conversion of 10-bit Log Film Data To 8-bit Linea
 
 
 class HeaderSpace(Struct, frozen=True, dict=True):
-    """Linear light of these primaries, raised to 1 / `gamma`, or on the logarithmic curve of Kodak's film scans."""
+    """Linear light of these primaries, or its power 1 / `gamma`, or on Kodak's logarithmic curve for film scans."""
 
     gamut: Gamut = REC709
     gamma: float = 1.0
@@ -33,7 +34,7 @@ class HeaderSpace(Struct, frozen=True, dict=True):
 
     @property
     def is_linear(self) -> bool:
-        """True without a curve."""
+        """True if it has no curve."""
         return self.gamma == 1.0 and not self.is_film
 
     @property
@@ -47,7 +48,7 @@ class HeaderSpace(Struct, frozen=True, dict=True):
 
     @cached_property
     def is_valid(self) -> bool:
-        """False for numbers that no colors have: primaries on one line, a white that cannot be mixed from them."""
+        """False for impossible chromaticities: primaries on one line, a white that cannot be mixed from them."""
         return 0.1 <= self.gamma <= 10.0 and make_gamut_matrix(self.gamut) is not None
 
     def to_rec709(self, rgb: Array) -> Array:
@@ -65,7 +66,7 @@ class HeaderSpace(Struct, frozen=True, dict=True):
 
 
 def primaries_to_xyz(gamut: Gamut) -> Array:
-    """The matrix to CIE XYZ of primaries by their chromaticities, white being (1, 1, 1) (SMPTE RP 177).
+    """The matrix from primaries, given by their chromaticities, to CIE XYZ, with white at (1, 1, 1) (SMPTE RP 177).
 
     Primaries of CIE XYZ itself have a y of 0.
     """
@@ -76,11 +77,11 @@ def primaries_to_xyz(gamut: Gamut) -> Array:
 
 @lru_cache(maxsize=64)
 def make_gamut_matrix(gamut: Gamut) -> Array | None:
-    """From linear colors of these primaries to linear Rec.709, float32; None for numbers that no colors have.
+    """The matrix from linear colors of these primaries to linear Rec.709, float32; None for impossible chromaticities.
 
-    A white other than D65 is adapted to it by Bradford's method, as OpenColorIO's configs do. Primaries of CIE XYZ with
-    its equal-energy white are no display whose white could be adapted: their numbers are tristimulus values of the
-    light itself, so they are only changed to the primaries of Rec.709.
+    A white point other than D65 is adapted to it by Bradford's method, as OpenColorIO's configs do. CIE XYZ with its
+    equal-energy white is not a display whose white could be adapted: its numbers are tristimulus values of the light
+    itself, so only the primaries change.
     """
     if len(gamut) != 8 or not np.isfinite(gamut).all() or gamut[7] <= 0.0:
         return None
@@ -97,12 +98,12 @@ def make_gamut_matrix(gamut: Gamut) -> Array | None:
 
 
 def is_tristimulus(gamut: Gamut) -> bool:
-    """True for CIE XYZ: its primaries, and the white of equal energy."""
+    """True for CIE XYZ with the white of equal energy."""
     return np.allclose(gamut, (1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0), atol=1e-3)
 
 
 def _adapt_white(white: tuple[float, ...]) -> Array:
-    """From CIE XYZ under this white to CIE XYZ under D65."""
+    """The matrix from CIE XYZ under this white to CIE XYZ under D65."""
     if np.allclose(white, REC709[6:], atol=1e-6):
         return np.eye(3)
     here, there = (_BRADFORD @ np.array((x / y, 1.0, (1.0 - x - y) / y)) for x, y in (white, REC709[6:]))

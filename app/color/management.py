@@ -1,15 +1,15 @@
-"""How colors are managed: a config of OpenColorIO, and the working space that pictures are in between nodes.
+"""Color management: a config of OpenColorIO, and the working space, in which pictures are between nodes.
 
-Which config: the one that the graph names, then the one that the environment variable OCIO names, then OpenColorIO's
-built-in one. Which working space: the one that the graph names, else linear Rec.709.
+The config is the one that the graph names, then the one that the environment variable OCIO names, then OpenColorIO's
+built-in one. The working space is the one that the graph names, else linear Rec.709.
 
-- Nearly every graph says nothing about color. Then sRGB files are decoded by a table and OpenColorIO is not even loaded
-  (`is_plain`): it takes longer to import than a small graph takes to render.
-- A name is looked up in the config first, as name, alias or role. What it does not know is looked up in OpenColorIO's
-  studio config, which knows cameras, and brought over through ACES2065-1, for which configs have a role
-  (aces_interchange). So a space of the studio config works with every config that has that role (`ColorSpace.own`).
-- Color is linear between nodes: a working space that is not is an error, since light is added and blurred there.
-- Errors name whoever is at fault: the graph (GraphError) for its own config, the environment (UsageError) for $OCIO.
+- Most graphs have no color settings. Then sRGB files are decoded by a table and OpenColorIO is not loaded (`is_plain`):
+  importing it takes longer than rendering a small graph.
+- A name is looked up in the config first, as name, alias or role, then in OpenColorIO's studio config, which has the
+  spaces of cameras. A space of the studio config is converted through ACES2065-1, for which configs have a role
+  (aces_interchange), so it works with every config that has that role (`ColorSpace.own`).
+- Color is linear between nodes: a working space that is not linear is an error, since light is added and blurred there.
+- Errors name the source of the fault: the graph (GraphError) for its config, the environment (UsageError) for $OCIO.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _DATA_NAMES = ("raw", "data", "unknown", "none")
 
 
 class OcioColorSpace(Struct, frozen=True):
-    """A color space of a config; `own` is False for one of the studio config. `data` are numbers without color."""
+    """A color space of a config; `own` is False for one of the studio config. `data` means numbers without color."""
 
     name: str
     own: bool
@@ -50,7 +50,7 @@ class OcioColorSpace(Struct, frozen=True):
 class ColorManager:
     """A config, and the working space in it.
 
-    Asking for anything loads the config, which raises GraphError or UsageError where it cannot be read.
+    Its facts are read on first use, which loads the config; that raises GraphError or UsageError if it cannot be read.
     """
 
     def __init__(
@@ -63,27 +63,27 @@ class ColorManager:
         sandbox: Sandbox,
     ) -> None:
         self.source, self.is_chosen, self._sandbox = source, chosen, sandbox
-        """Where the config comes from, and whether anyone asked for it."""
+        """The source of the config, and whether the user chose it."""
         self.mark = f"{source} {version} {working}"
-        """Changes when the config or the working space does."""
+        """A mark that changes when the config or the working space does."""
         self._error, self._working_name = fault, working
         self._files: Any = None
-        """What opens the tables of the graph's own config."""
+        """Opens the tables of the graph's own config."""
         self._spaces_by_name: dict[str, OcioColorSpace | None] = {}
 
     @property
     def is_plain(self) -> bool:
-        """True for linear Rec.709 in the built-in config: reading sRGB needs no library then."""
+        """True for linear Rec.709 in the built-in config: reading sRGB then needs no library."""
         return not self.is_chosen and self._working_name.casefold() in _DEFAULT_NAMES
 
     @property
     def where(self) -> str:
-        """What messages call the config."""
+        """The name of the config in messages."""
         return f"$OCIO: {self.source}" if self._error is UsageError and self.is_chosen else self.source
 
     @property
     def digest(self) -> str:
-        """The same wherever colors are managed in the same way: "" for linear Rec.709 in the built-in config."""
+        """A key that is equal for equal color management: "" for linear Rec.709 in the built-in config."""
         if self.is_plain:
             return ""
         if self.source.startswith(_BUILT_IN_MARK):
@@ -95,17 +95,18 @@ class ColorManager:
 
     @cached_property
     def config(self) -> Any:
-        """What displays, views, looks and file rules come from."""
+        """The config of displays, views, looks and file rules."""
         return self._read_config(self.source)
 
     @cached_property
     def spaces(self) -> Any:
-        """What color spaces come from: where nobody chose a config the studio one, for it knows cameras too."""
+        """The config of color spaces: without a chosen config the studio one, since it has the spaces of cameras
+        too."""
         return self.config if self.is_chosen else load_studio_config()
 
     @cached_property
     def working(self) -> OcioColorSpace:
-        """The space between nodes. Raises GraphError for one that nobody knows."""
+        """The working space. Raises GraphError if it is unknown."""
         if self._working_name.casefold() not in _DEFAULT_NAMES:
             space = self.find(self._working_name)
             if space is None or space.data:
@@ -128,11 +129,11 @@ class ColorManager:
 
     @cached_property
     def header_name(self) -> str:
-        """What a header calls the working space."""
+        """The name of the working space in a header."""
         return self.find_header_name(self.working)
 
     def find(self, name: str) -> OcioColorSpace | None:
-        """A space by name, alias or role in any case, or by the name that nodes call it; None if nobody knows it."""
+        """A space by name, alias or role, in any case, or by its name in nodes; None if it is unknown."""
         if name.casefold() == WORKING_SPACE:
             return self.working
         if name not in self._spaces_by_name:
@@ -155,32 +156,32 @@ class ColorManager:
         )
 
     def list_spaces(self) -> tuple[str, ...]:
-        """The color spaces of the config that pictures can be in."""
+        """The color spaces of the config that pictures can have."""
         api = load_ocio()
         kinds = (api.SEARCH_REFERENCE_SPACE_SCENE, api.SEARCH_REFERENCE_SPACE_DISPLAY)
         return tuple(name for kind in kinds for name in self.spaces.getColorSpaceNames(kind, api.COLORSPACE_ACTIVE))
 
     def suggest_space(self, name: str) -> str:
-        """The rest of a sentence about a space that nobody knows."""
+        """The rest of a sentence about an unknown space."""
         names = {word.casefold(): word for word in (*SPACES, *self.spaces.getRoleNames(), *self.list_spaces())}
         close_names = difflib.get_close_matches(name.casefold(), names, 1, 0.5)
         start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
         return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
     def make_processor(self, source: OcioColorSpace, target: OcioColorSpace) -> Any:
-        """From one space to another. Raises GraphError or UsageError where the config cannot say how."""
+        """The processor from one space to another. Raises GraphError or UsageError if the config has no conversion."""
         if source.data or target.data or source == target:
             return self._run(lambda: load_ocio().Config.CreateRaw().getProcessor(load_ocio().MatrixTransform()))
         return self._run(lambda: self._make_processor(source, target))
 
     def find_header_name(self, space: OcioColorSpace) -> str:
-        """What a header calls a space: its interchange name if there is one."""
+        """The name of a space in a header: its interchange name if it has one."""
         config_space = (self.spaces if space.own else load_studio_config()).getColorSpace(space.name)
         interop_name = str(getattr(config_space, "getInteropID", str)() or "") if config_space else ""
         return interop_name or space.name
 
     def bridge_to_views(self) -> tuple[Any, str]:
-        """What brings the working space into the config of the views, and the space there."""
+        """The transform from the working space to the config of the views, and the space there."""
         group, working = load_ocio().GroupTransform(), self.working
         if space := self.config.getColorSpace(working.name) if working.own or not self.is_chosen else None:
             return group, space.getName()
@@ -190,7 +191,7 @@ class ColorManager:
         return group, inside.name
 
     def attempt(self, make: Any) -> Any:
-        """What OpenColorIO makes, or its complaint about the config as a sentence."""
+        """The result of a call of OpenColorIO; its complaint about the config is raised as a sentence."""
         return self._run(make)
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -202,7 +203,7 @@ class ColorManager:
         return load_ocio().Config.GetProcessorFromConfigs(first, source.name, second, target.name)
 
     def _find_equal_space(self, studio_space: Any) -> OcioColorSpace | None:
-        """A space of the config that computes the same under another name, where OpenColorIO finds one."""
+        """A space of the config that computes the same under another name, if OpenColorIO finds one."""
         if not self.is_chosen or studio_space.isData():
             return None
         try:
@@ -237,7 +238,7 @@ class ColorManager:
             folder = Path(source).parent
             near = difflib.get_close_matches(Path(source).name, _list_names(folder), 1)
             raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
-        if not is_utf8(source):  # its tables lie beside it, so no link elsewhere can stand for it
+        if not is_utf8(source):  # its tables lie beside it, so links must be resolved first
             raise self._error(f"{self._describe_source(source)}: no color config can have such a name: it is not UTF-8")
         try:
             if source.startswith("ocio://"):
@@ -245,7 +246,7 @@ class ColorManager:
             if self._error is UsageError:  # the config of $OCIO, which the user trusts
                 config = load_ocio().Config.CreateFromFile(source)
                 if not Path(source).read_bytes().isascii():
-                    config.serialize()  # names that are no UTF-8 are found here, and not when one is asked for
+                    config.serialize()  # names that are not UTF-8 are found here, not on first use
                 return config
             config, self._files = open_config(load_ocio(), source, self._sandbox)
             if self._files and (reason := find_config_fault(config, self._sandbox)):
@@ -265,7 +266,8 @@ class ColorManager:
 
 
 def get_color_manager(color: ColorSettings, sandbox: Sandbox) -> ColorManager:
-    """How colors are managed by these settings, whose config is a path as it stands; the same one while that stays.
+    """The color manager for these settings, in which the config is a resolved path. It is the same one as long as the
+    file does not change.
 
     A config that $OCIO names is the user's and may lie outside of the sandbox.
     """
@@ -278,7 +280,7 @@ def get_color_manager(color: ColorSettings, sandbox: Sandbox) -> ColorManager:
 
 
 def get_default_color_manager() -> ColorManager:
-    """How colors are managed where no graph says so: by the config that $OCIO names, else the built-in one."""
+    """The color manager for graphs without color settings: for the config that $OCIO names, else the built-in one."""
     return get_color_manager(ColorSettings(), UNRESTRICTED)
 
 
@@ -303,7 +305,7 @@ def _config_version(source: str, sandbox: Sandbox) -> str:
 
 @cache
 def load_ocio() -> Any:
-    """OpenColorIO, which comes without types. It is quiet: what is wrong is said in sentences of ours."""
+    """The module of OpenColorIO, which has no types. It is quiet: errors become sentences of Halation."""
     import PyOpenColorIO
 
     api: Any = PyOpenColorIO
@@ -313,7 +315,7 @@ def load_ocio() -> Any:
 
 
 def ocio_errors() -> tuple[type[Exception], ...]:
-    """What OpenColorIO raises."""
+    """The exception that OpenColorIO raises."""
     return load_ocio().Exception, load_ocio().ExceptionMissingFile, UnicodeDecodeError
 
 
@@ -324,7 +326,7 @@ def load_builtin_config(name: str) -> Any:
 
 
 def load_studio_config() -> Any:
-    """The config whose names changes of space go by: it knows what cameras write."""
+    """The config whose names are used for color changes: it has the spaces of cameras."""
     return load_builtin_config(_STUDIO)
 
 
@@ -335,8 +337,8 @@ def list_builtin_configs() -> tuple[str, ...]:
 
 
 def describe_ocio_error(error: Exception) -> str:
-    """The first line of what OpenColorIO complains of, without its period."""
-    is_quoting = isinstance(error, UnicodeDecodeError)  # the complaint quotes a file that is no UTF-8
+    """The first line of a complaint of OpenColorIO, without its period."""
+    is_quoting = isinstance(error, UnicodeDecodeError)  # the complaint quotes a file that is not UTF-8
     text = error.object.decode("utf-8", "replace") if is_quoting else str(error)
     lines = text.strip().splitlines()
     return lines[0].rstrip(".") if lines else "OpenColorIO gave no reason"

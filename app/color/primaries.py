@@ -1,4 +1,4 @@
-"""The primaries of the working space, as shaders and headers want them."""
+"""The primaries of the working space, for shaders and headers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ digits change products with an inverse by 5e-5. The closest two known gamuts, AP
 
 
 def find_working_space(manager: ColorManager) -> WorkingSpace | None:
-    """What shaders know of the working space; None is linear Rec.709.
+    """The constants of the working space for shaders; None for linear Rec.709.
 
     Raises:
         GraphError: nobody knows the space, or it is not linear.
@@ -30,7 +30,7 @@ def find_working_space(manager: ColorManager) -> WorkingSpace | None:
 
 
 def find_chromaticities(manager: ColorManager, space: OcioColorSpace) -> tuple[float, ...]:
-    """x and y of red, green, blue and white of a linear space that the world has a name for; else nothing."""
+    """x and y of red, green, blue and white of a linear space with a known name; else nothing."""
     if space.data:
         return ()
     name = manager.find_header_name(space)
@@ -39,7 +39,7 @@ def find_chromaticities(manager: ColorManager, space: OcioColorSpace) -> tuple[f
 
 @lru_cache(maxsize=16)
 def _make_working_space(manager: ColorManager) -> WorkingSpace | None:
-    from ..resources.working_space import WorkingSpace  # what reads files has no need of it
+    from ..resources.working_space import WorkingSpace  # reading files does not need it
 
     rec709 = OcioColorSpace("Linear Rec.709 (sRGB)", False)
     to = _conversion_matrix(manager, manager.working, manager.find(LINEAR_REC709) or rec709)
@@ -49,14 +49,14 @@ def _make_working_space(manager: ColorManager) -> WorkingSpace | None:
 
 
 def _conversion_matrix(manager: ColorManager, source: OcioColorSpace, target: OcioColorSpace) -> np.ndarray:
-    """From one linear space to another, by rows."""
+    """The matrix from one linear space to another, by rows."""
     colors = np.eye(3, dtype=np.float32)
     manager.make_processor(source, target).getDefaultCPUProcessor().applyRGB(colors)
     return colors.T.astype(np.float64)
 
 
 def _luminance_weights(to_rec709: np.ndarray) -> tuple[float, ...]:
-    """The weights of the standard that these primaries are from; else those of what Rec.709 makes of them."""
+    """The luminance weights of the standard that defines these primaries; for others, computed through Rec.709."""
     for name, gamut in CHROMATICITIES.items():
         to_rec709_by_name = np.eye(3, dtype=np.float32)
         load_studio_config().getProcessor(name, LINEAR_REC709).getDefaultCPUProcessor().applyRGB(to_rec709_by_name)

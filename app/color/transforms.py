@@ -1,6 +1,6 @@
-"""Color in and out of the working space.
+"""Converts color to and from the working space.
 
-OpenColorIO is imported when a file needs it: sRGB into linear Rec.709, the common case of reading, is a table.
+OpenColorIO is imported only when a file needs it: sRGB to linear Rec.709, the usual case, is a table.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from .management import LINEAR_REC709, ColorManager, OcioColorSpace, load_ocio
 
 _LARGEST = 65504.0
 _LEAST_ALPHA = float(np.finfo(np.float32).tiny)
-"""Below it alpha has lost bits. OpenImageIO's colorconvert draws the line there, too."""
+"""Below this alpha, division would amplify rounding. OpenImageIO's colorconvert has the same limit."""
 
 Array = np.ndarray
 
 
 def is_in_working_space(file_space: FileSpace, manager: ColorManager) -> bool:
-    """True where the numbers of a file are used as they are."""
+    """True if the numbers of a file are used unchanged."""
     if file_space.described is not None:
         return False
     return (
@@ -34,8 +34,8 @@ def is_in_working_space(file_space: FileSpace, manager: ColorManager) -> bool:
 
 
 def is_linear(file_space: FileSpace, manager: ColorManager) -> bool:
-    """True where a file is brought into the working space by a matrix: then it does not matter whether alpha has been
-    applied to its color."""
+    """True if a matrix converts a file to the working space: then it does not matter whether its color is multiplied by
+    alpha."""
     if file_space.described is not None:
         return file_space.described.is_linear
     if file_space.space is None or (not manager.is_chosen and _is_srgb(file_space.space)):
@@ -44,16 +44,16 @@ def is_linear(file_space: FileSpace, manager: ColorManager) -> bool:
 
 
 def is_matrix(group: Any) -> bool:
-    """True for a group of transforms that are matrices without offset."""
+    """True for a group of matrices without offset."""
     return all(isinstance(part, load_ocio().MatrixTransform) and not any(part.getOffset()) for part in group)
 
 
 def convert_premultiplied(rgb: Array, alpha: Array, convert: Callable[[Array], Array]) -> Array:
-    """Premultiplied colors [h, w, 3] through a change of color with a curve, float32.
+    """Premultiplied colors [h, w, 3] through a color change with a curve, float32.
 
-    The curve is that of straight color, so alpha is divided out and applied again. Where that cannot be done, color is
-    converted as it stands: where alpha is 0 and color is light without cover (a glow), where alpha is negative, and
-    where dividing by a tiny alpha leads out of what the curve or 32-bit floats can hold.
+    The curve applies to straight color, so color is divided by alpha first, and multiplied by it afterwards. In three
+    cases it is converted as it is: where alpha is 0 and color is a glow, where alpha is negative, and where division by
+    a tiny alpha exceeds the range of the curve or of 32-bit floats.
     """
     divisible = alpha > _LEAST_ALPHA
     straight = np.array(rgb, np.float32)
@@ -105,7 +105,7 @@ def decode_srgb(encoded: Array) -> Array:
 
 
 def to_float(array: Array) -> Array:
-    """8- and 16-bit integers as 0..1 in float32; 32-bit ones are counts and stay; floats stay."""
+    """8- and 16-bit integers as 0..1 in float32. 32-bit integers are counts and keep their numbers; so do floats."""
     if array.dtype in (np.uint8, np.uint16):
         return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
     return array.astype(np.float32) if array.dtype.kind in "ui" else array
@@ -135,7 +135,7 @@ def _is_srgb(space: OcioColorSpace) -> bool:
 
 
 def _convert_to_working(light: Array, source_array: Array, manager: ColorManager, space: OcioColorSpace) -> Array:
-    """Colors through OpenColorIO; what is not a copy of what was given yet becomes one."""
+    """Colors through OpenColorIO. The given array is never changed: it is copied if that has not happened yet."""
     light = light.copy() if light is source_array or np.shares_memory(light, source_array) else light
     apply_processor(_make_reading_processor(manager, space), light)
     return light
@@ -143,7 +143,7 @@ def _convert_to_working(light: Array, source_array: Array, manager: ColorManager
 
 @lru_cache(maxsize=256)
 def _make_reading_processor(manager: ColorManager, space: OcioColorSpace) -> Any:
-    """From a space to the working space."""
+    """The processor from a space to the working space."""
     return _make_exact(manager.make_processor(_find_named(manager, space), manager.working))
 
 
@@ -158,12 +158,13 @@ def _find_named(manager: ColorManager, space: OcioColorSpace) -> OcioColorSpace:
 
 
 def _find_rec709(manager: ColorManager) -> OcioColorSpace:
-    """Linear Rec.709, of the config or brought into it."""
+    """Linear Rec.709, of this config or of the studio config."""
     return manager.find(LINEAR_REC709) or OcioColorSpace("Linear Rec.709 (sRGB)", False)
 
 
 def _make_exact(processor: Any) -> Any:
-    """On the CPU without short cuts: a fifth slower, and those are off by a part of a thousand of log codes."""
+    """The CPU processor without OpenColorIO's fast approximations: it takes a fifth longer, and they are off by a
+    thousandth of log codes."""
     return processor.getOptimizedCPUProcessor(load_ocio().OPTIMIZATION_LOSSLESS)
 
 
@@ -174,9 +175,9 @@ def _make_srgb_table(dtype: str) -> Array:
 
 
 def apply_processor(processor: Any, rgb: Array) -> None:
-    """Transform contiguous float32 colors in place, a band of rows per core: ACES costs 0.3 us per pixel.
+    """Transform contiguous float32 colors in place, a band of rows per core: ACES takes 0.3 us per pixel.
 
-    OpenColorIO lets go of Python's lock meanwhile, so threads are enough.
+    OpenColorIO releases Python's lock meanwhile, so threads are enough.
     """
     from concurrent.futures import ThreadPoolExecutor
 
@@ -187,7 +188,7 @@ def apply_processor(processor: Any, rgb: Array) -> None:
 
 
 def to_three_channels(array: Array) -> Array:
-    """[h, w, c] as three channels: one is gray, two are red and green, of more the first three."""
+    """[h, w, c] as three channels: one channel is gray, two are red and green; of more, the first three."""
     if array.shape[2] == 1:
         return np.repeat(array, 3, axis=2)
     return np.pad(array, ((0, 0), (0, 0), (0, max(0, 3 - array.shape[2]))))[..., :3]

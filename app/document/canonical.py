@@ -25,8 +25,8 @@ def pretty(document: Mapping[str, Any]) -> str:
 
 
 def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) -> str:
-    """`item` as text that starts at `column` of a line that is indented by `indent`."""
-    if not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):  # the first are known at once
+    """`item` as text that starts at `column` of a line with this `indent`."""
+    if not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):  # most types are known at once
         return _scalar(item, trail)
     if not item:
         return "[]" if isinstance(item, list | tuple) else "{}"
@@ -50,7 +50,7 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
             _text(part, inner, inner, Trail(trail, place), depth + 1)
             for place, part in enumerate(cast("list[Any]", item))
         ]
-    # The first test is for speed: most of what is long need not be joined to see that it does not fit.
+    # The first test is for speed: most long items need not be written to see that they do not fit.
     length = sum(map(len, texts)) + 2 * len(texts)
     section = trail is not None and trail.outer is None and trail.key in _SPREAD
     is_code = opening == "[" and trail is not None and trail.outer and trail.key == "code" and len(texts) > 1

@@ -19,7 +19,7 @@ def read_code_file(language: Language, file: str, folder: str, sandbox: Sandbox)
 
 
 def describe_code(code: Code) -> dict[str, object]:
-    """What a document says of it."""
+    """The record of the code in a document."""
     return {"file": code.file} if code.file else {"code": code.text.split("\n")}
 
 

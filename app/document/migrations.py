@@ -29,7 +29,7 @@ FORMAT = newest(MIGRATIONS)
 
 
 def migrate(document: Document, format: int, migrations: Mapping[int, Migration]) -> Document:
-    """`document` of `format` in the newest format. What is damaged raises what the migration raises."""
+    """`document` of `format` in the newest format. For a damaged document the migration raises its own exception."""
     for number in range(format, newest(migrations)):
         document = _everywhere(document, migrations[number])
     return document

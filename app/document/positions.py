@@ -1,4 +1,4 @@
-"""Where things stand in the text of a document: JSON path -> line.
+"""Finds lines in the text of a document by JSON path.
 
 A text may be hostile, so its parts are not all given their paths: a key of a megabyte around a thousand parts would
 make a gigabyte of them. The paths that are asked for come first. The text is then read once, and only inside of
@@ -39,9 +39,9 @@ class Positions:
         return path in self._places
 
     def line(self, path: str, *, last: bool = False) -> int:
-        """The line, from 1, of what is at a JSON path as errors write it, or of the nearest thing around it.
+        """The line, from 1, of the part at a JSON path as errors write it, or of the nearest part around it.
 
-        Of a key that is there more than once the first one counts, or the `last`.
+        If a key occurs more than once, the first one counts, or the `last`.
         """
         while path and path not in self._places:
             path = _shorten(path)
@@ -101,7 +101,7 @@ def _skip(text: str, start: int) -> int:
 
 
 def _text(word: str) -> str:
-    """What a string of JSON says; one that is damaged says itself."""
+    """The content of a JSON string; a damaged string is returned unchanged."""
     try:
         return str(json.loads(word)) if "\\" in word else word.strip('"')
     except ValueError:

@@ -44,7 +44,7 @@ Migrations = Mapping[int, Migration]
 Extra = dict[str, Mapping[str, Any]]
 
 _DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
-"""What a migration raises when the old file is not what it claims to be."""
+"""Exceptions that a migration may raise if the old file is damaged."""
 
 
 def load(

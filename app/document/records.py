@@ -1,4 +1,4 @@
-"""What each object of a document may hold, and plain sentences for what does not fit."""
+"""The objects of a document: the fields that each may have, and sentences about wrong ones."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _WORDS = {
 
 
 class FormatRecord(msgspec.Struct):
-    """What every document begins with, whatever its format."""
+    """The head of every document, whatever its format."""
 
     halation: Count
 
@@ -115,7 +115,7 @@ class KeyRecord(msgspec.Struct):
 
 
 class TypeRecord(msgspec.Struct):
-    """What every node has."""
+    """The fields of every node."""
 
     type: str
     muted: bool = False
@@ -130,7 +130,7 @@ class NodeRecord(TypeRecord):
 
 
 class CodeRecord(TypeRecord):
-    """A node whose code stands in `code`, line by line, or in a file."""
+    """A node whose code is in `code`, line by line, or in a file."""
 
     code: list[str] | None = None
     file: str | None = None
@@ -156,17 +156,17 @@ def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
 
 
 def unknown_keys(raw: Mapping[str, Any], kind: RecordType) -> dict[str, Any]:
-    """What `raw` holds besides the fields of a record."""
+    """The entries of `raw` besides the fields of a record."""
     return {key: part for key, part in raw.items() if key not in kind.__struct_fields__}
 
 
 def type_name(kind: Kind, width: int) -> str:
-    """How a file calls a type: `Image`, `Vector` (of three) or `Vector2`."""
+    """The name of a type in a file: `Image`, `Vector` (of three) or `Vector2`."""
     return f"{kind}{width}" if kind is Kind.VECTOR and width != 3 else str(kind)
 
 
 def type_names() -> dict[str, tuple[Kind, int]]:
-    """Kind and channels by all that a file may call a type."""
+    """Kind and channels by every type name of files."""
     kinds_by_name = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
     return {**kinds_by_name, "Vector3": (Kind.VECTOR, 3)}
 

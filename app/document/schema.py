@@ -1,6 +1,7 @@
 """The format as a JSON Schema (draft 2020-12), made of the catalogue and of the records that reading uses.
 
-What JSON Schema cannot say is left to `halation check`: that links fit, that keys are in order, that nothing loops.
+JSON Schema cannot express some rules, which are left to `halation check`: that links fit, that keys are in order, that
+there are no loops.
 """
 
 from __future__ import annotations
@@ -131,9 +132,9 @@ def _graph() -> Schema:
 
 
 def _record(kind: records.RecordType, **field_schemas: Schema) -> Schema:
-    """A record; `field_schemas` say more of fields than their types do. Other keys are kept, so they may be there.
+    """A record; `field_schemas` are more exact than the types of its fields. Other keys are kept, so they are allowed.
 
-    What every node has is said once, of any node.
+    The fields of every node are defined once.
     """
     _, parts = msgspec.json.schema_components([kind])
     record_schema: Schema = parts[kind.__name__]
@@ -155,7 +156,7 @@ def _record(kind: records.RecordType, **field_schemas: Schema) -> Schema:
 
 
 def _node(kind: type[Node]) -> Schema:
-    """A node of a type. Values that an older version of it saved are not looked at."""
+    """A node of a type. Values of an older version of the type are not checked."""
     values: Schema = {
         "type": "object",
         "properties": {name: _value(value) for name, value in kind.values.items()},
@@ -169,7 +170,7 @@ def _node(kind: type[Node]) -> Schema:
 
 
 def _value(value: Value) -> Schema:
-    """What a value may be set to."""
+    """The schema of a value."""
     limits = (("minimum", value.minimum), ("maximum", value.maximum))
     bounds: Schema = {name: limit for name, limit in limits if math.isfinite(limit)}
     number: Schema = {"type": "number", **bounds}

@@ -20,12 +20,12 @@ from .syntax_faults import explain_syntax
 _STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _NO_BRACKET = re.compile(r"[^{}\[\]]++")
 _SUSPECT = re.compile(r"NaN|Infinity|[eE]\+?\d{3}|\d{200}|\\u[dD][89a-fA-F]|[\ud800-\udfff]")
-"""What a number that may not be finite, or half a surrogate pair, looks like."""
+"""Texts that may be a number that is not finite, or half a surrogate pair."""
 _STEPS = {"{": 1, "[": 1, "}": -1, "]": -1}
 
 
 class Trail(NamedTuple):
-    """Where a part is, from the inside out. Most trails are never spelled as a path, which would take the time."""
+    """The place of a part, from the inside out. Most trails are never written as a path, which would take time."""
 
     outer: Trail | None
     key: str | int
@@ -69,7 +69,7 @@ def member(path: str, key: str | int) -> str:
 
 
 def word(item: object) -> str:
-    """What a part of the tree is, for a sentence."""
+    """The type of a part of the tree, for a sentence."""
     match item:
         case None:
             return "null"
@@ -120,7 +120,7 @@ def _make_object(pairs: list[tuple[str, Any]], odd_objects: list[_Twice]) -> dic
 
 
 def _check(tree: Any, file: str) -> None:
-    """Look at every part, without recursion."""
+    """Check every part, without recursion."""
     todo: list[tuple[Any, Trail | None]] = [(tree, None)]
     while todo:
         item, trail = todo.pop()

@@ -1,7 +1,7 @@
-"""What is wrong with a text that is not JSON, in the words of somebody who writes it by hand.
+"""Explains faults of a text that is not JSON, in the words of its author.
 
-Python's parser says what it expected where it gave up: for a missing comma that is the next line, for a comma too many
-the bracket after it. What the author has to change stands just before, so that is what is told, with its line.
+Python's parser reports where it gave up: for a missing comma on the next line, for an extra comma at the bracket after
+it. The author has to change what stands before, so that is reported, with its line.
 """
 
 from __future__ import annotations

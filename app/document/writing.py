@@ -76,7 +76,7 @@ def _graph(graph: Graph) -> Section:
 
 
 def _settings(settings: Settings, unknown_color: Mapping[str, Any]) -> Section:
-    """What differs from the default; `unknown_color` are keys of `color` that mean nothing."""
+    """The settings that differ from the defaults; `unknown_color` are unknown keys of `color`."""
     plain = Settings()
     changed = {
         field.name: current
@@ -145,7 +145,7 @@ def _value(id: str, value: Value, setting: object) -> Plain:
 
 
 def _check_names(graph: Graph) -> None:
-    """Refuse what could not be read again."""
+    """Refuse values that could not be read again."""
     sections = {"input": graph.inputs, "output": graph.outputs, "control": graph.controls, "node": graph.nodes}
     for end_kind, section in sections.items():
         for name in section:

@@ -1,1 +1,1 @@
-"""What fills the inputs of a graph: files and arrays, probed while compiling and read while rendering."""
+"""The inputs of a graph: files and arrays, probed while compiling and read while rendering."""

@@ -1,8 +1,8 @@
-"""Which layer of a file an input reads.
+"""Chooses the layer of a file that an input reads.
 
-An input names the layer of the file that its graph was made with. Another renderer, or another version of the same one,
-calls it something else, so a name that a file does not have is looked up by its role: what Blender 5 calls `Diffuse
-Color` is `DiffCol` in Blender 4.5 and `albedo` in Arnold.
+An input names the layer of the file with which its graph was made. Another renderer, or another version, may use
+another name, so a missing name is looked up by its role: `Diffuse Color` of Blender 5 is `DiffCol` in Blender 4.5 and
+`albedo` in Arnold.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from ..resources.sandbox import Sandbox
 
 
 def choose_layer(info: ImageInfo, socket: Input, sandbox: Sandbox, *, is_bound: bool = True) -> str:
-    """The layer of this file that an input asks for, by name or by role.
+    """The layer of this file for an input, by name or by role.
 
-    A picture without any layers of a render stands for a layer of color that the user bound it to; `is_bound` is False
-    for an input that only follows another one to its file. Raises InputError.
+    A picture that is not a render can replace a color layer, if the user bound it; `is_bound` is False for an input
+    that follows another input to its file. Raises InputError.
     """
     if not socket.layer or has_layer(info, socket.layer):
         return socket.layer

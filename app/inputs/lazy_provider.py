@@ -38,7 +38,7 @@ class LazyResourceProvider:
         return self.pictures.bind(graph, inputs) if inputs else {}
 
     def find_frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
-        """The first and last frame of a graph, without reading any file where it says so itself."""
+        """The first and last frame of a graph, without reading a file if its settings name them."""
         from ..compiler import find_named_files
         from ..graph import find_key_range
 
@@ -49,7 +49,7 @@ class LazyResourceProvider:
         return self.pictures.find_frames(graph, self.bind(graph, inputs))
 
     def check_frames(self, graph: Graph, frames: range) -> None:
-        """Raise InputError for a file that is missing in a sequence."""
+        """Raise InputError for a missing file of a sequence."""
         from ..compiler import find_named_files
 
         if find_named_files(graph, {}):
@@ -64,15 +64,15 @@ class LazyResourceProvider:
         return self.pictures.probe_picture(picture)
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:
-        """The program of a change of color."""
+        """The program of a color change."""
         return self.pictures.write_color_program(change)
 
     def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
-        """What shaders know of the working space."""
+        """The constants of the working space for shaders."""
         return self.pictures.find_working_space(color)
 
     def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
-        """What the file of a render holds."""
+        """The layers of a render's file."""
         return self.pictures.describe_render(path, named)
 
     def load_mesh(self, scene: Scene) -> Mesh:

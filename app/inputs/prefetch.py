@@ -1,4 +1,4 @@
-"""Files that are read while the libraries for rendering are still being loaded, before there is a plan."""
+"""Reads files while the libraries for rendering are still being loaded, before there is a plan."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from ..resources.sandbox import Sandbox
 from .layer_choice import choose_layer
 
 MAX_WAITING = 4
-"""Pictures that may wait in memory to be taken: a render has a few large ones, and more would not be decoded before
-the graph is compiled."""
+"""Pictures that may wait in memory. Chosen by judgement: a render has a few large ones, and more would not be decoded
+before the graph is compiled."""
 
 PixelRequest = tuple[str, LayerRequest]
-"""A path, and the layer that is read from it."""
+"""A path, and the layer to read."""
 
 
 class Prefetcher:
-    """Reads, one after the other, the files that the outputs of a graph are likely to need: those of its inputs.
+    """Reads the files of inputs that the outputs of a graph are likely to need, one after the other.
 
-    `inputs` are paths, or `path:layer`, by the names of inputs. A file that cannot be read is no error here: the error
-    is raised when its pixels are taken.
+    `inputs` are paths, or `path:layer`, by the names of inputs. A file that cannot be read is not an error here: the
+    error is raised when its pixels are requested.
     """
 
     def __init__(self, graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox) -> None:
@@ -42,7 +42,7 @@ class Prefetcher:
         threads.shutdown(wait=False)
 
     def take(self, request: PixelRequest) -> Pixels | None:
-        """The pixels of a request, once; None if it is not being read. Raises what reading it raised."""
+        """The pixels of a request, once; None if it is not being read. Raises the error of reading it."""
         pending = self._pending.pop(request, None)
         return pending.result() if pending else None
 
@@ -52,7 +52,7 @@ def _read(path: str, request: LayerRequest, sandbox: Sandbox) -> Pixels:
 
 
 def _predict_requests(graph: Graph, inputs: Mapping[str, str], sandbox: Sandbox) -> Iterator[PixelRequest]:
-    """The requests that rendering will make, as far as that is certain before the graph is compiled.
+    """The requests that rendering will make, if they are certain before the graph is compiled.
 
     Sequences and videos are left out, as their frame is not known yet, and so are inputs whose file follows another
     input to a new file: which layer that has is decided by binding.

@@ -33,11 +33,12 @@ if TYPE_CHECKING:
 
     Array = np.ndarray
     Binding = str | Path | Array | float | tuple[float, ...]
-    """What fills a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or Color."""
+    """What can be bound to a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or
+    Color."""
 
 
 class MediaProvider:
-    """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` reads some files already."""
+    """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` prefetches some files."""
 
     def __init__(self, prefetcher: Prefetcher | None = None, *, sandbox: Sandbox) -> None:
         self.sandbox = sandbox
@@ -45,9 +46,9 @@ class MediaProvider:
         self.repaired_pixels: dict[str, int] = {}
         """How many pixels were repaired, by path."""
         self.warnings: dict[str, str] = {}
-        """What of a header could not be used, as the rest of a sentence, by path."""
+        """Unusable parts of headers, as the rest of a sentence, by path."""
         self.describer: Callable[[str, Mapping[str, str]], Render] | None = None
-        """Reads what a render holds in place of `read_render`, for callers that cannot wait for it."""
+        """Replaces `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
         self._fingerprints: dict[str, str] = {}
 
@@ -59,7 +60,8 @@ class MediaProvider:
         return bound | self._bind_siblings(graph, bound)
 
     def find_frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
-        """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys.
+        """The first and last frame of a graph: from its settings, else of the first sequence that it reads, else of
+        keys.
 
         Raises InputError, UsageError for a sequence that cannot be looked at.
         """
@@ -73,7 +75,7 @@ class MediaProvider:
         return find_key_range(graph)
 
     def find_rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
-        """Frames per second: as the graph says, else those of the first video it reads, else the usual ones."""
+        """Frames per second: from the settings, else of the first video that the graph reads, else the default."""
         from ..media.sequences import find_sequence
 
         usual = type(graph.settings)().rate
@@ -83,14 +85,14 @@ class MediaProvider:
         return graph.settings.rate
 
     def check_frames(self, graph: Graph, frames: range) -> None:
-        """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
+        """Raise InputError for the first missing file of a sequence that the outputs of the graph need."""
         from ..media.sequences import find_sequence
 
         needed = graph.upstream(OUTPUTS)
         for path, owner, missing in find_named_files(graph, {}):
             used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
             if used and missing == "error" and frames:
-                # The first frame that a sequence lacks, or just the first: there may be a billion of them.
+                # Only the first missing frame is sought: there may be a billion frames.
                 sequence = find_sequence(path, sandbox=self.sandbox)
                 there = sequence.names if sequence else frames
                 frame = next((frame for frame in frames if frame not in there), frames[0])
@@ -103,7 +105,7 @@ class MediaProvider:
         return find_frame_file(path, frame, missing, sandbox=self.sandbox)
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
-        """Size and precision of a picture. Raises InputError for what cannot be read."""
+        """Size and precision of a picture. Raises InputError if it cannot be read."""
         if picture.in_memory:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
@@ -120,7 +122,7 @@ class MediaProvider:
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
     def load_pixels(self, picture: Picture) -> Array:
-        """Its pixels as [height, width, channels] of float16 or float32."""
+        """The pixels of a picture as [height, width, channels] of float16 or float32."""
         if picture.in_memory:
             import numpy as np
 
@@ -144,7 +146,7 @@ class MediaProvider:
             pixels = read_rows(path, request, *picture.rows, sandbox=self.sandbox)
             repaired = (
                 self.repaired_pixels.get(path, 0) + pixels.repaired
-            )  # rows of one picture come one after the other
+            )  # rows of one picture are requested one after the other
         else:
             from ..media.pixels import read_layers
 
@@ -158,20 +160,20 @@ class MediaProvider:
         return pixels.array
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:
-        """The program of a change of color. Raises InputError for a file that cannot be read."""
+        """The program of a color change. Raises InputError for a file that cannot be read."""
         from ..color.gpu_programs import write_color_change
 
         return write_color_change(change, self.sandbox)
 
     def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
-        """What shaders know of the working space. Raises GraphError for one that nobody knows."""
+        """The constants of the working space for shaders. Raises GraphError for an unknown space."""
         from ..color.management import get_color_manager
         from ..color.primaries import find_working_space
 
         return find_working_space(get_color_manager(color, self.sandbox))
 
     def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
-        """What the file of a render holds. Raises InputError for one that cannot be read."""
+        """The layers of a render's file. Raises InputError for one that cannot be read."""
         from ..render_layers.render import read_render
 
         return self.describer(path, named) if self.describer else read_render(path, named, sandbox=self.sandbox)
@@ -191,7 +193,7 @@ class MediaProvider:
         return self._infos[path]
 
     def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
-        """Inputs whose default is another layer of a file that was replaced follow it to the new file.
+        """Inputs whose default is another layer of a replaced file follow it to the new file.
 
         Otherwise a new picture would quietly be mixed with the depth of the sample.
         """
@@ -231,7 +233,7 @@ class MediaProvider:
         return Picture(path, layer or self._choose_layer(path, socket), socket.kind, socket.socket().channels)
 
     def _choose_layer(self, path: str, socket: Input, *, is_bound: bool = True) -> str:
-        """The layer of a file that the input asks for, by name or by role."""
+        """The layer of a file for an input, by name or by role."""
         from .layer_choice import choose_layer
 
         if not socket.layer:
@@ -241,7 +243,7 @@ class MediaProvider:
 
 
 def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Array:
-    """An array that is bound to an input; one number, or one per channel, will do where the input takes one value."""
+    """An array that is bound to an input. One number, or one per channel, is enough if the input takes one value."""
     import numpy as np
 
     array = np.asarray(item)
@@ -249,19 +251,19 @@ def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Ar
 
 
 def _conversion_mark(picture: Picture, sandbox: Sandbox) -> str:
-    """A mark that changes when the color of a file is converted in another way."""
+    """A mark that changes when the color conversion of a file does."""
     from ..color.file_space import find_requested_space
     from ..color.management import get_color_manager
 
     manager = get_color_manager(picture.color, sandbox)
     find_requested_space(picture.space, manager)
     if not manager.is_plain:
-        _ = manager.config, manager.working  # a config that is wrong is an error before anything is read
+        _ = manager.config, manager.working  # an invalid config is an error before anything is read
     return "" if manager.is_plain and not picture.space else f" {picture.space} {manager.mark}"
 
 
 def _changes_numbers(picture: Picture, layer: str, sandbox: Sandbox) -> bool:
-    """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
+    """True if the numbers of a layer are changed: then half floats may not hold them."""
     from ..color.management import get_color_manager
     from ..color.transforms import is_in_working_space
     from ..media.color_spaces import find_layer_spaces
@@ -269,7 +271,7 @@ def _changes_numbers(picture: Picture, layer: str, sandbox: Sandbox) -> bool:
     manager = get_color_manager(picture.color, sandbox)
     try:
         space = find_layer_spaces(picture.path, manager, picture.space, sandbox=sandbox).get(layer)
-    except InputError:  # reading the file raises it again
+    except InputError:  # reading the file raises the error again
         return True
     return space is not None and not is_in_working_space(space, manager)
 
@@ -283,7 +285,7 @@ def _array_fingerprint(array: Array) -> str:
 
 
 def _check_within(path: str, folder: str) -> None:
-    """Raise InputError for a file that lies elsewhere once links are followed."""
+    """Raise InputError for a file outside of the folder after links are resolved."""
     try:
         inside = Path(path).resolve().is_relative_to(Path(folder).resolve())
     except (OSError, RuntimeError, ValueError):

@@ -1,1 +1,1 @@
-"""What is wrong with graph files and how they could be better: everything that `halation check` says."""
+"""Everything that `halation check` reports: faults of graph files, and warnings about quality."""

@@ -1,4 +1,4 @@
-"""What a graph file says is meant: `settings.allow` holds reasons by `rule`, or by `rule:node`."""
+"""Warnings that a graph file allows: `settings.allow` holds reasons by `rule`, or by `rule:node`."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ RULES = (STALE_ALLOW,)
 
 
 def place_name(problem: Problem) -> str:
-    """What `rule:node` calls the place of a problem: `glow/bloom`, `inputs.beauty`; "" for the graph as a whole."""
+    """The place of a problem as `rule:node` names it: `glow/bloom`, `inputs.beauty`; "" for the graph as a whole."""
     end = problem.node.rpartition("/")[2] in (INPUTS, OUTPUTS, CONTROLS)
     return f"{problem.node}.{problem.socket}" if end and problem.socket else problem.node
 
 
 def find_allowance(graph: Graph, problem: Problem) -> str:
-    """The entry of `settings.allow` that says a warning is meant, or nothing."""
+    """The entry of `settings.allow` that allows a warning, or ""."""
     if problem.severity == "error":
         return ""
     names = (problem.rule.name, f"{problem.rule.name}:{place_name(problem)}")
@@ -34,7 +34,8 @@ def find_allowance(graph: Graph, problem: Problem) -> str:
 def find_stale_allowances(
     graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]
 ) -> Iterator[Problem]:
-    """Entries that allow nothing; those of `unsure` rules depend on more than the file, so nothing is said of them."""
+    """Entries that allow nothing. Entries of `unsure` rules are left out, since these rules depend on more than the
+    file."""
     spent, silent = set(used), set(unsure)
     for entry in graph.settings.allow:
         name = entry.partition(":")[0]

@@ -1,4 +1,4 @@
-"""One graph file after another: everything there is to say of each, with its line."""
+"""Checks graph files one after another, and finds the line of each problem."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _OUTER = (*(rule.name for rule in (*surroundings.RULES, *compiled.RULES)), texts
 
 @dataclass(frozen=True)
 class Finding:
-    """A problem of a file. `code` is the exit code that rendering would have, 0 for a warning."""
+    """A problem of a file. `code` is the exit code that rendering would have; 0 for a warning."""
 
     line: int
     problem: Problem
@@ -53,12 +53,12 @@ class Finding:
 
 @dataclass(frozen=True)
 class CheckReport:
-    """What was found in a file, by line."""
+    """The findings in a file, sorted by line."""
 
     file: str
     findings: tuple[Finding, ...]
     omitted: int = 0
-    """How many more there are: nobody reads 100,000 lines. What is left out is no worse than what is not."""
+    """How many findings are left out. None of them is worse than those that are listed."""
 
     @property
     def code(self) -> int:
@@ -67,24 +67,24 @@ class CheckReport:
 
 
 MAX_FINDINGS = 1000
-"""How many findings a report holds: more than anybody mends without checking again."""
+"""Findings in a report. Chosen by judgement: more than a user corrects before the next check."""
 
 
 @dataclass
 class GraphChecker:
-    """Checks files, without the rules that are `off`. What several files name is looked at once."""
+    """Checks files, without the rules in `off`. A file that several graphs name is read once."""
 
     sandbox: Sandbox
     off: frozenset[str] = frozenset()
 
     @cached_property
     def world(self) -> compiled.NotingProvider:
-        """What is known of files that graphs name."""
+        """Facts about the files that graphs name."""
         return compiled.NotingProvider(self.sandbox)
 
     @cached_property
     def around(self) -> surroundings.Surroundings:
-        """What is known of folders that graphs name."""
+        """Facts about the folders that graphs name."""
         return surroundings.Surroundings(self.sandbox)
 
     @cached_property
@@ -93,7 +93,7 @@ class GraphChecker:
         return catalogue()
 
     def check_file(self, path: Path) -> CheckReport:
-        """A graph file. Nothing is raised: what cannot be read is found too."""
+        """Check a graph file. Nothing is raised: a file that cannot be read is a finding."""
         try:
             text = read_text(path, sandbox=self.sandbox)
         except DocumentError as fault:
@@ -101,7 +101,7 @@ class GraphChecker:
         return self.check_text(text, str(path), str(path.parent))
 
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
-        """The text of a graph. Relative paths in it start at `folder`."""
+        """Check the text of a graph. Relative paths in it start at `folder`."""
         with limit_suggestions():
             try:
                 whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
@@ -111,12 +111,12 @@ class GraphChecker:
 
     def _document_problem(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
         problem, line = texts.explain_fault(fault, text)
-        if file and fault.file != file:  # it is in the file of a group
+        if file and fault.file != file:  # the fault is in the file of a group
             problem = replace(problem, sentence=str(fault), at="")
         yield problem, line if not file or fault.file == file else 0, fault.exit_code
 
     def _find_problems(self, whole_graph: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
-        """Problems with the line where the JSON path does not say it, and the exit code of each."""
+        """Problems, each with its line if its JSON path does not give the line, and its exit code."""
         graph_problems = graph.problems(whole_graph, self.types)
         for problem in graph_problems:
             yield problem, 0, GraphError.exit_code if problem.severity == "error" else 0
@@ -154,7 +154,7 @@ class GraphChecker:
             ]
         if not reported:
             return CheckReport(file, ())
-        # Errors stay: the worst exit code comes first, and `sorted` keeps the order of what is equal.
+        # The worst findings are kept; `sorted` keeps the order of equal ones.
         chosen = sorted(reported, key=lambda item: -item[2])[:MAX_FINDINGS]
         places = [() if line else _find_places(whole_graph, problem) for problem, line, _ in chosen]
         lines = Positions(text, chain.from_iterable(places))
@@ -178,7 +178,7 @@ def _line(lines: Positions, paths: Sequence[str], problem: Problem) -> int:
 
 
 def _find_places(whole_graph: Graph | None, problem: Problem) -> tuple[str, ...]:
-    """The JSON path of a problem, else those of whatever its node and socket name, the most exact first."""
+    """The JSON path of a problem, or possible paths of its node and socket, the most exact first."""
     if problem.at:
         return (problem.at,)
     if not problem.node and not problem.socket:

@@ -1,4 +1,4 @@
-"""What only shows when a graph is compiled: the files that it reads, and what becomes of it as a whole."""
+"""Faults that appear when a graph is compiled: files that cannot be read, shaders, and the graph as a whole."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ TOO_LARGE = Rule("too-large", "error", "A picture is larger than any device take
 RULES = (UNREADABLE_FILE, LFS_POINTER, UNBOUND_INPUT, CANNOT_COMPILE, BAD_SETTING, BROKEN_SHADER, TOO_LARGE)
 
 SIZE = (1920, 1080)
-"""What stands for a picture that is not there."""
+"""The size that is assumed for a missing picture."""
 
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _POINTER_SIZE = 1024
@@ -67,11 +67,11 @@ T = TypeVar("T")
 
 @dataclass
 class NotingProvider:
-    """Files as the compiler asks for them. Each is looked at once, and one that cannot be read is noted."""
+    """The files that the compiler asks for. Each is read once, and one that cannot be read is noted."""
 
     sandbox: Sandbox
     faults: dict[str, str] = field(default_factory=dict[str, str])
-    """Sentences about files, and the path that the graph has for each."""
+    """Sentences about files, with the path of each as the graph has it."""
     _answers: dict[Any, Any] = field(default_factory=dict[Any, Any])
     _asked: dict[str, str] = field(default_factory=dict[str, str])
     """Paths as the graph has them, by the file of a frame."""
@@ -79,13 +79,13 @@ class NotingProvider:
 
     @cached_property
     def pictures(self) -> MediaProvider:
-        """The real ones; what reads files is loaded when the first is asked for."""
+        """The provider that reads files, loaded on first use."""
         from ..inputs.provider import MediaProvider
 
         return MediaProvider(sandbox=self.sandbox)
 
     def first_frame(self, graph: Graph) -> int:
-        """The first frame of a graph. A file that is missing in a sequence is noted."""
+        """The first frame of a graph. A missing file of a sequence is noted."""
         if not any(self._is_sequence(path) for path, _, _ in find_named_files(graph, {})):
             return (graph.settings.frames or find_key_range(graph))[0]
         try:
@@ -97,7 +97,7 @@ class NotingProvider:
         return first
 
     def _is_sequence(self, path: str) -> bool:
-        """False for one picture, whether it is there or not."""
+        """False for a single picture, whether it exists or not."""
 
         def ask() -> bool:
             from ..media.sequences import find_sequence
@@ -119,7 +119,7 @@ class NotingProvider:
         return shown_file
 
     def probe_picture(self, picture: Picture) -> PictureProbe:
-        """Size and precision of a picture, or something instead."""
+        """Size and precision of a picture; assumed ones if it cannot be read."""
         how = (picture.kind, picture.width, picture.space, picture.color)
         key, path = (picture.path, picture.layer, *how), picture.path
         probe = (
@@ -128,15 +128,15 @@ class NotingProvider:
         return probe or PictureProbe(self.size, False, path)
 
     def write_color_program(self, change: ColorChange) -> ColorProgram:
-        """The program of a change of color."""
+        """The program of a color change."""
         return self._answer("recolor", change, lambda: self.pictures.write_color_program(change))
 
     def find_working_space(self, color: ColorSettings) -> WorkingSpace | None:
-        """What shaders know of the working space."""
+        """The constants of the working space for shaders."""
         return self._answer("working", color, lambda: self.pictures.find_working_space(color))
 
     def describe_render(self, path: str, named: Mapping[str, str]) -> Render:
-        """What the file of a render holds."""
+        """The layers of a render's file."""
         return self._answer(path, tuple(sorted(named.items())), lambda: self.pictures.describe_render(path, named))
 
     def load_mesh(self, scene: Scene) -> Mesh:
@@ -144,7 +144,7 @@ class NotingProvider:
         return self._answer("mesh", scene, lambda: self.pictures.load_mesh(scene))
 
     def _answer_or_note(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
-        """An answer, or None after noting why there is none."""
+        """The answer to a question, or None if there is none, which is noted."""
         try:
             return self._answer("once", key, ask)
         except InputError as fault:
@@ -152,7 +152,7 @@ class NotingProvider:
         return None
 
     def _answer(self, kind: str, key: object, ask: Callable[[], T]) -> T:
-        """An answer, the same as before; a refusal is given again too."""
+        """The answer to a question, remembered; so is a refusal."""
         if (kind, key) not in self._answers:
             try:
                 self._answers[kind, key] = ask()
@@ -165,7 +165,7 @@ class NotingProvider:
 
 
 def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem]]:
-    """What there is to say of a graph that has no errors, each with the exit code that rendering would have."""
+    """The problems of a graph without errors, each with the exit code that rendering would have."""
     free = {name: item for name, item in graph.inputs.items() if not item.file and item.default is None}
     read = {source.socket for source in graph.links.values() if source.node == INPUTS}
     for name in free.keys() & read:
@@ -195,7 +195,7 @@ def problems(graph: Graph, world: NotingProvider) -> Iterator[tuple[int, Problem
 
 
 def _color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
-    """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
+    """Faults in names of color management. The library is loaded only if the graph has such names."""
     named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
     if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
         from ..color.graph_faults import find_color_faults
@@ -209,7 +209,7 @@ def _rule(fault: HalationError) -> Rule:
 
 
 def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, str]], sandbox: Sandbox) -> Problem:
-    """The problem of a file, with whoever names it."""
+    """The problem of a file, at the node or input that names it."""
     path = path or next(
         (candidate for candidate in sorted(places, key=len, reverse=True) if sentence.startswith(candidate)), ""
     )
@@ -229,7 +229,8 @@ def _is_pointer(path: str, sandbox: Sandbox) -> bool:
 
 
 def _places(graph: Graph, inside: str = "", at: str = "", fixed: str = "") -> dict[str, tuple[str, str, str]]:
-    """Who names a file first, by its path: node, socket and JSON path; `fixed` for what another file says."""
+    """The first node or input that names each file, by the path of the file: node, socket and JSON path; `fixed` is the
+    path for nodes inside another file."""
     places: dict[str, tuple[str, str, str]] = {}
     for node, socket, where, path in list_paths(graph):
         places.setdefault(str(PurePath(graph.folder, path)), (f"{inside}{node}", socket, fixed or f"{at}{where}"))

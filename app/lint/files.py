@@ -1,4 +1,4 @@
-"""Which files are meant: names, folders and patterns."""
+"""Finds the files to check: by name, folder or pattern."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ _KEY = re.compile(r'"halation"\s*:')
 
 
 def find_graphs(paths: Iterable[Path], sandbox: Sandbox) -> Iterator[Path]:
-    """Every file that is meant, once, in order.
+    """The files to check, each once, in order.
 
-    A folder stands for all graphs in it and below, without hidden folders, virtual environments and installed packages;
-    a pattern for what it matches, with the same exceptions below the folders that it names. A name stands for itself,
-    whether there is such a file or not.
+    A folder stands for all graphs in it and below, except hidden folders, virtual environments and installed packages;
+    a pattern for its matches, with the same exceptions below the folders that it names. A name stands for itself,
+    whether such a file exists or not.
     """
     real_paths = set[str]()
     for path in paths:
@@ -48,7 +48,7 @@ def _expand(path: Path, sandbox: Sandbox) -> Iterator[Path]:
 
 
 def _graphs_in_folder(folder: Path, sandbox: Sandbox) -> Iterator[Path]:
-    """The graphs in a folder: JSON files that say they are one."""
+    """The graphs in a folder: JSON files that contain the key of graphs."""
     for path in walk_project(folder):
         if path.name.lower().endswith(".json") and is_graph(path, sandbox=sandbox):
             yield path

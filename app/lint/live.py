@@ -1,4 +1,4 @@
-"""What is worth a hint while a graph is being edited: what costs quality, not what is merely unfinished."""
+"""Hints while a graph is edited: what costs quality, not what is merely unfinished."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CHECKS = (*filtering.CHECKS, *light.CHECKS, *data.CHECKS)
 
 
 def find_remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem, ...]:
-    """The problems of a graph; of one that has no errors hints too, groups in its file included."""
+    """The problems of a graph. If it has no errors, also the hints, for groups in its file too."""
     graph_problems = problems(graph, types)
     if any(problem.severity == "error" for problem in graph_problems):
         return graph_problems
@@ -27,7 +27,7 @@ def find_remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem
 def recheck_remarks(
     graph: Graph, before: Graph, last_problems: tuple[Problem, ...], types: Mapping[str, type[Node]]
 ) -> tuple[Problem, ...]:
-    """The same as `remarks(graph)`, given what that found in a graph of `before`; quick while a value is dragged."""
+    """The same as `remarks(graph)`, from its result for an earlier graph `before`: fast while a value is dragged."""
     if differ_in_nodes(graph, before) and _same_roles(graph, before):
         rechecked_problems = recheck(graph, before, last_problems, types)
         if rechecked_problems is last_problems:
@@ -46,7 +46,7 @@ def _hints(graph: Graph) -> Iterator[Problem]:
 
 
 def _same_roles(graph: Graph, before: Graph) -> bool:
-    """True if every node does something as before, and reads what it read."""
+    """True if the same nodes are active as before, with the same links."""
     changed = ((item, before.nodes[id]) for id, item in graph.nodes.items() if item is not before.nodes[id])
     return graph.muted == before.muted and all(
         isinstance(new, Node) and isinstance(old, Node) and _same_role(new, old) for new, old in changed
@@ -54,7 +54,7 @@ def _same_roles(graph: Graph, before: Graph) -> bool:
 
 
 def _same_role(new: Node, old: Node) -> bool:
-    if has_trait(new, Trait.RESAMPLES):  # hints name their numbers
+    if has_trait(new, Trait.RESAMPLES):  # hints contain their numbers
         return False
     texts = (name for name, value in new.values.items() if value.type in ("path", "text", "choice"))
     same = type(new) is type(old) and all(new.setting(name) == old.setting(name) for name in texts)

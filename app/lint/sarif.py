@@ -1,4 +1,4 @@
-"""Findings as SARIF 2.1.0, the form in which code hosts show what checkers say."""
+"""Findings as SARIF 2.1.0, the format in which code hosts read results of checkers."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def sarif(reports: Iterable[CheckReport], rules: Mapping[str, Rule], root: Path, version: str) -> dict[str, Any]:
-    """A log of one run. Files are named from `root`, or whole where they lie outside of it."""
+    """The log of one run. Paths are relative to `root`; files outside of it have full paths."""
     places = {name: place for place, name in enumerate(rules)}
     results = [
         _result(finding, _uri(report.file, root), places[finding.problem.rule.name])
@@ -50,7 +50,7 @@ def _result(finding: Finding, uri: str, index: int) -> dict[str, Any]:
         "level": problem.severity,
         "message": {"text": problem.sentence},
         "locations": [location],
-        # Lines are left out, so that what was known before is known again after an edit above it.
+        # No line is part of the fingerprint, so a finding keeps its identity after an edit above it.
         "partialFingerprints": {"halation/v1": _hash(problem.rule.name, uri, place, problem.socket, problem.sentence)},
     }
 
@@ -59,7 +59,7 @@ def _uri(file: str, root: Path) -> str:
     """A path as a URI reference: relative to the root where it is below it."""
     path = Path(file).absolute()
     try:
-        # A folder that is only reached by a link counts as where it is named.
+        # A folder that is reached by a link counts by the name that was given.
         return quote(path.relative_to(root.absolute()).as_posix())
     except ValueError:
         return path.as_uri()

@@ -1,4 +1,4 @@
-"""What rules look at: a graph that can be rendered, without what does nothing."""
+"""The facts that rules read: a graph without errors, without nodes that do nothing."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..graph.rules import Rule
 
 @dataclass(frozen=True)
 class GraphFacts:
-    """A graph, or the body of a group that is part of its file, that has no errors."""
+    """A graph without errors, or the body of a group in its file."""
 
     graph: Graph
     _bypassed: dict[tuple[Port, object], Port | None] = field(default_factory=dict[tuple[Port, object], "Port | None"])
-    """What reaches a port in place of a node that passes its picture through, by the kind of the target."""
+    """What reaches a port if a node passes its picture through, by the kind of the target."""
 
     @cached_property
     def readers(self) -> Counter[Port]:
@@ -30,12 +30,12 @@ class GraphFacts:
 
     @cached_property
     def library(self) -> Library:
-        """What the shaders of nodes are."""
+        """The shaders of nodes."""
         return load_library()
 
     @cached_property
     def moving(self) -> frozenset[str]:
-        """Nodes of which a value changes over time or is wired."""
+        """Nodes with an animated or linked value."""
         nodes = self.graph.nodes
         wired = (
             port.node
@@ -45,7 +45,7 @@ class GraphFacts:
         return frozenset((*wired, *(port.node for port in self.graph.animation)))
 
     def works(self, id: str) -> Item | None:
-        """The node of that id, unless there is none or it passes its picture through."""
+        """The node with an id; None if it does not exist or passes its picture through."""
         return self._working.get(id)
 
     @cached_property
@@ -57,12 +57,12 @@ class GraphFacts:
         }
 
     def source(self, target: Port) -> Port | None:
-        """What feeds an input, past all nodes that pass their picture through."""
+        """The source of an input, skipping nodes that pass their picture through."""
         port = self.graph.links.get(target)
         if port is None or not self._is_passed(port):
             return port
         socket, passed = self.graph.target(target), list[tuple[Port, object]]()
-        # What fits depends on the target, by its kind. Many targets behind one long chain walk it once.
+        # The result depends on the kind of the target. Chains are walked once for all targets behind them.
         kind = socket if isinstance(socket, Value) or socket is None else (socket.kind, socket.channels)
         while port is not None and self._is_passed(port):
             passed.append((port, kind))
@@ -77,7 +77,7 @@ class GraphFacts:
         return port.node in self.graph.nodes and self.works(port.node) is None
 
     def first(self, id: str) -> Port | None:
-        """What feeds the first input of a node: its picture."""
+        """The source of a node's first input: its picture."""
         return next((self.source(Port(id, name)) for name in signature(self.graph.nodes[id]).inputs), None)
 
     def _neutral(self, id: str, item: Node) -> bool:
@@ -96,23 +96,23 @@ def find_layered_path(item: Item) -> Value | None:
 
 
 def layer_read(item: Item, output: str) -> str:
-    """The layer that a reader shows at an output, "" for other nodes. Outputs of a reader of renders are layers."""
+    """The layer that a reader shows at an output; "" for other nodes. Outputs of `read_render` are layers."""
     if path := find_layered_path(item):
         return getattr(item, path.layer_by)
     return output if isinstance(item, Reader) else ""
 
 
 class Check(NamedTuple):
-    """A rule and what finds its problems in a graph."""
+    """A rule and the function that finds its problems in a graph."""
 
     rule: Rule
     find: Callable[[GraphFacts], Iterator[Problem]]
 
 
 def bodies(graph: Graph, inside: str = "", at: str = "") -> Iterator[tuple[Graph, str, str]]:
-    """The graph and all groups that are part of its file, each with the path of the group and its JSON path.
+    """The graph and all groups in its file, each with its path and JSON path.
 
-    A group from a file of its own is for whoever looks at that file.
+    A group in a file of its own is checked with that file.
     """
     yield graph, inside, at
     for id, item in graph.nodes.items():

@@ -1,4 +1,4 @@
-"""Rules about what lies around a graph file: the folder, the repository."""
+"""Rules about the surroundings of a graph file: its folder and its repository."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ RULES = (PATH_CASE, OUTSIDE_REPOSITORY)
 
 @dataclass
 class Surroundings:
-    """What was found out about folders, each looked at once."""
+    """Facts about folders, each read once."""
 
     sandbox: Sandbox
     _names: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
@@ -42,7 +42,7 @@ class Surroundings:
     _roots: dict[str, Path | None] = field(default_factory=dict[str, "Path | None"])
 
     def problems(self, graph: Graph) -> Iterator[Problem]:
-        """What is wrong with the paths of a graph that has a folder."""
+        """Problems of the paths in a graph that has a folder."""
         folder = os.path.abspath(graph.folder)  # noqa: PTH100
         root = self.root(Path(folder))
         for body, inside, above in bodies(graph):
@@ -86,7 +86,7 @@ class Surroundings:
         return spelling if spelling != "/".join(PurePath(path).parts) else ""
 
     def _alike(self, folder: str) -> dict[str, list[str]]:
-        """What is in a folder, by its name without capitals."""
+        """The content of a folder, by names without case."""
         if folder not in self._spellings:
             spellings = self._spellings.setdefault(folder, {})
             for name in self._in(folder):
@@ -94,7 +94,7 @@ class Surroundings:
         return self._spellings[folder]
 
     def _in(self, folder: str) -> frozenset[str]:
-        """What is in a folder; nothing for one that may not be read."""
+        """The content of a folder; nothing if it may not be read."""
         if folder not in self._names:
             try:
                 is_allowed = not self.sandbox.fault(folder)

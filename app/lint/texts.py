@@ -68,12 +68,12 @@ def explain_fault(fault: DocumentError, text: str) -> tuple[Problem, int]:
 
 
 def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterator[tuple[Problem, int]]:
-    """What is wrong with the text of a graph, and the line of it, or 0 where the JSON path says it."""
+    """Problems of the text of a graph, with their lines; 0 if the JSON path gives the line."""
     try:
         canonical = document.dumps(graph)
     except GraphError:
         return
-    # A checkout on Windows may have other ends of lines, which is for git to say.
+    # A checkout on Windows may have other line ends; git is responsible for these.
     lines = text.replace("\r\n", "\n")
     if lines == canonical:
         return
@@ -86,7 +86,7 @@ def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]])
 
 
 def _grown(graph: Graph) -> bool:
-    """True if some of the nodes have had more than one version."""
+    """True if some nodes have a type with several versions."""
     return any(
         _grown(item.graph) if isinstance(item, Group) else (isinstance(item, Node) and item.version > 1)
         for item in graph.nodes.values()
@@ -94,7 +94,7 @@ def _grown(graph: Graph) -> bool:
 
 
 def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:
-    """Nodes of an older version, those of groups included. `raw` has been read before."""
+    """Nodes that were saved by an older version of their type, also in groups. `raw` is the text as read before."""
     nodes: Mapping[str, Mapping[str, Any]] = raw.get("nodes", {})
     for id, node in nodes.items():
         where = member(member(at, "nodes"), id)

@@ -62,7 +62,7 @@ _LATER = MappingProxyType(
         "suggest_pattern": "sequences",
     }
 )
-"""What most renderings do without, and the modules that have it, which are loaded when it is asked for (PEP 562)."""
+"""Rare parts and their modules, which are loaded on first use (PEP 562)."""
 
 
 def __getattr__(name: str) -> Any:

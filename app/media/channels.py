@@ -1,8 +1,9 @@
-"""From the channels of a file to its layers: what renderers call their channels, sorted into named groups.
+"""Sorts the channels of a file into its layers.
 
-A channel is `[view layer.]layer.component`; a part of a multi-part file may give the name instead. Channels with one
-prefix are a layer. Channels without any belong together where their letters do (R, G, B, A), else each is a layer.
-A layer whose header does not say so is data if its letters are not those of a color, or if its name is one of data.
+A channel is `[view layer.]layer.component`; in a multi-part file the name of the part may replace the prefix. Channels
+with the same prefix are a layer. Channels without a prefix belong together if their letters do (R, G, B, A); each other
+one is a layer. If the header does not say whether a layer is color or data, it is data if its letters are not those of
+a color, or if its name is that of data.
 """
 
 from __future__ import annotations
@@ -38,13 +39,13 @@ DATA_NAMES = {
     "uv": r"uvs?|st",
     "id": r"(object|material|prim|node|render)?id",
 }
-"""What normalized names of data look like, by what they may mean: numbers that are not color."""
+"""Normalized names of data layers, by what they may mean: numbers that are not color."""
 _DATA = re.compile("|".join(DATA_NAMES.values()))
 _DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
 
 
 class ChannelPart(Struct, frozen=True):
-    """The channels of one part of a file. `tag` is its color space or "data", "" where the header has none."""
+    """The channels of one part of a file. `tag` is its color space or "data", "" if the header has none."""
 
     index: int
     name: str
@@ -54,7 +55,7 @@ class ChannelPart(Struct, frozen=True):
 
     @property
     def label(self) -> str:
-        """Its name, or its number where it has none."""
+        """Its name, or its number without one."""
         return self.name or f"part{self.index}"
 
 
@@ -64,7 +65,7 @@ def is_depth(name: str) -> bool:
 
 
 def group_channels(parts: Sequence[ChannelPart]) -> tuple[Layer, ...]:
-    """All layers of a file in file order, each under a name of its own."""
+    """All layers of a file in file order, each under a unique name."""
     several = len(parts) > 1
     layers = [(part, layer) for part in parts for layer in _split_part(part, several)]
     uses = Counter(layer.full_name for _, layer in layers)
@@ -78,7 +79,7 @@ def group_channels(parts: Sequence[ChannelPart]) -> tuple[Layer, ...]:
 
 
 def _finish_layer(layer: Layer, has_shared_prefix: bool, tag: str) -> Layer:
-    """The layer with its short name and with whether it is data: its part's tag says so, else letters and name."""
+    """The layer with its short name, and whether it is data: by the tag of its part, else by letters and name."""
     name = layer.full_name.partition(".")[2] if has_shared_prefix else layer.full_name
     components = {component.casefold() for component in layer.channels}
     is_color = any(components <= set(family) for family in _COLORS)
@@ -87,7 +88,7 @@ def _finish_layer(layer: Layer, has_shared_prefix: bool, tag: str) -> Layer:
 
 
 def _split_part(part: ChannelPart, several: bool) -> Iterable[Layer]:
-    """The layers of one part: channels grouped by prefix, those without one by what belongs together."""
+    """The layers of one part: channels grouped by prefix, those without a prefix by their letters."""
     groups: dict[str, list[int]] = {}
     unprefixed = {name.casefold() for name in part.channels if "." not in name}
     family = next((family for family in _COMPONENTS if len(unprefixed.intersection(family)) > 1), ())
@@ -109,7 +110,8 @@ def _split_part(part: ChannelPart, several: bool) -> Iterable[Layer]:
 
 
 def _separate_strangers(names: Sequence[str], groups: Mapping[str, list[int]]) -> Iterable[tuple[str, list[int]]]:
-    """The groups; what stands beside the colors of one is its own, such as the depth of a view (`left.R`, `left.Z`)."""
+    """The groups. Channels beside the colors of a group become groups of their own, such as the depth of a view
+    (`left.R`, `left.Z`)."""
     for key, places in groups.items():
         words = {index: names[index].rpartition(".")[2].casefold() for index in places}
         colors = next((family for family in _RGB if set(family[:3]) <= set(words.values())), ())
@@ -119,7 +121,7 @@ def _separate_strangers(names: Sequence[str], groups: Mapping[str, list[int]]) -
 
 
 def _sort_components(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:
-    """Places in the natural order of their components, or as they are where there is none."""
+    """The indices of channels in the natural order of their components; in file order if there is none."""
     words = {index: names[index].rpartition(".")[2].casefold() for index in places}
     family = next((family for family in _COMPONENTS if set(words.values()) <= set(family)), None)
     return tuple(sorted(places, key=lambda index: family.index(words[index])) if family else places)

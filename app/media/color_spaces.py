@@ -1,4 +1,4 @@
-"""The color spaces of the layers of a file, and how they are known."""
+"""Finds the color spaces of the layers of a file, and the reasons."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .pictures.open import describe_picture, open_picture
 def find_layer_spaces(
     path: str | Path, manager: ColorManager, space: str = "", *, sandbox: Sandbox
 ) -> Mapping[str, FileSpace]:
-    """The color space of every layer of color by its full name; data has none. `space` is what the user says it is.
+    """The color space of every color layer by its full name; data has none. `space` is what the user says it is.
 
     Raises:
         InputError: the file cannot be read, or names a space that is unknown.
@@ -37,7 +37,8 @@ def find_layer_spaces(
 
 
 def describe_color_spaces(path: str | Path, sandbox: Sandbox) -> list[tuple[str, ...]]:
-    """Rows of words: layer, color space, reason; one row where all are alike, or one that says what is wrong."""
+    """Rows of words: layer, color space, reason. One row if all layers have the same; one row with the fault if there
+    is one."""
     try:
         spaces = find_layer_spaces(path, get_default_color_manager(), sandbox=sandbox)
     except HalationError as error:

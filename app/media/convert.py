@@ -1,6 +1,6 @@
-"""From the channels of a file to the array that a socket takes: color, missing channels, repair, placement.
+"""Converts the channels of a file to the array of a socket: color, missing channels, repair, placement.
 
-`convert_layer` is the one way there, for pictures, rows of pictures and frames of videos.
+Pictures, rows of pictures and frames of videos all go through `convert_layer`.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ _RGBA_LAYOUTS = {(*"rgb", alpha) for alpha in _ALPHA_NAMES}
 
 
 class LayerRequest(Struct, frozen=True):
-    """A layer, and the socket it is for; `width` counts the channels of a Vector.
+    """A layer, and the socket that reads it; `width` counts the channels of a Vector.
 
-    `space` is what its color is in, by name or role, "" to find out; `manager` says how colors are managed.
+    `space` is the color space of the layer, by name or role, "" to recognize it; `manager` is the color manager.
     """
 
     layer: str
@@ -46,7 +46,7 @@ class LayerRequest(Struct, frozen=True):
 
     @property
     def wants_color(self) -> bool:
-        """True for sockets of color, whatever the layer turns out to be."""
+        """True for sockets of color, even if the layer is data."""
         return self.kind in (Kind.IMAGE, Kind.COLOR)
 
 
@@ -64,10 +64,10 @@ class Pixels(Struct, frozen=True):
 
 
 def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Pixels:
-    """The array that a socket takes, from the channels of a layer over the data window that `spec` describes.
+    """The array for a socket, from the channels of a layer over the data window that `spec` describes.
 
-    The order matters: what is not finite is repaired among the pixels that the file has, before the display window
-    surrounds them with zeros.
+    The order matters: NaN and infinity are repaired among the pixels of the file, before the display window surrounds
+    them with zeros.
     """
     is_color, warning = request.wants_color and not layer.is_data, ""
     if is_color:
@@ -86,7 +86,7 @@ def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.
 
 
 def select_channels(block: Array, indices: Sequence[int], first: int) -> Array:
-    """Channels at these places in a part, of a block that begins with the one at `first`."""
+    """Channels at these indices in a part, of a block that begins with the channel `first`."""
     places = [index - first for index in indices]
     if places == list(range(places[0], places[0] + len(places))):
         return block[..., places[0] : places[-1] + 1]
@@ -96,11 +96,11 @@ def select_channels(block: Array, indices: Sequence[int], first: int) -> Array:
 def _to_light(
     block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo
 ) -> tuple[Array, FileSpace]:
-    """Premultiplied RGBA in the working space, and the space that the file was in.
+    """Premultiplied RGBA in the working space, and the space of the file.
 
-    A file stores color either straight or multiplied by alpha after encoding. Encoding is not linear, so the second
-    has to be divided out before it is undone, and alpha is applied to linear color in the end. Where nothing but a
-    matrix is between the two, the order does not matter, and nothing is divided.
+    A file stores color either straight, or multiplied by alpha after encoding. Encoding is not linear, so in the second
+    case color is divided by alpha before it is decoded; in both cases the linear color is multiplied by alpha at the
+    end. If a matrix is the whole conversion, the order does not matter, and nothing is divided.
     """
     manager = request.manager
     hints = read_color_hints(spec, info.format, layer.format)
@@ -114,7 +114,7 @@ def _to_light(
     rgb, alpha = _split_alpha(block, layer)
     if alpha is not None:
         alpha = to_float(alpha)
-        if info.format == "bmp" and not alpha.any():  # a fourth byte that is there to fill a word
+        if info.format == "bmp" and not alpha.any():  # a fourth byte that only pads a word
             alpha = np.ones_like(alpha)
     if keeps_numbers:
         rgb = to_float(rgb)
@@ -122,7 +122,7 @@ def _to_light(
         rgb = to_working(rgb, space, manager)
     else:
         rgb = to_float(rgb)
-        is_empty = (alpha == 0.0) & (rgb == 0.0).all(axis=2, keepdims=True)  # some curves give light for a code of 0
+        is_empty = (alpha == 0.0) & (rgb == 0.0).all(axis=2, keepdims=True)  # some curves give light for the code 0
         rgb = convert_premultiplied(rgb, alpha, lambda straight: to_working(straight, space, manager))
         rgb = np.where(is_empty, np.float32(0.0), rgb)
     if alpha is not None and is_straight:
@@ -131,7 +131,7 @@ def _to_light(
 
 
 def _split_alpha(block: Array, layer: Layer) -> tuple[Array, Array | None]:
-    """Three channels of color (one is gray, two are red and green), and alpha if there is one."""
+    """Three channels of color (one channel is gray, two are red and green), and alpha if there is one."""
     names = [name.casefold() for name in layer.channels]
     place = next((index for index, name in enumerate(names) if name in _ALPHA_NAMES and len(names) > 1), None)
     colors = [index for index in range(len(names)) if index != place]
@@ -154,7 +154,7 @@ def _join_rgba(rgb: Array, alpha: Array | None) -> Array:
 
 
 def _fit_width(array: Array, width: int) -> Array:
-    """The channels, followed by zeros for those that are missing."""
+    """The channels, with zeros for missing ones."""
     missing = width - array.shape[2]
     if missing <= 0:
         return array
@@ -162,10 +162,10 @@ def _fit_width(array: Array, width: int) -> Array:
 
 
 def _repair(array: Array, is_color: bool) -> tuple[Array, int]:
-    """The array without broken pixels, and how many there were.
+    """The array without NaN and infinity, and the number of repaired pixels.
 
-    Color takes the mean of its finite neighbors; in data a NaN becomes 0 and infinity, the background of many depth
-    passes, stays.
+    Color gets the mean of its finite neighbors. In data, NaN becomes 0, and infinity stays: many depth passes use it
+    for the background.
     """
     if not has_non_finite(array):
         return array, 0
@@ -176,7 +176,7 @@ def _repair(array: Array, is_color: bool) -> tuple[Array, int]:
 
 
 def _place_in_display_window(array: Array, spec: oiio.ImageSpec) -> Array:
-    """The data window inside the display window; what lies outside of it is cut off."""
+    """The data window placed in the display window; what lies outside is cut off."""
     width, height = spec.full_width or spec.width, spec.full_height or spec.height
     x, y = spec.x - spec.full_x, spec.y - spec.full_y
     if (x, y, spec.width, spec.height) == (0, 0, width, height):

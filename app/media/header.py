@@ -1,4 +1,4 @@
-"""The whole header of a file: its parts and windows, and everything that it says of itself."""
+"""The whole header of a file: its parts, windows and attributes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class PartHeader:
 
 @dataclass(frozen=True)
 class FileHeader:
-    """What a file says before its first pixel. `attributes` are those of all parts; of equal names the first counts."""
+    """The header of a file. `attributes` are those of all parts; of equal names the first one counts."""
 
     info: ImageInfo
     parts: tuple[PartHeader, ...]
@@ -94,7 +94,7 @@ def _read_attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
     for item in spec.extra_attribs:
         try:
             name, value = make_printable(item.name), item.value
-        except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
+        except UnicodeDecodeError:  # text in an unknown encoding is no reason to refuse a picture
             continue
         if isinstance(value, str):
             attributes[name] = make_printable(value)

@@ -1,4 +1,4 @@
-"""What rendering needs to know of a picture or video, from its header alone."""
+"""The facts of a picture or video that rendering needs, from its header."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The layers of a file, and how one of them is found by a name that a user writes."""
+"""The layers of a file, and how one is found by a name that the user writes."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from msgspec.structs import replace
 from ..errors import InputError
 
 _BEAUTY_NAMES = ("combined", "beauty", "rgba", "rgb", "c", "ci")
-"""What renderers call the picture itself, the usual one first."""
+"""Names that renderers give the picture itself, the usual one first."""
 
 _MOST_LISTED = 20
-"""Layers that an error message lists."""
+"""Layers that an error message lists. Chosen by judgement: about a line."""
 
 
 class Layer(Struct, frozen=True):
@@ -38,7 +38,7 @@ class Layer(Struct, frozen=True):
 
     @property
     def first(self) -> int:
-        """The place of its first channel in the part."""
+        """The index of its first channel in the part."""
         return self.indices[0]
 
     @property
@@ -48,10 +48,10 @@ class Layer(Struct, frozen=True):
 
 
 class ImageInfo(Struct, frozen=True):
-    """What rendering needs of a file's header. `size` is the display window, upright; `fingerprint` changes when the
-    file does.
+    """The facts of a file's header that rendering needs.
 
-    `by_rows`: rows of it can be read alone, since its pixels are stored upright, all of them, and not as a stream.
+    `size` is the display window, upright; `fingerprint` changes when the file does. `by_rows` is True if single rows
+    can be read: pixels are stored upright, over the whole window, and not as one stream.
     """
 
     path: str
@@ -65,9 +65,9 @@ class ImageInfo(Struct, frozen=True):
 def find_layer(info: ImageInfo, name: str, suggest: Callable[[str], list[str]] | None = None) -> Layer:
     """The layer that `name` means: `Combined`, `ViewLayer.Combined`, `Z`, or one channel such as `Position.Z`.
 
-    Letter case, blanks, `_` and `-` do not matter; "" is the first color layer. The strictest reading of a name that
-    any layer fits counts: the name as it is, then normalized, then without what stands before it, then as a channel.
-    `suggest` gives names of layers that may have been meant; without it those count that are spelled alike.
+    Case, blanks, `_` and `-` do not matter; "" is the first color layer. Readings of the name are tried in order:
+    unchanged, normalized, without its prefix, as a channel; the first that fits a layer decides. `suggest` returns
+    names that the user may have meant; without it, names with a similar spelling are suggested.
 
     Raises:
         InputError: no layer, or more than one, answers to the name.
@@ -86,12 +86,12 @@ def find_layer(info: ImageInfo, name: str, suggest: Callable[[str], list[str]] |
 
 
 def has_layer(info: ImageInfo, name: str) -> bool:
-    """True if at least one layer answers to the name."""
+    """True if at least one layer has the name."""
     return bool(_match_name(info, name))
 
 
 def _match_name(info: ImageInfo, name: str) -> list[Layer]:
-    """The layers that fit the strictest reading of a name that any fits."""
+    """The layers that fit the strictest reading of a name."""
     word = normalize_name(name)
     readings: tuple[Callable[[Layer], bool], ...] = (
         lambda layer: name in (layer.full_name, layer.name),
@@ -107,7 +107,7 @@ def _match_name(info: ImageInfo, name: str) -> list[Layer]:
 
 
 def suggest_layers(layers: Sequence[Layer], name: str) -> list[str]:
-    """The names of layers that are most like one that is not there, at most three."""
+    """The names of layers that are most similar to a name, at most three."""
     names = {normalize_name(layer.name): layer.name for layer in layers}
     return [names[word] for word in difflib.get_close_matches(normalize_name(name), names, 3, 0.5)]
 
@@ -118,7 +118,7 @@ def normalize_name(name: str) -> str:
 
 
 def split_layer(text: str) -> tuple[str, str]:
-    """`shot.exr:Depth` as path and layer. A path that exists as it stands has no layer; `C:` is a drive."""
+    """`shot.exr:Depth` as path and layer. A path that exists has no layer; `C:` is a drive."""
     path, colon, layer = text.rpartition(":")
     if not colon or len(path) < 2 or "/" in layer or "\\" in layer or Path(text).exists():
         return text, ""
@@ -133,7 +133,7 @@ def _unknown_layer(info: ImageInfo, name: str, suggestions: Sequence[str]) -> In
 
 
 def _default_layer(layers: Sequence[Layer]) -> Layer:
-    """The picture itself: by name, else the first color layer, else the first."""
+    """The layer of the picture itself: by name, else the first color layer, else the first layer."""
     colors = [layer for layer in layers if not layer.is_data]
     for word in _BEAUTY_NAMES:
         for layer in colors:

@@ -1,4 +1,4 @@
-"""How large a picture may be: a damaged or hostile header must not end the process."""
+"""Limits for the size of pictures: a damaged or hostile header must not end the process."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from ..errors import InputError
 from ..resources.machine import machine_memory
 
 LIMIT = "HALATION_MAX_PIXELS"
-"""The environment variable for how many pixels a picture may have at most."""
+"""The environment variable that sets the largest number of pixels of a picture."""
 
 _LONGEST_SIDE = 1 << 17
-"""Four times the largest texture of today's GPUs (32768): what is longer is a damaged header."""
+"""The longest side: four times the largest texture of today's GPUs (32768). A longer side is a damaged header."""
 
 _MOST_PIXELS = 1 << 28
-"""16384 x 16384: 4 GiB as RGBA in 32-bit floats, where nobody sets the limit."""
+"""16384 x 16384: 4 GiB as RGBA in 32-bit floats. It applies if nobody sets the limit."""
 
 _CHANNEL_BYTES = 4
 _WORKING_COPIES = 3
 _WORKING_CHANNELS = 4
-"""What converting takes besides the file's own channels: as stored, as light and as RGBA, of four channels each."""
+"""Channels in memory while a picture is converted, besides those of the file: as stored, as light and as RGBA, four
+channels each."""
 
 
 def check_size(path: str, size: Size) -> None:
@@ -36,7 +37,7 @@ def check_size(path: str, size: Size) -> None:
 
 
 def check_memory(path: str, size: Size, channels: int) -> None:
-    """Refuse what this machine cannot hold, before the system ends the process for it. Raises InputError."""
+    """Refuse a picture that does not fit into memory, before the system ends the process. Raises InputError."""
     available = machine_memory()
     needed = size[0] * size[1] * _CHANNEL_BYTES * (channels + _WORKING_COPIES * _WORKING_CHANNELS)
     if available < needed:

@@ -1,4 +1,4 @@
-"""Attributes of a file's header that are worth carrying to the next file."""
+"""Attributes of a file's header that are copied to the files made from it."""
 
 from __future__ import annotations
 
@@ -30,27 +30,27 @@ _JPEG_BYTES = 8000
 """Bytes of one attribute in a JPEG. Chosen by judgement: six long texts fit into `_JPEG_TOTAL`, and a single one cannot
 take the place of all others."""
 _JPEG_TOTAL = 48_000
-"""Bytes of all attributes together but the packed one: each block of a JPEG's header may hold all of them, with their
-names, within 65,533 bytes (ITU T.81)."""
+"""Bytes of all attributes together except the packed one: each block of a JPEG's header may hold all of them, with
+their names, within 65,533 bytes (ITU T.81)."""
 _ASPECTS = ("PixelAspectRatio", "XResolution", "YResolution")
 _MOST_ASPECT = 1e6
-"""OpenEXR refuses pixels that are wider or higher by more."""
+"""The largest pixel aspect ratio that OpenEXR accepts."""
 _PACKED = {"jpeg": "halation:header", "tiff": "DocumentName"}
-"""Formats that keep no text under names of our own: the one name that has to do for all of it."""
+"""Formats without custom attributes, and the one attribute that holds all of Halation's."""
 _PACKED_BYTES = 60_000
 """Bytes of the packed attribute of a JPEG: below the 65,533 of a block, with room for its name and escapes."""
 _OURS = "halation:"
 
 
 class TypedAttribute(Struct, frozen=True):
-    """A value whose type is more than int, float or str: `type` is OpenImageIO's name (`matrix`, `timecode`)."""
+    """A value with a type besides int, float and str: `type` is OpenImageIO's name (`matrix`, `timecode`)."""
 
     type: str
     value: Any
 
 
 def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float | str | TypedAttribute]:
-    """The attributes of the first part that still hold for another picture made from it.
+    """The attributes of the first part that also apply to a picture made from it.
 
     Those that describe how this file is stored (windows, compression, color encoding, date) are left out.
 
@@ -68,7 +68,7 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
                 if is_structural(item.name):
                     continue
                 value: Any = item.value
-            except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
+            except UnicodeDecodeError:  # text in an unknown encoding is no reason to refuse a picture
                 continue
             if value is not None:
                 is_plain = isinstance(value, int | float | str)
@@ -77,12 +77,12 @@ def read_metadata(path: str | Path, sandbox: Sandbox) -> dict[str, int | float |
 
 
 def is_structural(name: str) -> bool:
-    """True for attributes that describe how a file is stored, which another picture made from it will not be."""
+    """True for attributes that describe how this file is stored."""
     return _STRUCTURAL.fullmatch(name) is not None
 
 
 def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str) -> None:
-    """Put attributes into a header to be written, as far as the format can hold them.
+    """Put attributes into a header, as far as the format can hold them.
 
     No date is among them: the same picture gives the same bytes.
     """
@@ -96,9 +96,9 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
         name, value = escape_bytes(name), escape_bytes(value) if isinstance(value, str) else value
         if name in _ASPECTS and not has_aspect:
             continue
-        if format == "jpeg" and isinstance(value, TypedAttribute):  # it would come back as text
+        if format == "jpeg" and isinstance(value, TypedAttribute):  # it would be read back as
             continue
-        if format == "jpeg":  # libjpeg ends the process where a block of the header is longer than 64 KB
+        if format == "jpeg":  # libjpeg ends the process if a block of the header is longer than 64 KB
             is_packed, size = name == _PACKED["jpeg"], len(escape(str(value)).encode())
             if size > (_PACKED_BYTES if is_packed else min(_JPEG_BYTES, left)):
                 continue
@@ -110,7 +110,7 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
 
 
 def _set_attribute(spec: oiio.ImageSpec, name: str, value: Any) -> None:
-    """Put an attribute into a header, or leave it out where its value is none of its type: so damaged files have it."""
+    """Put an attribute into a header, or leave it out if its value does not fit its type, as in damaged files."""
     with contextlib.suppress(TypeError, ValueError, RuntimeError, OverflowError):
         if isinstance(value, TypedAttribute):
             spec.attribute(name, oiio.TypeDesc(value.type), value.value)
@@ -119,7 +119,7 @@ def _set_attribute(spec: oiio.ImageSpec, name: str, value: Any) -> None:
 
 
 def _is_aspect(metadata: Mapping[str, Any]) -> bool:
-    """True if the shape of pixels, given as a ratio or by two resolutions, is one that pixels can have."""
+    """True if a pixel aspect ratio, given as a number or by two resolutions, is possible."""
     numbers = [value for name in _ASPECTS if (value := metadata.get(name)) is not None]
     if not all(isinstance(number, int | float) and 0.0 < number < math.inf for number in numbers):
         return False
@@ -128,7 +128,7 @@ def _is_aspect(metadata: Mapping[str, Any]) -> bool:
 
 
 def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
-    """What is written instead: of formats with one place for all that is ours, one text of JSON there."""
+    """The attributes to write: for formats with a single custom attribute, all of Halation's as one JSON text."""
     name = _PACKED.get(format)
     ours = {key: value for key, value in metadata.items() if key.startswith(_OURS)}
     if not name or not ours:
@@ -140,7 +140,7 @@ def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
 def _unpack(
     attributes: dict[str, int | float | str | TypedAttribute], name: str
 ) -> dict[str, int | float | str | TypedAttribute]:
-    """What was meant by it."""
+    """The attributes from that JSON text."""
     text = attributes.get(name, "")
     if not isinstance(text, str) or not text.startswith(f'{{"{_OURS}'):
         return attributes

@@ -1,14 +1,14 @@
-"""Pixels of layers, as the sockets of a graph take them.
+"""Reads layers as the pixels that sockets of a graph take.
 
-From a path to an array, a step and a function each:
+From a path to an array, one function for each step:
 
 1. open the file and read its header: `pictures.open.open_picture`, `describe_picture`;
 2. choose the layer: `layers.find_layer`;
 3. decode its channels, in the file's precision: `pictures.reader.decode_layers`;
 4. convert them to what the socket takes (color, repair, placement): `convert.convert_layer`.
 
-Of a video, `video.reader` decodes the frame instead; the last step is the same. Which file a frame of a sequence is
-was decided before: `sequences.find_frame_file`.
+For a video, `video.reader` decodes the frame instead; the last step is the same. `sequences.find_frame_file` has
+already found the file of a frame.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def read_layer(
     manager: ColorManager | None = None,
     sandbox: Sandbox,
 ) -> Pixels:
-    """Read one layer over the whole display window; what the file has no data for is 0.
+    """Read one layer over the whole display window; pixels without data are 0.
 
     IMAGE is RGBA in the working space, premultiplied, alpha 1 where the file has none. FIELD is the first channel,
     VECTOR the first `width` ones, missing ones 0: both are the numbers of the file, without any color conversion.
@@ -55,7 +55,7 @@ def read_layer(
 def read_layers(
     path: str | Path, requests: Sequence[LayerRequest], frame: int = 1, *, sandbox: Sandbox
 ) -> list[Pixels]:
-    """Read several layers of one file; those that lie in one part are decoded together.
+    """Read several layers of one file; layers of one part are decoded together.
 
     Raises:
         InputError: as `read_layer`.

@@ -1,9 +1,9 @@
-"""Numbered pictures: which frames there are, and the file of each.
+"""Sequences of numbered pictures: their frames, and the file of each frame.
 
-A path is a pattern (`shot.####.exr`), a folder that holds numbered pictures, a video, or one picture. A file whose name
-happens to look like a pattern is one picture or video. The frames of a video count from 1. Of a folder the name with
-the most frames counts; of several with as many, that whose number comes last in the name, then the first by alphabet.
-Only the one folder is ever listed.
+A path is a pattern (`shot.####.exr`), a folder with numbered pictures, a video, or one picture. An existing file whose
+name looks like a pattern is one picture or video. Frames of a video count from 1. In a folder, the name with the most
+frames is the sequence; of several with as many, the one whose number comes last in the name, then the first in
+alphabetical order. Only this one folder is listed.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from fractions import Fraction
 
 _CLOCK_STEP_NS = 2_000_000_000
-"""Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""
+"""Nanoseconds: the resolution of the coarsest file system clocks. A folder that changed just now may change again with
+the same time."""
 
 _LONGEST_TEXT = 60
 _MOST_NUMBERS = 8
@@ -43,9 +44,9 @@ _NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
 
 
 class FrameSequence(Struct, frozen=True, dict=True):
-    """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order.
+    """The frames of a pattern that have a file. `names` are the names of the files by frame, in order.
 
-    Of a video all are in the one file, and `rate` is how many of them a second has.
+    For a video all names are the same file, and `rate` is its frames per second.
     """
 
     pattern: Pattern
@@ -59,31 +60,31 @@ class FrameSequence(Struct, frozen=True, dict=True):
 
     @cached_property
     def gaps(self) -> tuple[tuple[int, int], ...]:
-        """What is missing between the first and the last, each gap as its first and last frame."""
+        """The gaps between the first and the last frame, each as its first and last missing frame."""
         return tuple((here + 1, there - 1) for here, there in pairwise(self.frames) if there - here > 1)
 
     @property
     def missing(self) -> int:
-        """How many frames the gaps lack."""
+        """The number of missing frames."""
         return sum(last - first + 1 for first, last in self.gaps)
 
     @cached_property
     def frames_text(self) -> str:
-        """The frames that are there as text, such as `1-12,14-24`, cut where that would be too long to read."""
+        """The existing frames as text, such as `1-12,14-24`, shortened if it is too long to read."""
         return _shorten(format_frames(self.frames))
 
     @property
     def gaps_text(self) -> str:
-        """The gaps as text, cut likewise."""
+        """The gaps as text, shortened likewise."""
         return _shorten(",".join(str(first) if first == last else f"{first}-{last}" for first, last in self.gaps))
 
     def path(self, frame: int) -> str:
-        """The file of a frame that is there."""
+        """The file of an existing frame."""
         return self.pattern.folder + self.names[frame]
 
 
 def find_sequence(path: str, sandbox: Sandbox) -> FrameSequence | None:
-    """The numbered pictures or the video that a path means, maybe without a frame; None for a path that is one picture.
+    """The sequence or video that a path means, maybe without any frame; None for a path of one picture.
 
     Raises:
         InputError: a video that cannot be read, a folder without numbered pictures, or one that may not be read.
@@ -105,10 +106,10 @@ def find_sequence(path: str, sandbox: Sandbox) -> FrameSequence | None:
 
 
 def find_frame_file(path: str, frame: int, missing: Missing = "error", *, sandbox: Sandbox) -> FrameFile:
-    """The file that shows a frame; of a video, which of its frames. One picture is its own, whatever the frame.
+    """The file that shows a frame; for a video also the number of the frame. For one picture it is always the picture.
 
-    `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
-    earlier; `black` names the nearest one too, for its size.
+    `hold` takes the last frame before it, or the first of all; `nearest` the closest one, of two the earlier; `black`
+    returns the nearest one too, for its size.
 
     Raises:
         InputError: the frame is missing and nothing was to stand for it, or there is no frame at all.
@@ -166,7 +167,7 @@ def _video_frame(path: str, frame: int, missing: Missing, sandbox: Sandbox) -> F
 
 
 def check_has_files(sequence: FrameSequence, sandbox: Sandbox) -> None:
-    """Raise InputError for a sequence without a single file, with the name that may have been meant."""
+    """Raise InputError for a sequence without any file, with a similar name as a suggestion."""
     if sequence.frames:
         return
     text, folder = sequence.pattern.text, sequence.pattern.folder
@@ -179,7 +180,7 @@ def check_has_files(sequence: FrameSequence, sandbox: Sandbox) -> None:
 
 
 def suggest_pattern(path: str, sandbox: Sandbox) -> str | None:
-    """The pattern of a picture that is one of several: `shot.0012.exr` beside shot.0011.exr is `shot.####.exr`."""
+    """The pattern of a picture that is part of a sequence: `shot.0012.exr` beside shot.0011.exr is `shot.####.exr`."""
     if not _is_file(path):
         return None
     name = Path(path).name
@@ -209,9 +210,9 @@ def _match_names(pattern: Pattern, names: tuple[str, ...]) -> FrameSequence:
 
 @lru_cache(maxsize=16)
 def _rank_patterns(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
-    """The patterns that pictures among these files fit, with their rank: by count, then by how far back the number is.
+    """The patterns that fit pictures among these files, with their rank: by count, then by the place of the number.
 
-    Names that would look like something else as a pattern have none.
+    Names that would mean something else as a pattern are left out.
     """
     numbers: defaultdict[tuple[str, str, int], list[str]] = defaultdict(list)
     endings = list_readable_endings()
@@ -229,7 +230,7 @@ def _rank_patterns(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
 
 
 def _find_numbers(name: str) -> Iterator[tuple[str, str, str]]:
-    """The numbers in a name without its ending, the last one first: what stands before, the number, what is after."""
+    """The numbers in a name without its ending, the last one first: the text before, the number, the text after."""
     stem = name.rpartition(".")[0]
     for match in list(_NUMBER.finditer(stem))[: -_MOST_NUMBERS - 1 : -1]:
         if len(match[0]) <= _WIDEST:
@@ -237,7 +238,7 @@ def _find_numbers(name: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _possible_widths(numbers: list[str]) -> set[int]:
-    """The paddings that numbers may have: those that zeros show, or the length that all share, or none."""
+    """The possible paddings of the numbers: by their leading zeros, or the common length, or none."""
     padded = {len(number) for number in numbers if number[0] == "0" and len(number) > 1}
     lengths = {len(number) for number in numbers}
     return lengths if len(lengths) == 1 else {1, *padded}
@@ -249,7 +250,7 @@ def _fits(number: str, width: int) -> bool:
 
 @lru_cache(maxsize=_WIDEST)
 def _bare_pattern(width: int) -> Pattern:
-    """A number and nothing else."""
+    """The pattern of a number and nothing else."""
     return Pattern("", "", ("", ""), (width,))
 
 
@@ -278,7 +279,7 @@ def _is_read_back(text: str, before: str, after: str) -> bool:
 
 
 def _list_folder(folder: str, sandbox: Sandbox) -> tuple[str, ...]:
-    """The names of the files of a folder, from memory where it has not changed since; none if there is no folder."""
+    """The names of the files in a folder, from the cache if it has not changed; none if there is no folder."""
     place = Path(folder or ".").absolute()
     sandbox.check(place)
     try:

@@ -29,7 +29,7 @@ from .results import Outcome, PictureCheck
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How cases are run. `update` writes goldens that are missing or differ; `out` is a folder for failed pictures.
+    """The settings of a run. `update` writes goldens that are missing or differ; `out` is a folder for failed pictures.
 
     With `pictures`, failed checks get views for a report.
     """

@@ -12,7 +12,7 @@ ENDING = ".suite.toml"
 
 @dataclass(frozen=True)
 class Metric:
-    """A measure of how far pictures are apart. `least` says that the tolerance is the smallest allowed value."""
+    """A measure of the difference of pictures. `least` means that the tolerance is the smallest allowed value."""
 
     name: str
     tolerance: float
@@ -81,7 +81,7 @@ class Case:
 
     @property
     def id(self) -> str:
-        """How a case is named everywhere: by its file and its own name."""
+        """The name of a case: its file and its own name."""
         return f"{self.suite.as_posix()}::{self.name}"
 
 

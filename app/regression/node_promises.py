@@ -1,4 +1,4 @@
-"""What every node promises: `halation nodes --check` and the tests of all nodes look whether a node keeps it.
+"""The promises of every node, which `halation nodes --check` and the tests of all nodes check.
 
 Each function yields sentences about what is wrong, none for a node that keeps its promises: its class explains itself
 and has sound ranges, its shader fits the class and compiles, and its pixels are finite whatever comes in.
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 Pictures = dict[str, np.ndarray]
 
 _PASS_NAMES = frozenset({"pixel", "extent", "proxy", "frame"})
-"""What every pass declares itself."""
+"""Names that every pass declares."""
 
 _PASS_TEXT = ("#version", "void main", "uniform ", "texture(", "imageLoad")
-"""What the compiler writes around the functions of a node, and in place of a call that reads a picture."""
+"""Text that the compiler writes around the functions of a node, and instead of a call that reads a picture."""
 
 
 def find_declaration_faults(node: type[Node]) -> Iterator[str]:
-    """What the class leaves out or contradicts: its tooltip, units, ranges and choices."""
+    """Faults of the class: its tooltip, units, ranges and choices."""
     doc = inspect.getdoc(node)
     is_generated = (doc or "").startswith(f"{node.__name__}(")  # a dataclass without a docstring describes its fields
     if not doc or is_generated or doc == inspect.getdoc(node.__mro__[1]):
@@ -92,9 +92,9 @@ def find_shader_faults(node: type[Node]) -> Iterator[str]:
 
 
 def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
-    """What is wrong in a shader file: names that clash, includes that lead nowhere, text that the compiler writes.
+    """Faults of a shader file: names that clash, includes of no file, text that only the compiler may write.
 
-    `names` are the files whose functions may come into one program with its own.
+    `names` are the files whose functions may be in one program with its own.
     """
     library = load_library()
     try:
@@ -121,7 +121,7 @@ def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:
 
 
 def _signature(function: GlslFunction) -> tuple[str, tuple[str, ...]]:
-    """What GLSL tells functions apart by."""
+    """The part of a signature by which GLSL distinguishes functions."""
     return function.name, tuple(type for type, _ in (*function.parameters, *function.outputs))
 
 
@@ -264,11 +264,11 @@ TRIALS: Mapping[str, Callable[[Renderer, type[Node], str], Iterator[str]]] = Map
         "half coverage": _try_half_coverage,
     }
 )
-"""What is tried with the pixels of a node."""
+"""Trials with the pixels of a node."""
 
 
 def find_render_faults(renderer: Renderer, node: type[Node], table: str = "") -> Iterator[str]:
-    """What is wrong with its pixels: sizes, NaN and infinity, choices, half-covered pixels.
+    """Faults of its pixels: sizes, NaN and infinity, choices, half-covered pixels.
 
     `table` is a file for values that are paths of color tables.
     """

@@ -1,4 +1,4 @@
-"""Suites as tests of pytest: every case of a `*.suite.toml` is one. Until there is such a file nothing is loaded."""
+"""A pytest plug-in: every case of a `*.suite.toml` file is a test. Nothing is loaded until there is such a file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """Suites, which are told by their name."""
+    """The suite files, recognized by their names."""
     return SuiteFile.from_parent(parent, path=file_path) if file_path.name.endswith(_ENDING) else None  # pyright: ignore[reportUnknownMemberType]
 
 
@@ -79,11 +79,11 @@ class CaseItem(pytest.Item):
             raise CaseFailure(f"{outcome.sentence}{where}")
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """The sentence alone: where it was raised is nobody's business."""
+        """The sentence alone: the traceback does not matter."""
         return str(excinfo.value) if isinstance(excinfo.value, CaseFailure) else super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int | None, str]:
-        """Where a failure is said to be."""
+        """The place of a failure in pytest's report."""
         return self.path, None, f"{self.path.name}::{self.name}"
 
     def _how(self) -> RunOptions:

@@ -1,4 +1,4 @@
-"""What became of cases."""
+"""Results of cases."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class PictureCheck:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of a case. `sentence` says why it failed, was skipped, or what was blessed."""
+    """The outcome of a case. `sentence` says why it failed or was skipped, or which golden was written."""
 
     case: Case
     status: Status

@@ -176,7 +176,7 @@ def read_goldens(table: TomlTable, folder: Path, case: str, graph: str) -> tuple
 
 
 def describe_value(item: object) -> str:
-    """What a value of a file is, for a sentence."""
+    """The type of a value of a file, for a sentence."""
     match item:
         case bool():
             return "true" if item else "false"

@@ -1,1 +1,1 @@
-"""What the layers of a render are: names, conventions, cameras, mattes."""
+"""Recognizes the layers of a render: names, conventions, cameras, mattes."""

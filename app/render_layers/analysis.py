@@ -1,4 +1,4 @@
-"""What a render turns out to hold: which layer is what, by which conventions, seen by which camera.
+"""Analyzes a render: which layer is what, its conventions, and its camera.
 
     found = survey("shot.exr")
     found.layer(Role.DEPTH), found.conventions[Role.DEPTH].kind, found.camera.camera
@@ -32,12 +32,13 @@ from .recognition import FileMaker, RenderPass, best_claims, find_maker, recogni
 
 _ROLES_WITH_CONVENTIONS = (Role.DEPTH, Role.NORMAL, Role.POSITION, Role.VELOCITY)
 _AGREEMENT_PIXELS = 0.5
-"""A camera in the header that sees the positions within half a pixel is the camera of the picture."""
+"""Pixels. A camera in the header whose error is below this is the camera of the picture: pixel centers leave half a
+pixel open."""
 
 
 @dataclass(frozen=True)
 class RenderCamera:
-    """The camera of a render, None where nothing tells it, and how it was found; `solved` says how exactly."""
+    """The camera of a render, or None, and the reason; `solved` says how exact it is."""
 
     camera: CameraModel | None
     reason: str
@@ -52,9 +53,9 @@ class _PixelFindings:
 
 @dataclass(frozen=True)
 class RenderAnalysis:
-    """A render: `passes` says what its layers are, `before` is the frame before it, if that was given.
+    """A render: `passes` are its layers with their roles, `before` is the previous frame, if it is given.
 
-    `named` are layers that somebody chose for a role.
+    `named` are layers that the user has chosen for a role.
     """
 
     header: FileHeader
@@ -65,7 +66,8 @@ class RenderAnalysis:
     chosen_layers: Mapping[Role, Layer] = field(default_factory=lambda: MappingProxyType[Role, Layer]({}))
 
     def find_layer(self, role: Role) -> Layer | None:
-        """The layer of this role: that which was named, else the one with the best claim; None if several have it."""
+        """The layer of a role: the chosen one, else the one with the best claim; None if several have an equal
+        claim."""
         if role in self.chosen_layers:
             return self.chosen_layers[role]
         best = best_claims(self.passes, role)
@@ -73,25 +75,25 @@ class RenderAnalysis:
 
     @property
     def roles(self) -> tuple[Role, ...]:
-        """The roles that have a layer, in the order of the layers; those that somebody chose one for come last."""
+        """The roles that have a layer, in the order of the layers; roles with a chosen layer come last."""
         roles = [item.role for item in self.passes if item.role is not None]
         return tuple(dict.fromkeys([*roles, *self.chosen_layers]))
 
     @cached_property
     def rivals(self) -> Mapping[Role, tuple[Layer, ...]]:
-        """The roles that several layers claim alike, which leaves them to the user."""
+        """The roles that several layers claim equally, so that the user must choose."""
         open_roles = [role for role in self.roles if role not in PLURAL_ROLES and role not in self.chosen_layers]
         claims = {role: best_claims(self.passes, role) for role in open_roles}
         return {role: tuple(item.layer for item in best) for role, best in claims.items() if len(best) > 1}
 
     @property
     def conventions(self) -> Mapping[Role, Convention]:
-        """How depth, normals, positions and motion are meant, of those that there are. Raises InputError."""
+        """The conventions of depth, normals, positions and motion, if they exist. Raises InputError."""
         return self._findings.conventions
 
     @property
     def camera(self) -> RenderCamera:
-        """The camera, in the axes that positions refer to. Raises InputError."""
+        """The camera, in the axes of the positions. Raises InputError."""
         return self._findings.camera
 
     @cached_property
@@ -120,7 +122,7 @@ class RenderAnalysis:
         return find_habit(role, word, self.maker.renderer)
 
     def _read_pixels(self) -> dict[Role, Array]:
-        """The layers that conventions and the camera are found in."""
+        """The layers from which conventions and the camera are found."""
         roles = [*_ROLES_WITH_CONVENTIONS, *([Role.BEAUTY] if self.before and self.find_layer(Role.VELOCITY) else [])]
         layers = {role: layer for role in roles if (layer := self.find_layer(role))}
         requests = [LayerRequest(layer.full_name, Kind.VECTOR, len(layer.channels)) for layer in layers.values()]
@@ -128,7 +130,7 @@ class RenderAnalysis:
         return {role: pixels.array for role, pixels in zip(layers, arrays, strict=True)}
 
     def _find_camera(self, pixels: Mapping[Role, Array]) -> RenderCamera:
-        """Solved from positions where that is possible, else as the header says."""
+        """The camera, solved from positions if possible, else from the header."""
         header = read_header_camera(self.header.attributes, self.header.info.size)
         position = pixels.get(Role.POSITION)
         if position is None or position.shape[2] < 3:
@@ -142,7 +144,7 @@ class RenderAnalysis:
         return RenderCamera(solved.camera, f"solved from the positions{check}", solved)
 
     def _compare_with_header(self, header: CameraModel | None, solved: CameraModel, position: Array) -> str:
-        """What there is to say of a camera in the header beside one that was solved."""
+        """A remark on a camera in the header, compared with the solved one."""
         if header is None:
             return ""
         if evidence.find_position_space(solved, position).kind != VectorSpace.WORLD:
@@ -153,7 +155,7 @@ class RenderAnalysis:
         return f"; that of the header is {off:.3g} px off and was not used"
 
     def _measure_by_positions(self, pixels: Mapping[Role, Array], camera: CameraModel | None) -> dict[Role, Convention]:
-        """What the positions prove of themselves, of depth and of normals."""
+        """The conventions that the positions prove for themselves, depth and normals."""
         if camera is None:
             return {}
         position, conventions = pixels[Role.POSITION], dict[Role, Convention]()
@@ -170,7 +172,7 @@ class RenderAnalysis:
         return conventions
 
     def _measure_motion(self, pixels: Mapping[Role, Array], camera: RenderCamera) -> Convention | None:
-        """What the frame before proves of motion."""
+        """The convention of motion that the previous frame proves."""
         velocity = pixels.get(Role.VELOCITY)
         if velocity is None or velocity.shape[2] < 2 or self.before is None:
             return None
@@ -185,7 +187,7 @@ class RenderAnalysis:
             (earlier,) = read_layers(self.before.header.info.path, [want], sandbox=self.sandbox)
             rule = evidence.match_velocity_with_pictures(velocity, pixels[Role.BEAUTY], earlier.array)
             if rule is not None and habit_rule is not None and habit_rule.kind == MotionDirection.TO_NEXT:
-                rule = replace(rule, kind=habit_rule.kind)  # what pictures show is much the same before and after
+                rule = replace(rule, kind=habit_rule.kind)  # colors change little between frames
         if rule is not None and habit_rule is not None and habit_rule.scale[:2] == rule.scale:
             return replace(rule, scale=habit_rule.scale)  # the other two channels as usual, too
         return rule
@@ -198,7 +200,7 @@ def analyze_render(
     *,
     sandbox: Sandbox,
 ) -> RenderAnalysis:
-    """Look at a render; `before` is the same render one frame earlier, which shows which way motion points.
+    """Analyze a render; `before` is the same render one frame earlier, which shows the direction of motion vectors.
 
     `named` are layers that are to have a role whatever they look like. The same file is looked at once.
 

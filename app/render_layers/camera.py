@@ -1,14 +1,14 @@
-"""The camera of a render, from where the pixels lie in the world, or from what the header says.
+"""The camera of a render, solved from the positions of its pixels, or read from its header.
 
 A place P seen at (u, v) obeys (u d, v d, d) = M (P, 1) for a 3 x 4 matrix M. Without depth, u (M3 P) - M1 P = 0 and
 v (M3 P) - M2 P = 0 are linear in M up to its scale: the direct linear transform (Hartley and Zisserman, "Multiple View
 Geometry", 2nd edition, 7.1), here weighted by 1 / d so that what is minimal is the distance in the picture. With
 planar depth all three rows are least squares of their own.
 
-Renders hold positions that are no surface (background, averages over silhouettes), so the solution goes in three steps:
-a sample of pixels that show a surface, those of it that one camera explains (all, or the largest consensus of random
-sets), and fits that leave out what fits badly. Points are brought around the origin first, for the sake of rounding.
-A camera that does not explain half of the picture within a pixel is refused: a wrong camera is worse than none.
+Renders hold positions that are not surfaces (background, averages at silhouettes), so the solution has three steps: a
+sample of pixels that show a surface; those of them that one camera explains (all, or the largest consensus of random
+sets); and fits that leave out outliers. Points are first moved around the origin, for numerical precision. A camera
+that does not explain half of the picture within a pixel is refused: a wrong camera is worse than none.
 """
 
 from __future__ import annotations
@@ -26,48 +26,50 @@ from ..color.transforms import Array
 from ..errors import InputError
 
 SAMPLES = 3000
-"""Pixels that are looked at, evenly spread. On nine frames of a street by Blender the camera that they give is off by
-2e-5 pixels in the median and 3e-4 in the worst of a hundred, as floats are: more of them would change nothing."""
+"""Pixels in the sample, evenly spread. On nine frames of a street by Blender the camera that they give is off by 2e-5
+pixels in the median and 3e-4 in the worst of a hundred, which is the precision of floats: more would not help."""
 
 FARTHEST = 1e9
 """Distances from here on are background: renderers write 1e10 (Blender), 1e30 or infinity there."""
 
 _FEWEST_POINTS = 12
-"""Twice the six points that determine a camera, so that there is something to check it by."""
+"""The fewest points: twice the six that determine a camera, so that it can be checked."""
 
 _CONSENSUS_DRAWS = 160
-"""Sets of six points that are tried. Where 60 % of the points are good, a set is with 0.6^6, and 160 miss all good ones
-in one of 2000 cases (Fischler and Bolles, 1981)."""
+"""Random sets of six points. If 60 % of the points are good, a set is good with 0.6^6, and 160 sets are all bad in one
+of 2000 cases (Fischler and Bolles, 1981)."""
 
 _CONSENSUS_JUDGES = 1500
-"""Points that vote on each set: half of the samples, for the sake of time."""
+"""Points that vote on each set: half of the sample, to save time."""
 
 _FIT_ROUNDS = 4
-"""Fits without what fitted badly before. On those frames the error falls by less than 1 % after the fourth."""
+"""Fits without the outliers of the fit before. On those frames the error falls by less than 1 % after the fourth."""
 
 _SLICE_ROWS = 128
 """Rows of one QR decomposition: about ten times the 12 columns, which stays in the caches of a processor."""
 
 _SEED = 20
-"""Any number: the same picture gives the same camera."""
+"""A fixed seed: the same picture gives the same camera."""
 
 _INLIER_PIXELS = 1.0
-"""A point that the camera sees within one pixel is explained: pixel centers alone leave half of one open."""
+"""Pixels. A point within this distance is explained: pixel centers alone leave half a pixel open."""
 
 _WORST_MEDIAN_PIXELS = 0.5
-"""A camera whose median error is beyond half a pixel explains nothing."""
+"""Pixels. A camera with a larger median error explains nothing."""
 
 _REPEATED_SHARE = 0.01
-"""A position that more than 1 % of the pixels have is no surface but what a renderer writes for the background."""
+"""Share of the pixels. A position that more pixels have is the renderer's mark for the background. Chosen by
+judgement."""
 
 _NO_PINHOLE = "no pinhole camera sees these positions where the picture has them"
 _MIXER = np.array([1.0, 2.0**0.5, 3.0**0.5])
-"""Makes one number of a position, different ones for different positions: the roots are independent of each other."""
+"""Turns a position into one number, different for different positions: the square roots are linearly independent over
+the rationals."""
 
 
 @dataclass(frozen=True)
 class CameraSolution:
-    """A camera and how well it explains the picture.
+    """A camera, and how well it explains the picture.
 
     `residual` is the median, `worst` the 99th percentile of the distance in pixels between where a place is seen and
     where the camera sees it; `share` is the part of the places that it explains.
@@ -81,7 +83,7 @@ class CameraSolution:
 
 @dataclass(frozen=True)
 class _Correspondences:
-    """Places, homogeneous, and where they are seen, as fractions of the picture; depths where they are known."""
+    """Positions, homogeneous, where they are seen as fractions of the picture, and depths if known."""
 
     points: Array
     image_points: Array
@@ -102,9 +104,9 @@ class _Correspondences:
 
 
 def solve_camera(position: Array, depth: Array | None = None) -> CameraSolution:
-    """The camera that took a picture of positions [h, w, 3], and planar depths [h, w] if they are known.
+    """The camera of a picture of positions [h, w, 3], with planar depths [h, w] if they are known.
 
-    Background and what was averaged over silhouettes is left out.
+    Background and averages at silhouettes are left out.
 
     Raises:
         InputError: the rest of a sentence about the picture that says why it has no camera.
@@ -124,7 +126,7 @@ def solve_camera(position: Array, depth: Array | None = None) -> CameraSolution:
 
 
 def measure_camera(camera: CameraModel, position: Array) -> CameraSolution:
-    """How well a camera that is known explains a picture of positions. Raises InputError where there are too few."""
+    """How well a known camera explains a picture of positions. Raises InputError if there are too few."""
     correspondences = _collect_correspondences(np.asarray(position), None)
     if len(correspondences.points) < _FEWEST_POINTS:
         raise InputError("too few pixels have a position")
@@ -148,7 +150,7 @@ def sample_pixels(size: Size, samples: int = SAMPLES, margin: int = 0) -> tuple[
 
 
 def find_surface_points(places: Array) -> Array:
-    """True where positions [n, 3] are those of a surface: finite, not at zero, and not the same in many pixels."""
+    """True where positions [n, 3] are on a surface: finite, not zero, and not shared by many pixels."""
     with np.errstate(invalid="ignore"):
         good = (np.abs(places) < FARTHEST).all(axis=1) & (places != 0.0).any(axis=1)
     if good.any():
@@ -175,7 +177,7 @@ def _collect_correspondences(position: Array, depth: Array | None) -> _Correspon
 
 
 def _fit_robustly(correspondences: _Correspondences) -> Array:
-    """The matrix with the least error, found again and again without what fits badly."""
+    """The matrix with the least error, fitted repeatedly without outliers."""
     if len(correspondences.points) < _FEWEST_POINTS:
         raise InputError(_NO_PINHOLE)
     weights = np.ones(len(correspondences.points))
@@ -193,7 +195,7 @@ def _fit_robustly(correspondences: _Correspondences) -> Array:
 
 
 def _fit_linearly(correspondences: _Correspondences, weights: Array) -> Array:
-    """The matrix of least squares; its third row is of unit length, so that d is in world units."""
+    """The least-squares matrix; its third row has unit length, so that d is in world units."""
     middle = correspondences.points[:, :3].mean(axis=0)
     spread = float(correspondences.points[:, :3].std()) or 1.0
     shift = _normalizing_matrix(middle, spread)
@@ -213,7 +215,7 @@ def _fit_linearly(correspondences: _Correspondences, weights: Array) -> Array:
 
 
 def _solve_without_depth(places: Array, at: Array, weights: Array) -> Array:
-    """Without depth: the direction in which the equations of all pixels come closest to zero."""
+    """Without depth: the direction in which the equations of all pixels are closest to zero."""
     _, sizes, rows = np.linalg.svd(_reduce_rows(_make_equations(places * weights[:, None], at)))
     if sizes[-2] < 1e-6 * sizes[0] or sizes[-1] > 0.3 * sizes[-2]:
         raise InputError("the positions lie in one plane, or are too coarse, which leaves the camera open")
@@ -245,7 +247,7 @@ def _make_equations(places: Array, at: Array) -> Array:
 
 
 def _find_inliers(correspondences: _Correspondences) -> Array:
-    """True for places that one camera sees: all, if a first fit is good, else those that most agree on."""
+    """True for positions that one camera sees: all if a first fit is good, else the largest consensus."""
     with contextlib.suppress(InputError):
         good = (
             correspondences.reprojection_error(_fit_linearly(correspondences, np.ones(len(correspondences.points))))
@@ -257,7 +259,7 @@ def _find_inliers(correspondences: _Correspondences) -> Array:
 
 
 def _fit_by_consensus(correspondences: _Correspondences) -> Array:
-    """The matrix through six places that most others agree with (Fischler and Bolles, 1981)."""
+    """The matrix through six positions with the largest consensus (Fischler and Bolles, 1981)."""
     random = np.random.default_rng(_SEED)
     draws = random.integers(0, len(correspondences.points), (_CONSENSUS_DRAWS, 6))
     middle = np.median(correspondences.points[:, :3], axis=0)
@@ -278,7 +280,7 @@ def _fit_by_consensus(correspondences: _Correspondences) -> Array:
 
 
 def _normalizing_matrix(middle: Array, spread: float) -> Array:
-    """The 4 x 4 matrix that brings places around the origin, for the sake of rounding."""
+    """The 4 x 4 matrix that moves positions around the origin, for numerical precision."""
     return np.diag([1.0 / spread] * 3 + [1.0]) @ np.concatenate(
         [np.eye(4, 3), np.append(-middle, 1.0)[:, None]], axis=1
     )
@@ -287,8 +289,8 @@ def _normalizing_matrix(middle: Array, spread: float) -> Array:
 def read_header_camera(attributes: Mapping[str, object], size: Size) -> CameraModel | None:
     """The camera that the header names: `worldToNDC` or `worldToScreen`, else `worldToCamera` and `screenWindowWidth`.
 
-    OpenEXR leaves open whether such coordinates go from 0 to 1, downward, or from -1 to 1, upward: what tells is
-    where the axis of the camera meets the picture, 0.5 or 0.
+    OpenEXR does not define whether such coordinates go from 0 to 1, downward, or from -1 to 1, upward. The place where
+    the camera's axis meets the picture tells: 0.5 or 0.
     """
     matrices = {name.casefold(): _parse_matrix(value) for name, value in attributes.items()}
     for name in ("worldtondc", "worldtoscreen"):
@@ -296,14 +298,14 @@ def read_header_camera(attributes: Mapping[str, object], size: Size) -> CameraMo
             return camera
     matrix, window = matrices.get("worldtocamera"), attributes.get("screenWindowWidth", 1.0)
     if matrix is None or not _is_finite(window) or window in (0.0, 1.0):
-        return None  # 1 is what writers put that do not know
+        return None  # writers that do not know it write 1
     pixel = attributes.get("PixelAspectRatio", 1.0)
     aspect = size[0] / size[1] * (pixel if _is_finite(pixel) and pixel > 0.0 else 1.0)
     return _from_placement(matrix, float(window), aspect)
 
 
 def _parse_matrix(value: object) -> Array | None:
-    """16 numbers for row vectors, as Imath has them, as a matrix for columns."""
+    """16 numbers for row vectors, as in Imath, as a matrix for column vectors."""
     if not isinstance(value, tuple) or len(value) != 16 or not all(map(_is_finite, value)):
         return None
     return np.array(value, np.float64).reshape(4, 4).T
@@ -315,7 +317,7 @@ def _is_finite(value: object) -> TypeGuard[float]:
 
 
 def _from_projection(matrix: Array) -> CameraModel | None:
-    """From a projection of the world; None where it has no perspective."""
+    """The camera of a projection of the world; None if it has no perspective."""
     rows = matrix[[0, 1, 3]]
     length = float(np.linalg.norm(rows[2, :3]))
     if length < 1e-12:
@@ -328,7 +330,7 @@ def _from_projection(matrix: Array) -> CameraModel | None:
 
 
 def _from_placement(matrix: Array, window: float, aspect: float) -> CameraModel | None:
-    """From the camera's place, and the width of the picture at distance 1. Left-handed cameras look along +z."""
+    """The camera from its position, and the width of the picture at distance 1. Left-handed cameras look along +z."""
     length = float(np.linalg.norm(matrix[2, :3]))
     if length < 1e-12:
         return None
@@ -338,7 +340,7 @@ def _from_placement(matrix: Array, window: float, aspect: float) -> CameraModel 
 
 
 def _make_camera(rows: Array) -> CameraModel | None:
-    """None if the rows are flat: nothing could be seen through it."""
+    """The camera with these rows; None if they are linearly dependent, so that nothing is visible."""
     if abs(np.linalg.det(rows[:, :3])) < 1e-12:
         return None
     return CameraModel(tuple(float(part) for part in rows.ravel()))

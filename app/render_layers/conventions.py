@@ -1,6 +1,6 @@
-"""How the numbers in the data of a render are meant: which depth, whose axes, which way motion points.
+"""Conventions of data layers: which depth, whose axes, which direction of motion.
 
-This is what is known of renderers; `evidence` finds it in pixels, which counts more.
+This module knows the habits of renderers; `evidence` finds conventions in the pixels, which count more.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from .naming import RenderProgram, Role
 
 
 class DepthKind(StrEnum):
-    """What a depth layer holds. `Convention.scale` and `offset` make all of it planar but what is radial or inverse."""
+    """The kind of a depth layer. `Convention.scale` and `offset` make all kinds planar except radial and inverse."""
 
     PLANAR = "planar"
     """The distance along the axis of the camera."""
@@ -26,11 +26,11 @@ class DepthKind(StrEnum):
     NEGATIVE = "negative"
     """Minus planar: the camera looks along -z."""
     NORMALIZED = "normalized"
-    """Planar, brought between 0 and 1."""
+    """Planar, scaled to 0..1."""
 
 
 class VectorSpace(StrEnum):
-    """Whose axes vectors refer to."""
+    """The axes of vectors."""
 
     WORLD = "world"
     CAMERA = "camera"
@@ -40,20 +40,22 @@ class VectorSpace(StrEnum):
 
 
 class MotionDirection(StrEnum):
-    """Which two frames motion is between, once `Convention.scale` has made it pixels, x right and y down."""
+    """The frames between which motion is measured, after `Convention.scale` has made it pixels, x right and y down."""
 
     FROM_PREVIOUS = "from_previous"
-    """Where a surface is, minus where it was one frame before."""
+    """The position of a surface, minus that one frame before."""
     TO_NEXT = "to_next"
-    """Where it will be one frame later, minus where it is."""
+    """The position one frame later, minus that now."""
 
 
 @dataclass(frozen=True)
 class Convention:
-    """How a layer is meant: its kind, and the `scale` and then `offset` that its channels need to be usual numbers.
+    """The convention of a layer: its kind, and the `scale` and then `offset` that convert its channels to standard
+    numbers.
 
-    Those are distances ahead (planar), from the eye (radial) or their inverse; unit vectors; pixels, x right, y down.
-    One number stands for all channels. `measured` says that the pixels prove it. A kind that nothing tells is "".
+    Standard numbers are distances along the axis (planar), from the eye (radial) or their inverse; unit vectors;
+    pixels, x right, y down. One number stands for all channels. `measured` means that the pixels prove it. An unknown
+    kind is "".
     """
 
     kind: str
@@ -64,13 +66,13 @@ class Convention:
 
     @property
     def words(self) -> str:
-        """As a person reads it."""
+        """The convention in words."""
         return self.kind.replace("_", " ") or "not known"
 
 
 @dataclass(frozen=True)
 class _Habit:
-    """What one renderer writes under one of some names, as long as nothing proves otherwise."""
+    """The habit of one renderer for layers with one of these names, unless pixels prove otherwise."""
 
     renderer: RenderProgram
     role: Role
@@ -161,9 +163,10 @@ _FALLBACKS: Mapping[Role, Convention] = MappingProxyType(
 
 
 def find_habit(role: Role, name: str, renderer: RenderProgram | None) -> Convention | None:
-    """What the renderer is known to write under this name; of an unknown one, what all do that have it.
+    """The habit of the renderer for this name; for an unknown renderer, the habit that all renderers with this name
+    share.
 
-    Else what most renderers do; None for roles that need no telling.
+    Else the usual convention; None for roles without conventions.
     """
     word = normalize_name(name.rpartition(".")[2])
     conventions = [

@@ -1,4 +1,4 @@
-"""Conventions that the pixels of a render prove: layers are held against positions, a camera, another frame.
+"""Conventions that the pixels prove: layers are compared with positions, a camera, another frame.
 
 What a renderer usually writes is in `conventions`. Users change it, and files pass through programs that do not say so,
 so pixels count more. Every test here compares what a layer holds with what it would hold by each convention, over a few
@@ -24,7 +24,8 @@ from .camera import FARTHEST, SAMPLES, find_surface_points, sample_pixels
 from .conventions import Convention, DepthKind, MotionDirection, VectorSpace
 
 _FEWEST_SAMPLES = 30
-"""Fewer pixels prove nothing: a median of 30 stays within the middle half of its samples (binomial, 99 %)."""
+"""Fewer pixels prove nothing: the median of 30 samples lies within the middle half of the distribution (binomial, 99
+%)."""
 
 _WORST_DEPTH_ERROR = 2e-3
 """The largest median error of a depth that matches, relative. Half floats alone are off by up to 5e-4 (11 bits).
@@ -32,33 +33,34 @@ Measured on nine frames of a street by Blender: planar 3e-8 to 1e-7 as floats an
 for radial 0.037."""
 
 _WORST_BEND = 2e-5
-"""The largest bend of planes that counts as flat, relative. On those frames float depth bends by 1e-7 where it is read
-rightly, and half floats by too much to tell."""
+"""The largest relative bend that counts as flat. On those frames correctly read float depth bends by 1e-7, and half
+floats too much to tell."""
 
 _FLAT_SHARE = 0.3
-"""The part of the picture that must be flat: walls and floors fill that much of most renders, while edges and round
-things bend in any reading."""
+"""The part of the picture that must be flat. Chosen by judgement: walls and floors fill that much of most renders,
+while edges and round surfaces bend in any reading."""
 
 _CLEAR_FACTOR = 4.0
-"""How many times less the right reading must bend than the next. On those frames it is 15 to 22 times."""
+"""How many times less the right reading must bend than the next one. On those frames it is 15 to 22 times."""
 
 _FOCAL_LENGTHS = np.geomspace(0.4, 8.0, 25)
-"""Focal lengths in widths of the picture that are tried for radial depth: fields of view from 103 to 7 degrees, each
-13 % from the next."""
+"""Focal lengths, in widths of the picture, that are tried for radial depth: fields of view from 103 to 7 degrees, in
+steps of 13 %."""
 
 _WORST_ANGLE = 20.0
-"""Degrees that normals may be off the surfaces in the median, as shading normals are bent by bump maps. On those frames
-exact normals are 0 off and normals of 8 bits 0.3; in the axes of the camera they are 83 off."""
+"""Degrees by which normals may differ from the surfaces in the median, since bump maps bend them. On those frames exact
+normals differ by 0, normals of 8 bits by 0.3; with the wrong axes they differ by 83."""
 
 _LEAST_MOTION = 0.5
-"""Pixels below which motion proves nothing: what stands still fits every direction."""
+"""Pixels. Shorter motion proves nothing: something that stands still fits every direction. Chosen by judgement."""
 
 _LIKELY_FACTOR = 1.15
-"""How many times worse the next direction must fit than the best. On four pairs of those frames it is 1.39 to 1.61."""
+"""How many times worse the next direction must fit than the best one. On four pairs of those frames it is 1.39 to
+1.61."""
 
 
 def match_depth_with_positions(depth: Array, position: Array, camera: CameraModel) -> Convention | None:
-    """Which depth [h, w] this is, by the distances of the places [h, w, 3]; None if it is none that is known."""
+    """The kind of a depth [h, w], compared with the distances of positions [h, w, 3]; None if no kind fits."""
     rows, columns = sample_pixels((depth.shape[1], depth.shape[0]), SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), depth[rows, columns].astype(np.float64).ravel()
     with np.errstate(invalid="ignore"):
@@ -86,7 +88,7 @@ def _sign_scale(kind: DepthKind) -> tuple[float]:
 
 
 def _match_normalized_depth(stored: Array, ahead: Array) -> Convention | None:
-    """Between 0 and 1, and a straight line over planar depth where it is not clamped."""
+    """Depth between 0 and 1 that is linear in planar depth where it is not clamped."""
     if stored.min() < 0.0 or stored.max() > 1.0:
         return None
     free = (stored > 0.0) & (stored < 1.0)
@@ -107,10 +109,10 @@ def _match_normalized_depth(stored: Array, ahead: Array) -> Convention | None:
 
 
 def judge_depth_by_planes(depth: Array) -> Convention | None:
-    """Which depth [h, w] this is where nothing is to compare it with: by its sign, or by what makes planes flat.
+    """The kind of a depth [h, w] without positions: by its sign, or by the reading that makes planes flat.
 
-    Over the picture of a plane 1 / planar depth is linear, and so is inverse depth as it is, and, for the right focal
-    length, radial depth once it is made planar. Decided by the three tenths of the picture that bend the least.
+    On a plane, 1 / planar depth is linear over the picture. So is inverse depth unchanged, and radial depth converted
+    with the right focal length. The flattest three tenths of the picture decide.
     """
     height, width = depth.shape[:2]
     depth = depth.reshape(height, width)
@@ -143,7 +145,7 @@ def judge_depth_by_planes(depth: Array) -> Convention | None:
 
 
 def _find_flattest_kind(cross: Array, away: Array) -> Convention | None:
-    """Depths of five pixels each, and how far these are from the middle as fractions of the width."""
+    """Depths of five pixels in a row each, and their distances from the middle one as fractions of the width."""
     square = (away**2).sum(axis=2)
     bends = {
         DepthKind.PLANAR: _measure_bend(1.0 / cross),
@@ -151,7 +153,7 @@ def _find_flattest_kind(cross: Array, away: Array) -> Convention | None:
         DepthKind.RADIAL: min(_measure_bend(np.sqrt(1.0 + square / focal**2) / cross) for focal in _FOCAL_LENGTHS),
     }
     if bends[DepthKind.PLANAR] < _CLEAR_FACTOR * bends[DepthKind.RADIAL]:
-        del bends[DepthKind.RADIAL]  # of a far camera, there is no difference
+        del bends[DepthKind.RADIAL]  # with a long focal length there is no difference
     first, second = sorted(bends, key=lambda kind: bends[kind])[:2]
     if bends[first] > _WORST_BEND or bends[second] < _CLEAR_FACTOR * bends[first]:
         return None
@@ -160,13 +162,13 @@ def _find_flattest_kind(cross: Array, away: Array) -> Convention | None:
 
 
 def _measure_bend(field: Array) -> float:
-    """The second difference that three tenths of the pixels stay below, as a fraction of the value."""
+    """The second difference, relative to the value, that three tenths of the pixels do not exceed."""
     across, down = (np.abs(field[i] + field[i + 1] - 2.0 * field[0]) for i in (1, 3))
     return float(np.quantile(np.maximum(across, down) / field[0], _FLAT_SHARE))
 
 
 def find_position_space(camera: CameraModel, position: Array) -> Convention:
-    """Whose axes positions refer to, by where the camera that was solved from them stands."""
+    """The axes of positions, by the place of the camera that was solved from them."""
     rows, columns = sample_pixels((position.shape[1], position.shape[0]), SAMPLES)
     places = position[rows, columns, :3].astype(np.float64)
     places = places[find_surface_points(places)]
@@ -182,7 +184,7 @@ def find_position_space(camera: CameraModel, position: Array) -> Convention:
 def match_normals_with_positions(
     normal: Array, position: Array, camera: CameraModel, home: VectorSpace = VectorSpace.WORLD
 ) -> Convention | None:
-    """Whose axes normals refer to, by how the places around each pixel lie; `home` is what positions refer to."""
+    """The axes of normals, by the surfaces that neighboring positions span; `home` are the axes of positions."""
     height, width = normal.shape[:2]
     if min(width, height) < 3:
         return None
@@ -229,7 +231,7 @@ def match_normals_with_positions(
 
 
 def _find_normal_encoding(vectors: Array) -> tuple[float, float]:
-    """Scale and offset that make unit vectors: those of pictures of normals are brought between 0 and 1."""
+    """The scale and offset that make unit vectors: pictures of normals are stored in 0..1."""
     with np.errstate(invalid="ignore"):
         vectors_there = vectors[np.isfinite(vectors).all(axis=1) & (vectors != 0.0).any(axis=1)]
     if len(vectors_there) and vectors_there.min() >= 0.0 and vectors_there.max() <= 1.0:
@@ -250,8 +252,8 @@ def _median_angle(a: Array, b: Array) -> float:
 def match_velocity_with_cameras(
     velocity: Array, position: Array, here: CameraModel, before: CameraModel
 ) -> Convention | None:
-    """Which way motion [h, w, 2] points and in what unit, by where two cameras see the same places; most must stand
-    still in the world. None if the camera hardly moves or the motion is another."""
+    """The direction and unit of motion [h, w, 2], by where two cameras see the same positions; most of them must stand
+    still in the world. None if the camera hardly moves or no direction fits."""
     height, width = velocity.shape[:2]
     rows, columns = sample_pixels((width, height), SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), velocity[rows, columns, :2].astype(np.float64)
@@ -285,7 +287,7 @@ def _project(camera: CameraModel, places: Array) -> Array:
 
 
 def _find_unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tuple[float, float], str]:
-    """Factors to pixels, exact where the unit is a usual one, and its name."""
+    """Factors to pixels, exact if the unit is a usual one, and its name."""
     units = (("in pixels", (1.0, 1.0)), ("in pictures", size), ("in half pictures", (size[0] / 2, size[1] / 2)))
     for name, usual in units:
         if all(abs(abs(ratio) / factor - 1.0) < 0.02 for ratio, factor in zip(ratios, usual, strict=True)):
@@ -294,8 +296,8 @@ def _find_unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tupl
 
 
 def match_velocity_with_pictures(velocity: Array, here: Array, before: Array) -> Convention | None:
-    """Which way motion [h, w, 2] in pixels points, by which of four ways takes the picture [h, w, 3] before best into
-    this one; None if nothing moves or none is clearly better."""
+    """The direction of motion [h, w, 2] in pixels: the one of four that maps the picture [h, w, 3] before best to this
+    one; None if nothing moves or none is clearly better."""
     height, width = velocity.shape[:2]
     rows, columns = sample_pixels((width, height), 4 * SAMPLES)
     stored = velocity[rows, columns, :2].astype(np.float64)
@@ -321,7 +323,7 @@ def match_velocity_with_pictures(velocity: Array, here: Array, before: Array) ->
 
 
 def _sample_between_pixels(picture: Array, x: Array, y: Array) -> Array:
-    """The picture between pixels, linear; its border goes on."""
+    """The picture interpolated linearly between pixels; border pixels are repeated."""
     x, y = x.clip(0, picture.shape[1] - 1), y.clip(0, picture.shape[0] - 1)
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     right, low = (left + 1).clip(max=picture.shape[1] - 1), (top + 1).clip(max=picture.shape[0] - 1)
@@ -331,5 +333,5 @@ def _sample_between_pixels(picture: Array, x: Array, y: Array) -> Array:
 
 
 def _read_light(picture: Array, rows: Array, columns: Array) -> Array:
-    """Pixels of a picture; what is not finite is black."""
+    """Pixels of a picture; NaN and infinity are black."""
     return np.nan_to_num(picture[rows, columns, :3].astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)

@@ -1,7 +1,7 @@
 """The cryptomattes of a render: their layers by rank, and the names that their manifests give to ids.
 
-Friedman and Jones 2015, as specified by Psyop: the header says `cryptomatte/KEY/name`, and the manifest of that name in
-`cryptomatte/KEY/manifest`, or in a file beside the picture that `cryptomatte/KEY/manif_file` names.
+As specified by Friedman and Jones 2015 and Psyop: the header has `cryptomatte/KEY/name`, and the manifest of that name
+in `cryptomatte/KEY/manifest`, or in a file beside the picture that `cryptomatte/KEY/manif_file` names.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _ROLES = MappingProxyType(
 
 
 def find_mattes(analysis: RenderAnalysis) -> tuple[Matte, ...]:
-    """All of them, in the order of the layers. A manifest that cannot be read has no names."""
+    """The cryptomattes of a file, in the order of the layers. A manifest that cannot be read has no names."""
     groups: dict[str, list[RenderPass]] = {}
     for item in analysis.passes:
         if item.role in _ROLES:
@@ -66,7 +66,7 @@ def find_mattes(analysis: RenderAnalysis) -> tuple[Matte, ...]:
 
 @dataclass(frozen=True)
 class IdMap:
-    """The id that covers most of each pixel, [h, w] of uint32, 0 where nothing does; and what ids are called."""
+    """The id that covers most of each pixel, [h, w] of uint32, 0 for none; and the names of ids."""
 
     ids: Array
     names: Mapping[int, str]
@@ -79,7 +79,7 @@ class IdMap:
 
 
 def read_id_map(path: str, first: str, sandbox: Sandbox) -> IdMap:
-    """What is where, by the first layer of a cryptomatte.
+    """The ids of a picture, from the first layer of a cryptomatte.
 
     Raises:
         InputError: as `read`, also for a layer that is none of a cryptomatte.

@@ -1,6 +1,6 @@
-"""What renderers call the layers of a render: one table per renderer, from the role of a layer to its names.
+"""Names that renderers give the layers of a render: one table per renderer, from the role of a layer to its names.
 
-Case, blanks, `_` and `-` do not matter. Of several names for one role the first is the one to prefer.
+Case, blanks, `_` and `-` do not matter. Of several names for one role the first one is preferred.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from ..media.layers import normalize_name
 
 
 class Role(StrEnum):
-    """What a layer is."""
+    """The role of a layer."""
 
     BEAUTY = "beauty"
     NOISY = "noisy_beauty"
-    """The picture before it was denoised."""
+    """The picture before denoising."""
     LIGHT_GROUP = "light_group"
-    """The part of the picture that some of the lights make."""
+    """The part of the picture that comes from some of the lights."""
 
     DEPTH = "depth"
     MIST = "mist"
@@ -63,7 +63,7 @@ class Role(StrEnum):
     CRYPTOMATTE_MATERIAL = "cryptomatte_material"
     CRYPTOMATTE_ASSET = "cryptomatte_asset"
     CRYPTOMATTE = "cryptomatte"
-    """One of whose names nobody says what they name."""
+    """A matte whose names are not listed."""
     MATTE = "matte"
 
     DENOISE_NORMAL = "denoise_normal"
@@ -75,7 +75,7 @@ class Role(StrEnum):
 
     @property
     def words(self) -> str:
-        """As a person reads it."""
+        """The role in words."""
         return self.value.replace("_", " ")
 
 
@@ -90,11 +90,11 @@ PLURAL_ROLES = frozenset(
         Role.CRYPTOMATTE_ASSET,
     }
 )
-"""Roles that many layers may have side by side."""
+"""Roles that several layers may have."""
 
 
 class RenderProgram(StrEnum):
-    """Who made the file."""
+    """The renderer that made a file."""
 
     BLENDER = "Blender"
     ARNOLD = "Arnold"
@@ -108,13 +108,13 @@ class RenderProgram(StrEnum):
 
 @dataclass(frozen=True)
 class NamingScheme:
-    """How one renderer names things. `marks` matches `attribute=value` of headers that only it writes."""
+    """The names of one renderer. `marks` match `attribute=value` of headers that only it writes."""
 
     marks: re.Pattern[str]
     names: Mapping[Role, tuple[str, ...]]
 
     def find_role(self, word: str) -> tuple[Role, int] | None:
-        """The role of a plain name, and how many names of that role go before it."""
+        """The role of a normalized name, and how many names of that role are preferred to it."""
         return next(((role, names.index(word)) for role, names in self.names.items() if word in names), None)
 
 
@@ -358,7 +358,7 @@ PATTERNS: Mapping[Role, re.Pattern[str]] = MappingProxyType(
         }.items()
     }
 )
-"""What names are built like that everybody understands, whole and plain."""
+"""Patterns of names that are clear in every renderer, whole and normalized."""
 
 HINTS: Mapping[Role, re.Pattern[str]] = MappingProxyType(
     {
@@ -374,4 +374,4 @@ HINTS: Mapping[Role, re.Pattern[str]] = MappingProxyType(
         }.items()
     }
 )
-"""Words in a name that only suggest what a layer may be."""
+"""Words in a name that only suggest a role."""

@@ -1,4 +1,4 @@
-"""A render in a few words: what fills each role and why, what fills none, the camera. For people who choose."""
+"""A short description of a render for users: the layer of each role and why, empty roles, the camera."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from .report import describe_maker, describe_size, format_report, join_choices, 
 
 @dataclass(frozen=True)
 class RoleUse:
-    """What fills a role: the `layer` in use and the one that was `found`, "" for none.
+    """The layer of a role: the `layer` in use and the one that was `found`, "" for none.
 
-    `reason` says why that one, or why none; `open` that somebody has to choose. `fault` is what is wrong with the
-    layer that was named. `rule` is how its numbers are meant, if that matters.
+    `reason` says why this one, or why none; `open` means that the user has to choose. `fault` is what is wrong with the
+    chosen layer. `rule` is the convention of its numbers, if that matters.
     """
 
     layer: str
@@ -37,13 +37,13 @@ class RoleUse:
 
 @dataclass(frozen=True)
 class RenderOverview:
-    """What a render turns out to hold; `fault` says why its pixels cannot be looked at."""
+    """The description of a render; `fault` says why its pixels cannot be read."""
 
     size: str
     maker: str
     uses: Mapping[Role, RoleUse]
     other_passes: tuple[RenderPass, ...]
-    """Layers of no role that was asked for, without cryptomattes."""
+    """Layers without a requested role, except cryptomattes."""
     camera: RenderCamera
     mattes: tuple[Matte, ...]
     parts: tuple[tuple[str, ...], ...]
@@ -55,7 +55,7 @@ class RenderOverview:
 def summarize_render(
     path: str, roles: Sequence[Role], named: Mapping[Role, str] = MappingProxyType({}), *, sandbox: Sandbox
 ) -> RenderOverview:
-    """Look at a render for some roles; `named` are layers that somebody chose for them.
+    """Describe a render for some roles; `named` are layers that the user has chosen for them.
 
     Raises:
         InputError: the file cannot be read.

@@ -1,7 +1,7 @@
-"""What each layer of a render is, and how that is known.
+"""Recognizes the layers of a render, with the reason for each.
 
-What a name means is looked up in the table of the renderer that made the file, then in those of the others, then by how
-the name is built, and last by what the layer is made of. A layer that may be several things stays without a role.
+A name is looked up in the table of the renderer that made the file, then in those of the others, then by its pattern,
+and last by the channels of the layer. A layer that may have several roles gets none.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _VECTORS = (Role.NORMAL, Role.POSITION, Role.VELOCITY)
 
 
 class RoleGrounds(IntEnum):
-    """What a role rests on, the firmest first."""
+    """The grounds for a role, the most certain first."""
 
     HEADER = 0
     TABLE = 1
@@ -43,7 +43,7 @@ class RoleGrounds(IntEnum):
 
 @dataclass(frozen=True)
 class RenderPass:
-    """A layer and its role, which is None where `candidates` says what it may be, or nothing is known.
+    """A layer and its role. The role is None if it is unknown, or if `candidates` has several.
 
     `rank` counts what would be better layers for the same role; `name` is the word that says what it is,
     `group` the view or view layer that it belongs to.
@@ -61,15 +61,15 @@ class RenderPass:
 
 @dataclass(frozen=True)
 class FileMaker:
-    """Who made a file, and how that is known; None where nothing says so."""
+    """The renderer of a file, and the reason; None if it is unknown."""
 
     renderer: RenderProgram | None
     reason: str
 
 
 def find_maker(attributes: Mapping[str, object], layers: Sequence[Layer]) -> FileMaker:
-    """The renderer: by what it writes into headers, else by names of layers that only it uses."""
-    for name, value in sorted(attributes.items(), key=lambda item: item[0] != "Software"):  # it tells the version
+    """The renderer of a file: by attributes of its header, else by layer names that only it uses."""
+    for name, value in sorted(attributes.items(), key=lambda item: item[0] != "Software"):  # it has the version
         line = f"{name}={value}"
         for renderer, scheme in SCHEMES.items():
             if scheme.marks.fullmatch(line):
@@ -88,7 +88,7 @@ def recognize_passes(
     renderer: RenderProgram | None,
     seen_by: Mapping[int, str] = MappingProxyType({}),
 ) -> tuple[RenderPass, ...]:
-    """What every layer is; `seen_by` names the views of those parts that are of one."""
+    """The role of every layer; `seen_by` names the views of parts that have one."""
     manifests = {normalize_name(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
     view_names = attributes.get("multiView")
     views = [str(view).casefold() for view in view_names] if isinstance(view_names, tuple) else []
@@ -103,7 +103,7 @@ def recognize_passes(
 
 
 def find_named_role(name: str) -> Role | None:
-    """The role that a name of a layer stands for in every renderer that uses it; None for none, or several."""
+    """The role that a name has in every renderer that uses it; None for none, or several."""
     word = normalize_name(name.rpartition(".")[2])
     roles = {entry[0] for scheme in SCHEMES.values() if (entry := scheme.find_role(word))}
     if not roles:
@@ -112,9 +112,9 @@ def find_named_role(name: str) -> Role | None:
 
 
 def best_claims(passes: Iterable[RenderPass], role: Role) -> tuple[RenderPass, ...]:
-    """The passes that have the best claim to a role: several only where nothing decides between them.
+    """The passes with the best claim to a role; several if nothing decides between them.
 
-    Of several view layers that of the picture counts.
+    Of several view layers, that of the picture counts.
     """
     passes = tuple(passes)
     home = next((item.group for item in passes if item.role is Role.BEAUTY), "")
@@ -128,8 +128,8 @@ def best_claims(passes: Iterable[RenderPass], role: Role) -> tuple[RenderPass, .
 
 
 def suggest_by_role(passes: Sequence[RenderPass], name: str, role: Role | None = None) -> list[str]:
-    """Layers that a name may stand for which no layer has: that of its role, or of `role`, else those that are spelled
-    like it and have no other role."""
+    """Layers that the user may mean by a name that does not exist: of the role of that name, or of `role`, else those
+    with a similar spelling and no other role."""
     role = role or find_named_role(name)
     best = best_claims(passes, role) if role else ()
     if len(best) == 1:
@@ -139,10 +139,10 @@ def suggest_by_role(passes: Sequence[RenderPass], name: str, role: Role | None =
 
 
 def _read_name(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
-    """The word that says what a layer is, and the view or view layer that it belongs to.
+    """The word in a name that tells the role, and the view or view layer before it.
 
-    OpenEXR has `view.channel` and `layer.view.channel`, the first of `views` goes without saying, and parts that are
-    of a `view` often end in its name.
+    OpenEXR has `view.channel` and `layer.view.channel`. The first of `views` is not written, and parts of a `view`
+    often end in its name.
     """
     view_words = {*_EYES, *views}
     words = layer.name.split(".")
@@ -171,7 +171,7 @@ def _recognize_pass(layer: Layer, name: str, renderer: RenderProgram | None, man
 
 
 def _recognize_cryptomatte(layer: Layer, manifests: set[str]) -> RenderPass | None:
-    """A layer of ids and coverages: its manifest names it, or its own name does."""
+    """A cryptomatte layer: it is named by its manifest, or by its own name."""
     full, last = normalize_name(layer.full_name), layer.name.rpartition(".")[2]
     match = _RANKS.fullmatch(normalize_name(last))
     is_in_manifest = full[:-2] in manifests and full[-2:].isdigit()
@@ -192,7 +192,7 @@ def _recognize_cryptomatte(layer: Layer, manifests: set[str]) -> RenderPass | No
 
 
 def _recognize_by_table(layer: Layer, word: str, renderer: RenderProgram | None) -> RenderPass | None:
-    """By what the renderer of the file calls it, else by what the others do, as long as they agree."""
+    """The role by the table of the file's renderer, else by the others if they agree."""
     if renderer is not None and (entry := SCHEMES[renderer].find_role(word)):
         role, rank = entry
         return RenderPass(layer, role, RoleGrounds.TABLE, f"{renderer.value}'s name for {role.words}", rank=rank)
@@ -221,7 +221,7 @@ def _recognize_light_group(layer: Layer, last: str) -> RenderPass | None:
 
 
 def _recognize_by_pattern(layer: Layer, word: str) -> RenderPass | None:
-    """By how the name is built."""
+    """The role by the pattern of the name."""
     if is_depth(word) and len(layer.channels) <= 3:
         return RenderPass(layer, Role.DEPTH, RoleGrounds.PATTERN, "a usual name of depth")
     fits = [role for role, pattern in PATTERNS.items() if pattern.fullmatch(word)]
@@ -231,7 +231,7 @@ def _recognize_by_pattern(layer: Layer, word: str) -> RenderPass | None:
 
 
 def _recognize_by_channels(layer: Layer, word: str) -> RenderPass | None:
-    """By its channels; a word in the name may narrow down what a vector is, but decides nothing."""
+    """The role by the channels; a word in the name may narrow down the role of a vector, but does not decide."""
     letters = "".join(channel.casefold() for channel in layer.channels)
     if letters == "z":
         return RenderPass(layer, Role.DEPTH, RoleGrounds.SHAPE, "its only channel is Z")
@@ -252,7 +252,7 @@ def _recognize_by_channels(layer: Layer, word: str) -> RenderPass | None:
 
 
 def _choose_beauty(passes: Sequence[RenderPass]) -> Iterator[RenderPass]:
-    """The same where nothing is called a picture: the first color layer without a role is."""
+    """The same passes; if none has the name of the picture, the first color layer without a role becomes it."""
     free = [item for item in passes if item.role is None and not item.candidates and not item.layer.is_data]
     for item in passes:
         if free and item is free[0]:
@@ -264,7 +264,7 @@ def _choose_beauty(passes: Sequence[RenderPass]) -> Iterator[RenderPass]:
 
 
 def _find_own_names(renderer: RenderProgram, layers: Sequence[Layer]) -> list[str]:
-    """Names of layers that the table of this renderer has and no other."""
+    """Layer names that only the table of this renderer has."""
     names: list[str] = []
     for layer in layers:
         last = layer.name.rpartition(".")[2]

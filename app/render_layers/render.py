@@ -32,11 +32,11 @@ _DATA = frozenset(
         Role.CRYPTOMATTE_ASSET,
     }
 )
-"""What makes a picture a render: layers that effects work from."""
+"""Roles that make a picture a render: layers that effects use."""
 
 
 def read_render(path: str, named: Mapping[str, str] = MappingProxyType({}), *, sandbox: Sandbox) -> Render:
-    """What the file of a render holds; roles that several layers claim alike are left out.
+    """The layers of a render's file; roles that several layers claim equally are left out.
 
     `named` are layers that are to have a role, by that.
 
@@ -57,7 +57,7 @@ def read_render(path: str, named: Mapping[str, str] = MappingProxyType({}), *, s
 
 
 def is_render(path: str | Path, sandbox: Sandbox) -> bool:
-    """True for a file of several layers of which one is, or may be, what effects work from; only its header is read."""
+    """True for a file of several layers of which one is, or may be, a layer for effects; only its header is read."""
     try:
         analysis = analyze_render(path, sandbox=sandbox)
     except HalationError:

@@ -1,4 +1,4 @@
-"""What there is to say of a render, in rows of words: for the command line and for the editor."""
+"""The report on a render, in rows of words: for the command line and for the editor."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SHORT = {"float16": "half", "float32": "float"}
 
 
 def format_report(analysis: RenderAnalysis) -> Iterator[str]:
-    """All of it, line by line, in columns."""
+    """The whole report, line by line, in columns."""
     yield f"{analysis.header.info.path}\n  {describe_size(analysis)}"
     yield f"  {describe_maker(analysis)}"
     yield from _format_section("parts", list_parts(analysis))
@@ -57,7 +57,7 @@ def describe_size(analysis: RenderAnalysis) -> str:
 
 
 def describe_maker(analysis: RenderAnalysis) -> str:
-    """Who made it, and how that is known."""
+    """The renderer, and the reason."""
     return f"made by {analysis.maker.renderer or 'an unknown program'}: {analysis.maker.reason}"
 
 
@@ -68,23 +68,23 @@ def list_parts(analysis: RenderAnalysis) -> list[tuple[str, ...]]:
 
 
 def list_metadata(analysis: RenderAnalysis) -> list[tuple[str, str]]:
-    """What the header says that is not about how the file is stored, each on one line."""
+    """Attributes of the header that do not describe how the file is stored, one per line."""
     attributes = analysis.header.attributes.items()
     return [(name, " ".join(_format_value(value).split())) for name, value in attributes if not is_structural(name)]
 
 
 def describe_certainty(rule: Convention) -> str:
-    """How sure a convention is."""
+    """How certain a convention is."""
     return "measured" if rule.is_measured else "assumed" if rule.kind else "open"
 
 
 def join_choices(words: Sequence[str]) -> str:
-    """One of them."""
+    """The row of a convention."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} or {words[-1]}"
 
 
 def _format_section(title: str, rows: Sequence[Sequence[str]]) -> Iterator[str]:
-    """A heading, and rows under it whose columns line up, empty ones left out; nothing at all without rows."""
+    """A heading, and rows with aligned columns, without empty columns; nothing if there are no rows."""
     if not rows:
         return
     yield f"\n{title}"
@@ -110,7 +110,7 @@ def _format_window(window: tuple[int, int, int, int]) -> str:
 
 
 def _list_open_questions(analysis: RenderAnalysis) -> list[tuple[str, str]]:
-    """What a user has to say: layers that may be several things, and roles that several layers claim."""
+    """Choices that the user has to make: layers with several possible roles, and roles with several layers."""
     rows = [
         (item.layer.name, f"may be {join_choices([role.words for role in item.candidates])}")
         for item in analysis.passes
@@ -124,7 +124,7 @@ def _list_open_questions(analysis: RenderAnalysis) -> list[tuple[str, str]]:
 
 
 def list_camera(render_camera: RenderCamera) -> list[tuple[str, str]]:
-    """The camera, and how exactly it was found."""
+    """The camera, and its precision."""
     camera, solved = render_camera.camera, render_camera.solution
     if camera is None:
         return [("none", render_camera.reason)]
@@ -143,13 +143,13 @@ def list_camera(render_camera: RenderCamera) -> list[tuple[str, str]]:
 
 
 def measure_field_of_view(camera: CameraModel) -> tuple[float, float]:
-    """Horizontal and vertical field of view in degrees, as if the axis met the middle."""
+    """Horizontal and vertical field of view in degrees, as if the axis met the center."""
     across, down = (math.degrees(2.0 * math.atan(0.5 / focal)) for focal in camera.focal)
     return across, down
 
 
 def _shorten(text: str) -> str:
-    """A line that is not too long."""
+    """A line, shortened if it is too long."""
     return text if len(text) <= _WIDEST else f"{text[: _WIDEST - 3]}..."
 
 

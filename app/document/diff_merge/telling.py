@@ -19,7 +19,7 @@ _WORD: Final = {"inputs": "input", "outputs": "output", "controls": "control"}
 
 @dataclass(frozen=True)
 class DifferenceLine:
-    """Something that was added, removed or changed; `below` are the lines of code that did."""
+    """A line about an addition, removal or change; `below` are its changed lines of code."""
 
     sign: Sign
     words: str

@@ -21,7 +21,7 @@ _WIDE = 60
 
 
 def item_text(node: Tree) -> str:
-    """What a node is: its type and the values that are not at their default are said by others."""
+    """A node in words: its type. Other lines list its values."""
     muted = ", muted" if node.get("muted") else ""
     if node.get("type") != "group":
         return f"{node.get('type')}{muted}"
@@ -51,14 +51,14 @@ def animation_text(item: Tree, value: Value | None, exact: bool = False) -> str:
 
 
 def key_text(key: Tree, value: Value | None, exact: bool = False) -> str:
-    """The value of a key and how it goes on."""
+    """The value of a key and its interpolation."""
     way = key.get("interpolation", "smooth")
     handles = [f" {side} {value_text(key[side], None, exact)}" for side in ("left", "right") if side in key]
     return value_text(key.get("value"), value, exact) + ("" if way == "smooth" else f" {way}") + "".join(handles)
 
 
 def change_text(before: Any, after: Any, value: Value | None = None, exact: bool = False) -> str:
-    """`old -> new`, with as many digits as it takes to see the difference."""
+    """`old -> new`, with as many digits as are needed to see the difference."""
     text_before, text_after = value_text(before, value, exact), value_text(after, value, exact)
     return (
         f"{text_before} -> {text_after}"
@@ -86,7 +86,7 @@ def value_text(part: Any, value: Value | None = None, exact: bool = False) -> st
 
 
 def value_at(graph: Graph, at: PartPath) -> Value | None:
-    """What is declared of the value that an address leads to, through groups; None for what is no value."""
+    """The declaration of the value at an address, through groups; None if it is not a value."""
     while len(at) > 3 and at[0] == "nodes" and at[2] == "graph":
         item = graph.nodes.get(str(at[1]))
         if not isinstance(item, Group):

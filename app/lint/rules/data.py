@@ -1,4 +1,4 @@
-"""Layers of data that are linked to nodes that need color."""
+"""Data layers that are linked to nodes for color."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _DATA = re.compile(
 
 
 def find(sheet: GraphFacts) -> Iterator[Problem]:
-    """Nodes that need color, linked to a layer of data."""
+    """Nodes that need color, but are linked to a data layer."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
         if has_trait(item, Trait.NEEDS_COLOR) and (source := sheet.first(id)) and (layer := _data(sheet, source)):
@@ -38,7 +38,7 @@ def find(sheet: GraphFacts) -> Iterator[Problem]:
 
 
 def _data(sheet: GraphFacts, source: Port) -> str:
-    """The layer of data that leaves at a port, or "" for what may be color."""
+    """The data layer at a port; "" if it may be color."""
     if source.node == INPUTS:
         end = sheet.graph.inputs[source.socket]
         layer = end.layer if end.layer or end.kind is Kind.IMAGE else source.socket
@@ -53,8 +53,8 @@ def is_data_layer(name: str) -> bool:
 
 
 def find_data_bindings(graph: Graph, files: Mapping[str, str]) -> Iterator[str]:
-    """Sentences about layers of data that are bound, as `FILE:LAYER`, to inputs that feed nodes about color."""
-    from ...media.layers import split_layer  # loads libraries for pictures, which rules do without
+    """Sentences about data layers that are bound, as `FILE:LAYER`, to inputs that feed nodes for color."""
+    from ...media.layers import split_layer  # it loads libraries for pictures, which rules do not need
 
     for name, file in files.items():
         layer = split_layer(file)[1]

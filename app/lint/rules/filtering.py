@@ -1,4 +1,4 @@
-"""Pictures that are filtered twice where once would do."""
+"""Pictures that are filtered twice although once would be enough."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FILTERING_TWICE = Rule(
     "Put transforms next to each other; make one of two resizes or two blurs.",
 )
 _PLACES = frozenset({"pixel", "extent"})
-"""What a shader says whose result depends on where a pixel is."""
+"""The words in a shader whose result depends on the place of the pixel."""
 
 
 def find_double_filtering(sheet: GraphFacts) -> Iterator[Problem]:
@@ -40,7 +40,7 @@ def find_double_filtering(sheet: GraphFacts) -> Iterator[Problem]:
 
 
 def _find_earlier_filter(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:
-    """The node that resampled the picture of `id` before, and the nodes between them; "" if there is none."""
+    """The node that resampled the picture of `id` before, and the nodes in between; "" if there is none."""
     between: list[str] = []
     port = sheet.first(id)
     while port and sheet.readers[port] == 1:
@@ -62,7 +62,7 @@ def _picture(sheet: GraphFacts, id: str, item: Pointwise) -> str:
 
 
 def _remedy(sheet: GraphFacts, before: str, between: list[str], id: str) -> str:
-    """What to do instead of filtering twice, or "" where both nodes are needed."""
+    """The advice instead of filtering twice; "" if both nodes are needed."""
     from halation.nodes.blur.gaussian_blur import GaussianBlur
     from halation.nodes.distort.resize import Resize
     from halation.nodes.distort.transform import Transform
@@ -88,7 +88,7 @@ def _remedy(sheet: GraphFacts, before: str, between: list[str], id: str) -> str:
 
 
 def _hard(*items: Transform | Resize) -> bool:
-    """True if pixels are meant to stay as they are."""
+    """True if the node shall keep hard pixels."""
     return any(item.kernel in ("nearest", "box") for item in items)
 
 

@@ -1,4 +1,4 @@
-"""Pictures for a display where light is wanted."""
+"""Display-ready pictures that are linked to nodes for scene light."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ CLIPPED_LIGHT = Rule(
 )
 
 _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
-"""Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
+"""Endings of files that always hold 8 bits; PNG and TIFF may hold more."""
 
 
 def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
-    """Nodes that work with light, behind a tone map. The first of each chain is named."""
+    """Nodes for scene light after a tone map. The first one of each chain is reported."""
     maker: dict[Port, str] = {}
     for id in sheet.graph.order():
         item = sheet.works(id)

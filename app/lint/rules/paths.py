@@ -28,7 +28,7 @@ BACKSLASH_PATH = Rule(
 
 
 def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
-    """Every path of a file in a graph, without groups: node, socket, JSON path in the graph, and the path itself."""
+    """Every file path in a graph, without groups: node, socket, JSON path, and the path itself."""
     config = graph.settings.color.config
     if config and not config.startswith(BUILT_IN):
         yield "", "", "settings.color.config", config
@@ -49,12 +49,12 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
 
 
 def is_absolute(path: str) -> bool:
-    """True for a path that begins at the root of a system or at a drive, whatever system this is."""
+    """True for a path that begins at a root or a drive, on any system."""
     return PurePosixPath(path).is_absolute() or bool(PureWindowsPath(path).drive)
 
 
 def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
-    """Paths from the root."""
+    """Finds absolute paths."""
     for node, socket, at, path in list_paths(sheet.graph):
         if is_absolute(path):
             sentence = f"{who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
@@ -62,7 +62,7 @@ def absolute_path(sheet: GraphFacts) -> Iterator[Problem]:
 
 
 def backslash_path(sheet: GraphFacts) -> Iterator[Problem]:
-    """Paths of Windows."""
+    """Finds paths with backslashes."""
     for node, socket, at, path in list_paths(sheet.graph):
         if "\\" in path and not is_absolute(path):
             better = path.replace("\\", "/")
@@ -71,7 +71,7 @@ def backslash_path(sheet: GraphFacts) -> Iterator[Problem]:
 
 
 def who(node: str, socket: str) -> str:
-    """What names a file, for a sentence: `read.path`, or the settings where it is no node."""
+    """The owner of a path, for a sentence: `read.path`, or the settings."""
     return f"{node}.{socket}" if socket else node or "settings"
 
 

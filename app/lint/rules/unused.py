@@ -1,4 +1,4 @@
-"""What no picture depends on."""
+"""Parts of a graph on which no picture depends."""
 
 from __future__ import annotations
 
@@ -31,7 +31,8 @@ STALE_LAYOUT = Rule(
 )
 
 _MOST_COUNTED = 10_000
-"""Nodes that are counted for all dead ends together: many ends can share one long branch."""
+"""Nodes that are counted for all dead ends together, because many ends can share one long branch. Chosen by
+judgement."""
 
 
 def find_unused_branches(sheet: GraphFacts) -> Iterator[Problem]:
@@ -73,7 +74,7 @@ def find_stale_layout(sheet: GraphFacts) -> Iterator[Problem]:
 
 
 def _find_used_nodes(sheet: GraphFacts) -> set[str]:
-    """Nodes whose values expressions read, and nodes that a viewer shows."""
+    """Nodes whose values are read by expressions, and nodes that a viewer shows."""
     graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
     read_nodes = {
         find_named_value(graph, name)[0].node

@@ -1,1 +1,1 @@
-"""Pictures beside pictures: how far two are apart, in numbers, and sheets that show many."""
+"""Compares pictures: measures of their difference, and sheets that show many side by side."""

@@ -1,4 +1,4 @@
-"""Colors of the categories of nodes: of their titles in sheets of pictures and in both themes of the editor.
+"""Colors of node categories: of their titles on sheets, and in both themes of the editor.
 
 All are display-referred sRGB. "" stands for any other category.
 """
@@ -12,7 +12,7 @@ RGB = tuple[float, float, float]
 
 
 def parse_hex(text: str) -> RGB:
-    """Red, green and blue, 0 to 1, of six hexadecimal digits."""
+    """Red, green and blue, 0 to 1, from six hexadecimal digits."""
     red, green, blue = (int(text[at : at + 2], 16) / 255 for at in (0, 2, 4))
     return red, green, blue
 

@@ -1,4 +1,4 @@
-"""Contact sheets: pictures side by side under their names, to be compared at a glance."""
+"""Contact sheets: pictures side by side, with their names."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ documentation take a third less than at 95."""
 
 
 def show_light(array: Array, view: str = "") -> Array:
-    """Scene-linear pixels as light of the display, [h, w, 3] of float32 within 0..1: what sheets take.
+    """Scene-linear pixels as display values, [h, w, 3] of float32 within 0..1: the pictures of sheets.
 
     Raises:
         UsageError: unknown view.
@@ -48,12 +48,12 @@ def show_light(array: Array, view: str = "") -> Array:
 
 
 def show_any_light(array: Array) -> Array:
-    """The same of light in any number of channels: one is gray, two are red and green."""
+    """The same for any number of channels: one is gray, two are red and green."""
     return show_light(_three(array.astype(np.float32)))
 
 
 def show_over_checker(array: Array, view: str = "") -> Array:
-    """The same of RGBA, with squares behind what is transparent. Light without alpha lies on top of them."""
+    """The same for RGBA, with a checkerboard behind transparent pixels. Light without alpha lies on top of it."""
     light, alpha = show_light(array, view), np.clip(np.nan_to_num(array[..., 3:4].astype(np.float32)), 0.0, 1.0)
     row, column = np.indices(light.shape[:2]) // _SQUARE
     behind = decode_srgb(np.array(_CHECKER, np.float32))[(row + column) % 2][..., None]
@@ -62,13 +62,13 @@ def show_over_checker(array: Array, view: str = "") -> Array:
 
 
 def show_data(array: Array, low: float, high: float) -> Array:
-    """Data as such light: `low` is black and `high` is white; one channel is gray, two are red and green."""
+    """Data as display values: `low` is black and `high` is white; one channel is gray, two are red and green."""
     codes = np.clip((np.nan_to_num(array.astype(np.float32)) - low) / (high - low), 0.0, 1.0)
     return decode_srgb(_three(codes)).astype(np.float32)
 
 
 def make_caption(light: Array, lines: Sequence[str]) -> Array:
-    """A picture pushed back behind lines of text: for results that are numbers."""
+    """A darkened picture behind lines of text: for results that are numbers."""
     height, width = light.shape[:2]
     paper, letters = oiio.ImageBuf(_encode_srgb(light * 0.06)), height // 9
     top = height / 2 - (len(lines) - 1) * letters * 0.75
@@ -79,9 +79,9 @@ def make_caption(light: Array, lines: Sequence[str]) -> Array:
 
 
 def make_sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Array:
-    """Light of the display, [h, w, 3] of float32. `pictures` are such light too, by name.
+    """A sheet of pictures by name, [h, w, 3] of float32; all are display values.
 
-    The first is made `width` pixels wide, if that is not 0; the others have its scale, or fit where it would.
+    The first picture is scaled to `width` if that is not 0; the others get its scale, or fit into its cell.
     """
     return make_grouped_sheet({"": pictures}, columns, width)
 
@@ -94,7 +94,7 @@ def make_grouped_sheet(
     letters: int = 15,
     colors: Mapping[str, RGB] = MappingProxyType({}),
 ) -> Array:
-    """The same for pictures by group and name, under headings with rules of these `colors` (sRGB) by group.
+    """The same for pictures by group and name, under headings with rules in these `colors` (sRGB) by group.
 
     A small group stands beside others, in the first row with room for it. `letters` is the size of names in pixels.
     """
@@ -129,7 +129,7 @@ def make_grid_sheet(
     title: str = "",
     letters: int = 16,
 ) -> Array:
-    """The same for pictures by row and column, which have headings: `down` and `across`."""
+    """The same for pictures by row and column, with headings: `down` and `across`."""
     first = rows[0][0]
     width = width or first.shape[1]
     cell = (width, _height_at(first, width))
@@ -156,7 +156,7 @@ def make_grid_sheet(
 
 
 def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbox: Sandbox) -> None:
-    """Keep a sheet as JPEG, small enough for a page. Raises OutputError."""
+    """Write a sheet as JPEG, small enough for a page. Raises OutputError."""
     pixels = np.ascontiguousarray((_encode_srgb(light) * 255.0 + 0.5).astype(np.uint8))
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "uint8")
     spec.attribute("compression", f"jpeg:{_QUALITY}")
@@ -174,7 +174,7 @@ def write_sheet(path: str | Path, light: Array, description: str = "", *, sandbo
 
 @dataclass(frozen=True)
 class _SheetLayout:
-    """Where everything lies, as (left, top) in pixels. `counts` are pictures by group, `cell` is the size of one."""
+    """The layout of a sheet, in (left, top) of pixels. `counts` are pictures by group, `cell` is the size of one."""
 
     counts: Mapping[str, int]
     columns: int
@@ -189,7 +189,7 @@ class _SheetLayout:
         return 2 * _MARGIN + across * (self.cell[0] + _GAP) - _GAP, down + _MARGIN - _GAP
 
     def cells(self, group: str) -> Iterator[tuple[int, int]]:
-        """Of every picture of a group."""
+        """The places of all pictures of a group."""
         first, top = self._find_shelf(group)
         for index in range(self.counts[group]):
             row, column = divmod(first + index, self.columns) if not first else (0, first + index)
@@ -211,7 +211,8 @@ class _SheetLayout:
         return 3 * self.letters if any(self.counts) else 0
 
     def _shelves(self) -> list[list[tuple[str, int]]]:
-        """Groups side by side, each with its first column; one that takes several rows has its shelf for itself."""
+        """The groups of each shelf, each with its first column; a group that takes several rows has a shelf for
+        itself."""
         shelves: list[list[tuple[str, int]]] = []
         for name, count in self.counts.items():
             columns_used = [sum(self.counts[member] for member, _ in shelf) for shelf in shelves]
@@ -226,7 +227,7 @@ class _SheetLayout:
         return self._head + -(-self.counts[shelf[0][0]] // self.columns) * self._row
 
     def _find_shelf(self, group: str) -> tuple[int, int]:
-        """First column of a group, and the top of its shelf."""
+        """The first column of a group, and the top of its shelf."""
         top = _MARGIN
         for shelf in self._shelves():
             if group in dict(shelf):
@@ -249,7 +250,7 @@ def _paste(canvas: Array, picture: Array, left: int, top: int, cell: tuple[int, 
 
 
 def _label(paper: oiio.ImageBuf, title: str, left: int, baseline: int, room: int, letters: int) -> None:
-    """A name, in smaller letters where it is long."""
+    """A name, in smaller letters if it is long."""
     text = _spell_out(title)
     while letters > 8 and oiio.ImageBufAlgo.text_size(text, letters).width > room:
         letters -= 1
@@ -285,7 +286,7 @@ def _spell_out(name: str) -> str:
 
 
 def _encode_srgb(light: Array) -> Array:
-    """sRGB codes of light (IEC 61966-2-1)."""
+    """sRGB values of light (IEC 61966-2-1)."""
     light = np.clip(light, 0.0, 1.0)
     codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
     return codes.astype(np.float32)

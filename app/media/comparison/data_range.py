@@ -1,4 +1,4 @@
-"""Data made visible: which numbers are worth showing, and what vectors mean. Thumbnails and viewer show it alike."""
+"""Finds the range in which data is shown. Thumbnails and viewer use the same."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ import numpy as np
 Array = np.ndarray
 
 FAR = 1e8
-"""Renderers write larger depths where there is nothing."""
+"""Depths from here on are background: renderers write 1e10 (Blender), 1e30 or infinity there."""
 
 HALF_MAX = 65504.0
-"""What infinity becomes in files and nodes."""
+"""The number that infinity becomes in files and nodes: the largest half float."""
 
 
 def find_data_range(pixels: Array) -> tuple[float, float]:
-    """From where to where data [h, w, channels] is worth showing: without stray extremes, and what stands for far."""
+    """The range in which data [h, w, channels] is shown: without outliers, and without numbers that mean infinity."""
     finite = pixels[np.isfinite(pixels)]
     near = finite[(np.abs(finite) < FAR) & (np.abs(finite) != HALF_MAX)]
     finite = near if near.size else finite
@@ -29,13 +29,13 @@ def find_data_range(pixels: Array) -> tuple[float, float]:
 
 
 def balance_range(low: float, high: float) -> tuple[float, float]:
-    """The same range with zero in its middle, where both signs occur: directions, motion."""
+    """The same range with zero in its middle, if both signs occur: directions, motion."""
     reach = max(abs(low), abs(high))
     return (-reach, reach) if low < 0.0 < high else (low, high)
 
 
 def are_normals(pixels: Array) -> bool:
-    """True if vectors [h, w, 3 or 4] are unit length wherever there is anything."""
+    """True if vectors [h, w, 3 or 4] have unit length wherever they are not zero."""
     if pixels.shape[2] < 3:
         return False
     length = np.linalg.norm(pixels[..., :3].reshape(-1, 3).astype(np.float64), axis=1)

@@ -1,4 +1,4 @@
-"""How far two pictures are apart, by the measures of the field, and a picture of where."""
+"""Measures of the difference of two pictures, and a picture of the difference."""
 
 from __future__ import annotations
 
@@ -23,14 +23,12 @@ _BROKEN_COLOR = (1.0, 0.0, 1.0)
 
 @dataclass(frozen=True)
 class PictureDifference:
-    """How far a picture is from the one that was expected.
+    """The difference of a picture from the expected one.
 
-    `max_abs` and `rms` are in the units of the pixels, over all channels; `max_rel` is the largest difference in
-    parts of the expected number where that is beyond 1, as the precision of floats goes. `psnr` is in dB, infinite for
-    equal pictures, its peak the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are
-    NaN where they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold. `worst`
-    is the pixel with the largest difference as x, y from the top left, with its numbers on both sides; None for equal
-    pictures.
+    `max_abs` and `rms` are in the units of the pixels, over all channels. `max_rel` is the largest difference relative
+    to the expected number if that is above 1, like the precision of floats. `psnr` is in dB, infinite for equal
+    pictures; its peak is the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are NaN
+    if they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold.
 
     A number that is not finite equals only the same on the other side; any other pair fails, with `max_abs` and
     `rms` infinite; `broken` counts pixels with such pairs. Where pictures cannot be compared `fault` says why in a
@@ -67,9 +65,9 @@ def compare_pictures(
 ) -> PictureDifference:
     """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
 
-    With `relative` the threshold, and what is worst, grow with the expected number where that is beyond 1.
-    `linear` light is encoded for the eye before SSIM; other numbers (encoded pictures, data) are taken as they are.
-    `perceptual=False` leaves out SSIM and FLIP, which take most of the time. See `ssim` and `flip`.
+    With `relative` the threshold and the worst pixel are relative to the expected number if that is above 1. `linear`
+    light is converted to display values before SSIM; other numbers are used unchanged. `perceptual=False` leaves out
+    SSIM and FLIP, which take most of the time.
 
     Raises:
         UsageError: an array that is no picture.
@@ -168,7 +166,7 @@ def measure_flip(actual: Array, expected: Array, *, linear: bool = True) -> floa
 
 
 def amplify_difference(actual: Array, expected: Array, gain: float | None = None) -> Array:
-    """The absolute difference times `gain`, as [h, w, 3] of float32 within 0..1, to be shown as it is.
+    """The absolute difference times `gain`, as [h, w, 3] of float32 within 0..1, to be shown unchanged.
 
     Without a gain the largest difference is made 1. A difference of alpha is added as gray. Magenta is where one
     picture is larger than the other, or not finite where the other is.
@@ -220,7 +218,7 @@ def _describe_mismatch(actual: Array, expected: Array) -> str:
 
 
 def _find_broken(actual: Array, expected: Array) -> Array:
-    """Where a number is not finite and the other is not the same."""
+    """Where a number is not finite and the other one is not the same."""
     same = (actual == expected) | (np.isnan(actual) & np.isnan(expected))
     return ~same & ~(np.isfinite(actual) & np.isfinite(expected))
 
@@ -242,7 +240,7 @@ def _encode_srgb(linear: Array) -> Array:
 
 
 def _gaussian_mean(channel: Array) -> Array:
-    """The Gaussian mean around every pixel whose window fits in."""
+    """The Gaussian mean around every pixel whose window lies inside the picture."""
     place = np.arange(_TAPS) - _TAPS // 2
     weights = np.exp(-(place**2) / (2.0 * _SIGMA**2))
     weights /= weights.sum()

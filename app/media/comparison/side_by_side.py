@@ -1,4 +1,4 @@
-"""Two sets of pictures side by side, with what differs."""
+"""Writes pairs of pictures side by side, with their differences."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .metrics import amplify_difference
 
 @dataclass(frozen=True)
 class PicturePair:
-    """A picture before and after, [h, w, c]; None where there is none, of at least one. `view` shows light."""
+    """A picture before and after, [h, w, c]; one of them may be None. `view` shows light."""
 
     before: Array | None
     after: Array | None

@@ -1,1 +1,1 @@
-"""Triangles of 3D scenes: those of mesh files, and those of the scenes that are built in."""
+"""Triangles of 3D scenes: of mesh files, and of the built-in scenes."""

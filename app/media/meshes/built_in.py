@@ -1,4 +1,4 @@
-"""Scenes that are built in, and what their meshes are made of."""
+"""The built-in scenes, and the shapes of which they are made."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
-    """One object: places, unit normals [n, 3], triangles [m, 3], uvs [n, 2] and its material. z is up."""
+    """One object: positions, unit normals [n, 3], triangles [m, 3], uvs [n, 2] and its material. z is up."""
 
     positions: Array
     normals: Array
@@ -28,15 +28,15 @@ class MeshPart:
 
     @property
     def material(self) -> tuple[float, ...]:
-        """What is the same for objects of one material."""
+        """The properties of a material."""
         return (*self.albedo, *self.emission, self.metal, self.rough)
 
     def rotate(self, rotation: Array) -> MeshPart:
-        """The same object in a turned world."""
+        """The same object, rotated."""
         return replace(self, positions=self.positions @ rotation.T, normals=self.normals @ rotation.T)
 
     def move(self, *place: float) -> MeshPart:
-        """The same object somewhere else."""
+        """The same object, moved."""
         return replace(self, positions=self.positions + np.asarray(place))
 
     def with_material(
@@ -48,12 +48,12 @@ class MeshPart:
         rough: float = 0.6,
         moving: bool = False,
     ) -> MeshPart:
-        """The same shape of another material."""
+        """The same shape with another material."""
         return replace(self, albedo=albedo, emission=emission, metal=metal, rough=rough, is_moving=moving)
 
 
 def make_surface(points: Callable[[Array, Array], Array], across: int, down: int) -> MeshPart:
-    """A smooth surface over the unit square, by the function of its u and v in 0..1; normals by its tangents."""
+    """A smooth surface over the unit square, from a function of u and v in 0..1; normals come from its tangents."""
     v, u = (grid.ravel() for grid in np.mgrid[0 : 1 : (down + 1) * 1j, 0 : 1 : (across + 1) * 1j])
     places, step = points(u, v), 1e-6
     normals = np.cross(points(u + step, v) - points(u - step, v), points(u, v + step) - points(u, v - step))
@@ -73,7 +73,7 @@ def make_surface(points: Callable[[Array, Array], Array], across: int, down: int
 
 
 def make_sphere(radius: float, segments: int = 96) -> MeshPart:
-    """A ball around the origin. Its normals point out, at the poles too."""
+    """A ball around the origin. Its normals point outward, at the poles too."""
 
     def points(u: Array, v: Array) -> Array:
         turn, tilt = 2.0 * np.pi * u, np.pi * v
@@ -84,7 +84,7 @@ def make_sphere(radius: float, segments: int = 96) -> MeshPart:
 
 
 def make_torus(radius: float, thickness: float, segments: int = 96) -> MeshPart:
-    """A ring around the y axis: it stands upright."""
+    """A ring around the y axis, so it stands upright."""
 
     def points(u: Array, v: Array) -> Array:
         turn, around = 2.0 * np.pi * u, 2.0 * np.pi * v
@@ -100,7 +100,7 @@ def make_quad(corner: Color, along: Color, up: Color, pieces: int = 1) -> MeshPa
 
 
 def make_box(width: float, depth: float, height: float) -> MeshPart:
-    """A block that stands on z = 0, in the middle of x and y."""
+    """A block that stands on z = 0, centered in x and y."""
     w, d, h = width / 2.0, depth / 2.0, height
     sides = [
         make_quad((-w, -d, 0.0), (width, 0.0, 0.0), (0.0, 0.0, h)),
@@ -120,7 +120,7 @@ def make_box(width: float, depth: float, height: float) -> MeshPart:
 
 
 def _make_backdrop() -> MeshPart:
-    """Floor and wall in one, round where they meet, as in a photographer's studio."""
+    """A floor that bends into a wall, as in a photographer's studio."""
 
     def points(u: Array, v: Array) -> Array:
         bend, floor, wall = 1.2, 9.0, 5.0
@@ -153,7 +153,7 @@ def build_stage() -> list[MeshPart]:
 
 
 def build_corner() -> list[MeshPart]:
-    """Two walls and a floor at right angles, with a block and a ball: light and shade in their plainest form."""
+    """Two walls and a floor at right angles, with a block and a ball: a simple scene for light and shadow."""
     return [
         make_quad((-4.0, -4.0, 0.0), (8.0, 0.0, 0.0), (0.0, 8.0, 0.0)).with_material((0.7, 0.7, 0.7)),
         make_quad((-4.0, 2.0, 0.0), (8.0, 0.0, 0.0), (0.0, 0.0, 4.0)).with_material((0.7, 0.7, 0.7)),

@@ -1,4 +1,4 @@
-"""Triangles of scenes: those that are built in, and those of files."""
+"""Loads the triangles of scenes: built-in ones, and those of files."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ MESH_ENDINGS = frozenset({".glb", ".gltf", ".obj", ".ply", ".stl"})
 
 _COLUMNS = sum(ATTRIBUTES.values())
 _MOST_TRIANGLES = 20_000_000
-"""Triangles of a scene. A vertex takes 76 bytes, so these take 1 GB if they share vertices and 5 GB if not. Chosen by
-judgement as what a workstation can hold."""
+"""The most triangles of a scene. A vertex takes 76 bytes, so they need 1 GB if they share vertices and 5 GB if not.
+Chosen by judgement as what a workstation can hold."""
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
-"""From a world whose y points up to one whose z does, as Blender's importers turn it."""
+"""From y up to z up, as Blender's importers turn scenes."""
 
 
 def load_mesh(scene: Scene, sandbox: Sandbox) -> Mesh:
@@ -52,7 +52,7 @@ def _load(scene: Scene, mark: str, sandbox: Sandbox) -> Mesh:
 
 
 def _join_parts(parts: list[MeshPart]) -> Mesh:
-    """All pieces as one; objects and materials count from 1."""
+    """All pieces as one mesh; objects and materials are numbered from 1."""
     vertices: list[Array] = []
     indices: list[Array] = []
     materials: dict[tuple[float, ...], int] = {}
@@ -72,10 +72,10 @@ def _join_parts(parts: list[MeshPart]) -> Mesh:
 
 
 def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
-    """The meshes of a file where they stand."""
+    """The meshes of a file, at their places in the scene."""
     import trimesh
 
-    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it reports what it does without
+    logging.getLogger("trimesh").addHandler(logging.NullHandler())  # without this it prints reports
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
     resolver, file_type = _make_resolver(path, sandbox), Path(path).suffix.removeprefix(".")
@@ -98,10 +98,10 @@ def _read_parts(path: str, sandbox: Sandbox) -> list[MeshPart]:
 
 
 def _make_resolver(path: str, sandbox: Sandbox) -> Any:
-    """Finds the files that a mesh names, such as buffers and materials, as far as they may be read.
+    """Finds files that a mesh names, such as buffers and materials, if they may be read.
 
-    As trimesh does it, they lie in the folder of the mesh or below, and a name that leads nowhere is looked up in the
-    folder itself. trimesh would follow a link there, and wait for a FIFO.
+    As in trimesh, they must lie in the folder of the mesh or below; a name without a file is looked up in the folder
+    itself. trimesh would follow a link there, and wait for a FIFO.
     """
     from trimesh.resolvers import FilePathResolver
 
@@ -142,10 +142,10 @@ def _read_part(scene: Any, node: str) -> MeshPart | None:
 
 
 def _read_normals(mesh: Any) -> Array:
-    """Normals of vertices: those of the file, else the mean of the faces around, weighted by their angles there.
+    """Normals of vertices: those of the file, else the mean of the adjacent faces, weighted by their angles there.
 
-    What the file had is in trimesh's cache. It would average the others itself, but with scipy, which is not among the
-    libraries that Halation needs; the sums are the same, in the same order (Thuermer and Wuethrich, Computing Vertex
+    trimesh keeps the normals of the file in its cache. It would compute the others itself, but with scipy, which
+    Halation does not require; the sums here are the same, in the same order (Thuermer and Wuethrich, Computing Vertex
     Normals from Polygonal Facets, 1998).
     """
     from trimesh.util import unitize
@@ -162,7 +162,7 @@ def _read_normals(mesh: Any) -> Array:
 
 
 def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:
-    """The base color: scene-linear in glTF; the other formats mean sRGB."""
+    """The base color: scene-linear in glTF, sRGB in the other formats."""
     from ...color.transforms import decode_srgb, to_float
 
     base = getattr(material, "baseColorFactor", None)

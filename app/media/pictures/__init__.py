@@ -1,1 +1,1 @@
-"""Picture files: EXR, PNG, TIFF and whatever else OpenImageIO reads and writes."""
+"""Picture files: EXR, PNG, TIFF and all other formats that OpenImageIO reads and writes."""

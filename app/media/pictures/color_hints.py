@@ -1,4 +1,4 @@
-"""What the header of a picture says about its color."""
+"""Reads what the header of a picture says about its color."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from ...color.management import LINEAR_REC709
 from .open import COLOR_TAG, make_printable, read_color_tag
 
 _STRAIGHT_FORMATS = ("bmp", "gif", "ico", "jpegxl")
-"""Formats whose color is not multiplied by alpha, although OpenImageIO does not say so."""
+"""Formats with straight color that OpenImageIO does not report as such."""
 
 _UNUSABLE = {"pnm": "rec709"}
-"""Tags that OpenImageIO gives to every file of a format, and that programs which write such files do not keep to:
-PNM means BT.709 on paper and sRGB in practice, and floats in PFM are linear."""
+"""Tags that OpenImageIO gives to every file of a format, but that programs do not follow: PNM means BT.709 by its
+specification and sRGB in practice, and floats in PFM are linear."""
 
 
 def read_color_hints(spec: oiio.ImageSpec, format: str, stored: str) -> ColorHints:
-    """What a header says about color: a tag, what its format means without one, an ICC profile, a gamma,
-    chromaticities. `stored` is the format of the layer's numbers.
+    """The facts of a header about color: a tag, the meaning of the format without a tag, an ICC profile, a gamma,
+    chromaticities.
 
     OpenImageIO tags every picture of some formats by itself. Such a tag says no more than the format does.
     """
@@ -42,7 +42,7 @@ def read_color_hints(spec: oiio.ImageSpec, format: str, stored: str) -> ColorHin
 
 
 def has_straight_alpha(spec: oiio.ImageSpec, format: str) -> bool:
-    """True if the color of a file is not multiplied by its alpha."""
+    """True if the color of a file is straight."""
     return spec.get_int_attribute("oiio:UnassociatedAlpha") == 1 or format in _STRAIGHT_FORMATS
 
 
@@ -55,6 +55,6 @@ def _read_chromaticities(spec: oiio.ImageSpec) -> tuple[float, ...]:
 
 
 def _read_gamma(spec: oiio.ImageSpec) -> float:
-    """The exponent that decodes the numbers, 0 where the header has none."""
+    """The exponent that decodes the numbers, 0 if the header has none."""
     gamma = spec.get_float_attribute("oiio:Gamma", 0.0)
     return gamma if math.isfinite(gamma) and gamma > 0.0 else 0.0

@@ -1,4 +1,5 @@
-"""Numbers that are none, and those too large for half floats: looked for band by band, without copies of pictures."""
+"""Finds and replaces NaN, infinity and numbers that are too large for half floats, band by band, without copies of
+pictures."""
 
 from __future__ import annotations
 
@@ -10,15 +11,15 @@ import OpenImageIO as oiio
 Array = np.ndarray
 HALF_MAX = 65504.0
 _INFINITE = 0x7C00
-"""The exponent of halves that are not finite."""
+"""The exponent of half floats that are not finite."""
 _SMALLER = np.float32(1.0 / 16.0)
-"""The sum of 8 numbers of any size, made smaller by this, is finite."""
+"""With this factor, the sum of any 8 finite numbers stays finite."""
 _BAND = 1 << 17
-"""Numbers that are looked at together: they stay in the caches of a processor."""
+"""Numbers that are checked together. Chosen by judgement: they stay in the caches of a processor."""
 
 
 def find_non_finite(array: Array) -> Array:
-    """Where an array is NaN or infinite; bits are compared, since numpy is slow on halves."""
+    """Where an array is NaN or infinite. Bits are compared, since numpy is slow on half floats."""
     if array.dtype == np.float16:
         return (array.view(np.uint16) & _INFINITE) == _INFINITE
     return ~np.isfinite(array)
@@ -30,10 +31,10 @@ def has_non_finite(array: Array) -> bool:
 
 
 def fill_non_finite(array: Array) -> Array:
-    """Color [h, w, c] without NaN and infinity: each takes the mean of its finite neighbors, or 0 without any.
+    """Color [h, w, c] without NaN and infinity: each becomes the mean of its finite neighbors, or 0 without any.
 
-    The sum of large neighbors may be infinite. Then its band of rows, those between two that need no filling, is filled
-    again with smaller numbers; rows outside of it have no part in that, so a band may be read alone.
+    The sum of large neighbors may be infinite. Then its band of rows, which lies between two rows without repairs, is
+    filled again with smaller numbers. Rows outside of it have no influence, so a band may be read alone.
     """
     filled = _average_neighbors(array)
     if not has_non_finite(filled):
@@ -52,14 +53,15 @@ def fill_non_finite(array: Array) -> Array:
 
 
 def _average_neighbors(array: Array) -> Array:
-    """What is not finite as the mean of the finite ones among 8 neighbors (OpenImageIO, fixNonFinite BOX3)."""
+    """NaN and infinity as the mean of the finite ones among 8 neighbors (OpenImageIO, fixNonFinite BOX3)."""
     # one thread: a filled neighbor counts as finite, so the order decides the result
     filled = oiio.ImageBufAlgo.fixNonFinite(oiio.ImageBuf(array), oiio.NONFINITE_BOX3, nthreads=1)
     return np.array(filled.get_pixels("half" if array.dtype == np.float16 else "float"))
 
 
 def to_half(array: Array) -> Array:
-    """Half floats, rounded to nearest even; what is beyond their range is clamped, and NaN is always the same NaN."""
+    """Half floats, rounded to nearest even. Numbers beyond their range are clamped, and NaN always has the same
+    bits."""
     if array.dtype == np.float16 and not has_non_finite(array):
         return array
     halves = np.empty(array.shape, np.float16)

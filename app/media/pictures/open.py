@@ -1,4 +1,4 @@
-"""Open a picture file, and read what its header says about size and layers."""
+"""Opens picture files, and reads size and layers from their headers."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..layers import ImageInfo
 from ..limits import check_size
 
 COLOR_TAG = "halation:colorspace"
-"""The attribute that names the color space in formats that have no word for it."""
+"""The attribute that names the color space in formats without a field for it."""
 
 _DTYPES = {
     "half": "float16",
@@ -32,7 +32,7 @@ _DTYPES = {
     "int": "int32",
 }
 _BY_ROWS = ("openexr", "tiff")
-"""Formats that need not be decoded from their beginning."""
+"""Formats that can be decoded from any row."""
 
 _FAULTS = (
     ("subsampled", "stores color at a lower resolution than brightness, which cannot be read: save it as plain RGB"),
@@ -43,14 +43,14 @@ _FAULTS = (
     ("permission", "may not be read: check its permissions"),
 )
 
-# OpenImageIO hears OPENIMAGEIO_THREADS, but not which processors this process may use, and OpenEXR hears neither.
+# OpenImageIO follows OPENIMAGEIO_THREADS, but ignores which processors this process may use; OpenEXR ignores both.
 oiio.attribute("threads", min(available_cores(), oiio.get_int_attribute("threads")))
 oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
 
 
 @contextmanager
 def open_picture(path: str | Path, sandbox: Sandbox) -> Iterator[oiio.ImageInput]:
-    """Open a file; alpha is left as stored, because it must be applied to linear color. Raises InputError."""
+    """Open a file. Alpha is not applied to color, since it must be applied to linear color. Raises InputError."""
     file = check_file(path, sandbox=sandbox)
     settings = oiio.ImageSpec()
     settings.attribute("oiio:UnassociatedAlpha", 1)
@@ -82,7 +82,7 @@ def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> I
             parts.append(_read_channels(index, spec))
             is_whole = is_whole and _is_whole(spec)
         index += 1
-    picture.geterror()  # that there is no further part
+    picture.geterror()  # there is no further part
     format = picture.format_name()
     return ImageInfo(
         path, size, group_channels(parts), fingerprint(path, sandbox=sandbox), format, is_whole and format in _BY_ROWS
@@ -90,19 +90,19 @@ def describe_picture(picture: oiio.ImageInput, path: str, sandbox: Sandbox) -> I
 
 
 def read_orientation(spec: oiio.ImageSpec) -> int:
-    """How the picture is turned (TIFF 6.0, tag 274): 1 to 8, 1 for upright and for numbers that mean nothing."""
+    """The orientation of the picture (TIFF 6.0, tag 274): 1 to 8; 1 is upright, also for invalid numbers."""
     orientation = spec.get_int_attribute("Orientation", 1)
     return orientation if 1 <= orientation <= 8 else 1
 
 
 def read_color_tag(spec: oiio.ImageSpec) -> str:
-    """The color space that the header names, "data" for none at all, "" where it says nothing."""
+    """The color space that the header names, "data" for data, "" if it names none."""
     names = (COLOR_TAG, "oiio:ColorSpace", "colorInteropID")
     return make_printable(next(filter(None, map(spec.get_string_attribute, names)), ""))
 
 
 def make_printable(text: str) -> str:
-    """A text of a header that can be printed, whatever bytes were in the file."""
+    """A text of a header in printable characters, whatever bytes the file has."""
     return text.encode("utf-8", "replace").decode()
 
 
@@ -127,12 +127,12 @@ def _read_channels(index: int, spec: oiio.ImageSpec) -> ChannelPart:
 
 
 def _upright_size(spec: oiio.ImageSpec) -> Size:
-    """Width and height of the display window, as it is seen."""
+    """Width and height of the display window, upright."""
     width, height = spec.full_width or spec.width, spec.full_height or spec.height
     return (height, width) if read_orientation(spec) > 4 else (width, height)
 
 
 def _is_whole(spec: oiio.ImageSpec) -> bool:
-    """True if there are pixels for all of the display window and nothing else, and it is upright."""
+    """True if the pixels fill exactly the display window, and it is upright."""
     display = (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height)
     return (spec.x, spec.y, spec.width, spec.height) == display and read_orientation(spec) == 1

@@ -1,4 +1,4 @@
-"""Layers of picture files."""
+"""Reads layers of picture files."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32"
 
 
 def choose_decoding(layer: Layer) -> str:
-    """The format that OpenImageIO decodes a layer as: its own, or 32-bit floats, in which integers fill 0..1."""
+    """The format to which OpenImageIO decodes a layer: its own, or 32-bit floats, in which integers fill 0..1."""
     return _DECODED_AS.get(layer.format, "float")
 
 
 def scale_integers(block: Array, info: ImageInfo, spec: oiio.ImageSpec) -> Array:
-    """Decoded numbers with 32-bit integers as 0..1, but for those of an EXR: they are ids and counts."""
+    """Decoded numbers with 32-bit integers as 0..1, except in an EXR, where they are ids and counts."""
     return scale_to_unit(block, spec) if block.dtype == np.uint32 and info.format != "openexr" else block
 
 

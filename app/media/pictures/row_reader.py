@@ -1,4 +1,4 @@
-"""Rows of large pictures, read alone."""
+"""Reads single rows of large pictures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .open import describe_fault, describe_picture, open_picture
 from .reader import choose_decoding, scale_integers
 
 _MORE_ROWS = 16
-"""Rows that are read at a time above and below, until a repair can be known. Such rows are rare, and 16 is the
+"""Rows that are read at a time above and below, until the repair of a pixel is known. Such rows are rare, and 16 is the
 block of scan lines in EXR files with ZIP compression (OpenEXR file layout): fewer would decode the same block again."""
 
 
@@ -25,8 +25,8 @@ def read_rows(path: str, request: LayerRequest, first: int, end: int, sandbox: S
     """Rows `first` to before `end` of what `read_layer` returns, of a file that can be read by rows (`by_rows`).
 
     A pixel that is not finite is repaired from its neighbors, and a repaired pixel counts as a finite neighbor. So the
-    repair of a row depends on the rows around it wherever those have such pixels too: rows above and below are added
-    until one has none, over which no repair reaches.
+    repair of a row depends on the rows around it if these need repairs too: rows above and below are added up to one
+    without repairs.
 
     Raises:
         InputError: as `read_layer`.
@@ -78,5 +78,5 @@ def _decode_rows(
 
 
 def _count_repaired(block: Array, is_color: bool) -> int:
-    """How many pixels are repaired: in color those with anything that is not finite, in data with a NaN."""
+    """How many pixels are repaired: in color those with NaN or infinity, in data those with NaN."""
     return int((find_non_finite(block) if is_color else np.isnan(block)).any(axis=2).sum())

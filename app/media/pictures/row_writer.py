@@ -1,4 +1,4 @@
-"""A large picture on its way out, written by rows from the top down."""
+"""Writes a large picture by rows, from the top down."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ..metadata import add_metadata
 from .writer import Precision, encode_exr_parts, encoder_error, open_encoder
 
 _BLOCK = 2**16
-"""Bytes that a disk should have left."""
+"""Bytes that must be free on the disk. Chosen by judgement."""
 
 
 class ScanlineWriter:
-    """An EXR of one layer of `size` and `kind`, the same that `write` makes of all rows together.
+    """An EXR of one layer of `size` and `kind`, equal to one that `write` makes of all rows.
 
-    It is there when it is closed, and not before. Raises OutputError.
+    The file appears when it is closed. Raises OutputError.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class ScanlineWriter:
         self._row = end
 
     def close(self) -> None:
-        """Finish it and give it its name."""
+        """Finish the file and give it its name."""
         try:
             assert self._row == self._size[1], f"{self._size[1] - self._row} rows are missing"
             self._check_encoded(self._output.close())
@@ -74,7 +74,7 @@ class ScanlineWriter:
             self.abort()
 
     def abort(self) -> None:
-        """Leave nothing behind, unless it was closed."""
+        """Remove the unfinished file, unless it was closed."""
         self._open.close()
 
     def _check_encoded(self, succeeded: bool) -> None:
@@ -82,7 +82,7 @@ class ScanlineWriter:
             return
         message = self._output.geterror()
         try:
-            with self._replacement.temporary.open("ab") as file:  # the encoder does not know why, but the system does
+            with self._replacement.temporary.open("ab") as file:  # the system knows the reason, the encoder does not
                 file.write(bytes(_BLOCK))
         except OSError as error:
             raise self._replacement.explain(error) from error

@@ -44,7 +44,7 @@ class StoredPart:
 
     @property
     def is_data(self) -> bool:
-        """True for depth, normals and the like."""
+        """True for data, such as depth and normals."""
         return not self.is_encoded and not any(name.rpartition(".")[2] in ("R", "G", "B") for name in self.channels)
 
     @property
@@ -54,7 +54,7 @@ class StoredPart:
 
     @property
     def count_unusable(self) -> int:
-        """Pixels with a NaN, or an infinite color; data may be infinite, as depth is where nothing is."""
+        """Pixels with NaN, or with infinite color. Data may be infinite: depth is on the background."""
         wrong = np.isnan(self.array) if self.is_data else ~np.isfinite(self.array)
         return int(np.count_nonzero(np.any(wrong, axis=2)))
 
@@ -95,7 +95,7 @@ def read_stored_codes(path: str | Path, sandbox: Sandbox) -> dict[str, Array]:
 
 
 def _iterate_parts(handle: oiio.ImageInput) -> Iterator[oiio.ImageSpec]:
-    """The description of every part of a file, which the file stands at meanwhile."""
+    """The description of every part of a file, while the file is positioned at it."""
     index = 0
     while handle.seek_subimage(index, 0):
         yield handle.spec()
@@ -112,7 +112,7 @@ def describe_maker(path: str | Path, sandbox: Sandbox) -> str:
 
 
 def copy_picture(path: Path, source: Path, sandbox: Sandbox) -> None:
-    """Copy a file to a path, whole or not at all; its folder is created. Raises OutputError."""
+    """Copy a file to a path, completely or not at all; its folder is created. Raises OutputError."""
 
     def copy(name: str) -> None:
         shutil.copyfile(source, name)

@@ -1,4 +1,4 @@
-"""Small pictures of files, for people who look for one."""
+"""Small pictures of files, for dialogs and lists."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
     """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
 
-    Floating-point color is seen through the default view; data and what is encoded already are shown as they are.
+    Floating-point color is shown through the default view; data and encoded pictures are shown unchanged.
 
     Raises:
         InputError: as `media.read`.
@@ -43,7 +43,7 @@ def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) 
 
 
 def list_readable_endings() -> frozenset[str]:
-    """Endings of names of pictures that can be read, such as `.exr`."""
+    """File name endings of pictures that can be read, such as `.exr`."""
     formats = oiio.get_string_attribute("extension_list").split(";")
     entries = [entry.partition(":") for entry in formats if not entry.startswith(_NO_PICTURES)]
     return frozenset(f".{ending.lower()}" for _, _, endings in entries for ending in endings.split(",") if ending)
@@ -60,7 +60,7 @@ def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
 
 
 def save_thumbnail(path: str | Path, pixels: Array, sandbox: Sandbox) -> None:
-    """Keep [h, w, 3] of uint8 as PNG. Raises OutputError."""
+    """Write [h, w, 3] of uint8 as PNG. Raises OutputError."""
     height, width = pixels.shape[:2]
 
     def encode(name: str) -> None:

@@ -1,4 +1,4 @@
-"""Integers of 24 and 32 bits as shares of the largest one."""
+"""Converts integers of 24 and 32 bits to 0..1."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ import OpenImageIO as oiio
 Array = np.ndarray
 
 _SAMPLE = 0x010203
-"""A number whose three bytes differ."""
+"""A number with three different bytes."""
 
 
 def scale_to_unit(block: Array, spec: oiio.ImageSpec) -> Array:
     """uint32 as OpenImageIO decodes them, as 0..1 in float32.
 
-    Numbers of 24 bits come in the upper bytes. OpenImageIO 3.2 takes their bytes in the order of the file's bits, which
-    is the wrong one on processors that begin with the lowest byte.
+    Numbers of 24 bits are in the upper bytes. OpenImageIO 3.2 reverses their bytes on little-endian processors.
     """
     if spec.get_int_attribute("oiio:BitsPerSample", 32) == 24 and _reverses_bytes():
         low, middle, high = (block >> 24) & 0xFF, (block >> 16) & 0xFF, (block >> 8) & 0xFF
@@ -30,7 +29,7 @@ def scale_to_unit(block: Array, spec: oiio.ImageSpec) -> Array:
 
 @cache
 def _reverses_bytes() -> bool:
-    """True if this OpenImageIO decodes 24 bits with their bytes reversed: it is given a file of one known pixel."""
+    """True if this OpenImageIO reverses the bytes of 24-bit numbers: it is tested with a file of one known pixel."""
     entries = ((256, 1), (257, 1), (258, 24), (259, 1), (262, 1), (273, 8), (277, 1), (278, 1), (279, 3))
     table = b"".join(struct.pack("<HHIHH", tag, 3, 1, number, 0) for tag, number in entries)
     data = struct.pack("<I", _SAMPLE) + struct.pack("<H", len(entries)) + table + bytes(4)

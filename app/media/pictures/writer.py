@@ -1,4 +1,4 @@
-"""Finished pictures into files."""
+"""Writes pictures to files."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 
 
 class EncodedPart(Struct, frozen=True):
-    """What one part of a file will be."""
+    """A part of a file to write."""
 
     spec: oiio.ImageSpec
     array: Array
@@ -93,7 +93,7 @@ def write_picture(
 
 
 def stores_halves(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
-    """True if `write` stores the numbers of a layer as they are, but rounded to half floats."""
+    """True if `write` stores the numbers of a layer unchanged, except for rounding to half floats."""
     return _is_stored_as_half(kind, precision) and not encoding.space and Path(path).suffix.casefold() == ".exr"
 
 
@@ -107,7 +107,7 @@ def check_destination(
     encoding: Encoding | None = None,
     sandbox: Sandbox,
 ) -> None:
-    """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""
+    """Raise the errors of `write` before anything is rendered, except for a full disk."""
     _check_layers(path, kinds, sizes, compression, encoding or Encoding(view))
     check_writable(path, sandbox=sandbox)
 
@@ -146,7 +146,7 @@ def _choose_format(path: Path) -> str:
 def encode_exr_parts(
     layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str, encoding: Encoding
 ) -> list[EncodedPart]:
-    """The parts of an EXR that holds these layers, and the numbers that go into them."""
+    """The parts of an EXR that holds these layers, and their numbers."""
     parts: list[EncodedPart] = []
     for name, array in layers.items():
         color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
@@ -173,7 +173,7 @@ def _is_stored_as_half(kind: Kind, precision: Precision) -> bool:
 
 
 def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
-    """Say in an EXR header what the numbers are."""
+    """Describe the numbers in an EXR header."""
     spec.attribute("oiio:ColorSpace", encoding.header_space if color else "data")
     if not color or encoding.is_plain:
         return
@@ -191,7 +191,7 @@ def _channel_names(name: str, kind: Kind, count: int) -> str:
 
 
 def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
-    """Which layer a format without layers shows: the first of color, else the first field."""
+    """The layer that a format without layers shows: the first color layer, else the first field."""
     candidates = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
     candidates = candidates or [name for name in kinds if kinds[name] is not Kind.VECTOR]
     if not candidates:
@@ -202,7 +202,7 @@ def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
 def _encode_picture(
     array: Array, format: str, precision: Precision, compression: str, encoding: Encoding
 ) -> EncodedPart:
-    """The one picture of a format that holds no layers."""
+    """The picture of a format that holds no layers."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
     if format in ("hdr", "jpeg", "dpx") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
@@ -245,7 +245,7 @@ def _make_encoder(path: str | Path, format: str, parts: Sequence[EncodedPart]) -
 
 
 def open_encoder(path: str | Path, format: str) -> oiio.ImageOutput:
-    """What writes files of a format. Raises OutputError where there is nothing."""
+    """The writer of a format. Raises OutputError if there is none."""
     output = oiio.ImageOutput.create(format)
     if output is None:
         reason = oiio.geterror().strip().partition("\n")[0] or f"this OpenImageIO has no encoder for {format}"
@@ -256,6 +256,6 @@ def open_encoder(path: str | Path, format: str) -> oiio.ImageOutput:
 
 
 def encoder_error(path: str | Path, message: str) -> OutputError:
-    """What an encoder said when it could not write a file."""
+    """The complaint of an encoder that could not write a file."""
     lines = message.strip().splitlines()
     return OutputError(f"{path}: cannot be written: {lines[0] if lines else 'the encoder gave no reason'}")

@@ -1,6 +1,6 @@
-"""Videos: frames by number, exactly, with their color, and videos that are written. Needs the extra `video` (PyAV).
+"""Videos: exact frames by number, with their color, and writing of videos. Needs the extra `video` (PyAV).
 
-Reading goes `index` (which frames there are) -> `reader` (a frame as PyAV decodes it) -> `planes` and `signals` (that
+Reading goes `index` (which frames exist) -> `reader` (a frame as PyAV decodes it) -> `planes` and `signals` (the frame
 as R'G'B', or as light) -> `layers` (the frame as layers of a picture). Writing is `codecs` -> `writer`.
 """
 

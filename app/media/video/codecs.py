@@ -1,4 +1,4 @@
-"""What a video can be written as: which container holds which codec, and how each is set up.
+"""The codecs of videos: which container holds which codec, and the settings of each.
 
 Every encoder runs on one thread and leaves out dates and random numbers: the same pictures give the same bytes.
 """
@@ -19,7 +19,7 @@ from .library import HOW_TO_INSTALL, load_pyav
 
 @dataclass(frozen=True)
 class VideoCodec:
-    """An encoder. `pixels` are the format for 8 bits and for more; `alpha` says that transparency is kept."""
+    """An encoder. `pixels` are the pixel formats for 8 bits and for more; `alpha` means that transparency is kept."""
 
     encoder: str
     pixels: tuple[str, str]
@@ -76,7 +76,7 @@ WRITABLE = tuple(_CODECS_BY_ENDING)
 
 
 def find_codec(path: str | Path, name: str, size: Size | None = None) -> VideoCodec:
-    """How a video is to be written; without a name as is usual for its ending.
+    """The encoder and format of a video; without a codec, the usual one of its ending.
 
     Raises:
         UsageError: no such codec in such a file, a size that it cannot have, or PyAV is missing.

@@ -1,4 +1,4 @@
-"""What there is to say of a video, in words."""
+"""Describes a video in words."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ _STORAGE_TAGS = frozenset(
         "creation_time",
     }
 )
-"""Tags that say how a file is stored."""
+"""Tags about how a file is stored."""
 
 
 def describe_video_attributes(facts: VideoInfo) -> Mapping[str, int | float | str]:
-    """All that is known, by names that begin with `video:`."""
+    """All facts, by names that begin with `video:`."""
     matrix = choose_matrix(facts.matrix, facts.size)
     luma = facts.pixels.startswith(("yuv", "nv", "p0", "p2", "p4", "uyvy", "y2"))
     full = facts.range == 2 or facts.pixels.startswith("yuvj") or not luma
@@ -59,5 +59,5 @@ def describe_video_attributes(facts: VideoInfo) -> Mapping[str, int | float | st
 
 
 def find_kept_tags(facts: VideoInfo) -> Mapping[str, str]:
-    """The tags that hold for pictures that are made from the video."""
+    """The tags that also apply to pictures made from the video."""
     return MappingProxyType({name: text for name, text in facts.tags.items() if name.casefold() not in _STORAGE_TAGS})

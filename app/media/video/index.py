@@ -1,4 +1,4 @@
-"""Which frames a video has: the index that makes frame numbers exact.
+"""Indexes the frames of a video, so that frame numbers are exact.
 
 Frame 1 is the first that a player shows. What a file says of its length and rate is often wrong, so frames are counted.
 Every packet has a time of presentation, and the frames are these times in order, without what an edit list cuts off.
@@ -35,11 +35,11 @@ keep up to 16, encoders use 2 to 4), and few enough to decode for every video.""
 _CONTAINERS = (
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,matroska,webm,avi,mxf,mpeg,mpegvideo,mpegts,asf,flv,ogg,yuv4mpegpipe,dv"
 )
-"""What is read: no playlists, which would lead to other files and to the network."""
+"""Containers that are read: no playlists, which would lead to other files and to the network."""
 
 _HIDING = ("vp8",)
 _TIMELESS = ("avi",)
-"""Containers that know the order of decoding only; times of presentation are guessed."""
+"""Containers that store only the order of decoding; times of presentation are guesses."""
 
 _ALPHA_DECODERS = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 _USUAL_RATE = Fraction(24)
@@ -48,7 +48,7 @@ _ATTACHED_PICTURE = 1024
 
 @dataclass(frozen=True)
 class KeyFrame:
-    """A packet from which decoding can begin: when it is shown, and its place among all packets."""
+    """A packet from which decoding can begin: its time of presentation, and its index among all packets."""
 
     time: int
     place: int
@@ -56,9 +56,9 @@ class KeyFrame:
 
 @dataclass(frozen=True)
 class FrameIndex:
-    """Where frames are: `times` of presentation in the units of the stream, `places` of packets by their two times.
+    """The places of frames: `times` of presentation in the units of the stream, `places` of packets by their two times.
 
-    Without `times`, frames can only be counted from the first on.
+    Without `times`, frames can only be counted from the first one.
     """
 
     count: int
@@ -67,13 +67,13 @@ class FrameIndex:
     keys: tuple[KeyFrame, ...] = ()
 
     def last_key_before(self, time: int) -> int:
-        """The last key that is shown at a time or before; which of `keys`."""
+        """The index in `keys` of the last key frame at a time or before."""
         return max(bisect_right(self.keys, time, key=lambda key: key.time) - 1, 0)
 
 
 @dataclass(frozen=True)
 class VideoInfo:
-    """What is known of a video. `size` is upright; `rate` is frames per second on average.
+    """The facts of a video.
 
     `pixels` is FFmpeg's name of the pixel format, `bits` those of a channel. `matrix`, `range`, `transfer` and
     `primaries` are the numbers of ITU-T H.273 (range: 1 limited, 2 full), 0 or 2 where the file says nothing.
@@ -96,7 +96,7 @@ class VideoInfo:
 
     @property
     def seconds(self) -> float:
-        """How long it lasts at its average rate."""
+        """Its duration at its average rate."""
         return float(self.count / self.rate)
 
 
@@ -123,19 +123,19 @@ def open_video(path: str, sandbox: Sandbox) -> Iterator[tuple[Any, Any, Any]]:
 
 
 def demux_packets(container: Any, stream: Any) -> Iterator[Any]:
-    """Those of a stream, without the empty one at the end."""
+    """The packets of a stream, without the empty one at the end."""
     return (packet for packet in container.demux(stream) if packet.size)
 
 
 def decode_frames(container: Any, stream: Any, decoder: Any) -> Iterator[Any]:
-    """All frames from here on, in the order of their presentation."""
+    """All following frames, in the order of their presentation."""
     for packet in demux_packets(container, stream):
         yield from decoder.decode(packet)
     yield from decoder.decode(None)
 
 
 def describe_video_fault(error: Exception) -> str:
-    """What FFmpeg complains about, as the rest of a sentence that starts with the path."""
+    """The complaint of FFmpeg, as the rest of a sentence that starts with the path."""
     message = getattr(error, "strerror", None) or str(error)
     if "nvalid data" in message or "End of file" in message:
         return "is no video, or is cut short or damaged: copy or render it again"
@@ -169,7 +169,7 @@ def survey_video(path: str, mark: str, sandbox: Sandbox) -> tuple[VideoInfo, Fra
 
 
 def _index_packets(container: Any, stream: Any) -> FrameIndex | None:
-    """What the packets tell, or None where that may not be what comes out."""
+    """The index from the packets; None if they cannot be trusted."""
     context = stream.codec_context
     if context.name in _HIDING or (container.format.name in _TIMELESS and not context.codec.intra_only):
         return None
@@ -215,12 +215,12 @@ def _describe_stream(path: str, container: Any, stream: Any, frame: Any, count: 
 
 
 def _restore_tag_case(name: str) -> str:
-    """Matroska knows capitals only."""
+    """The name of a tag as Halation writes it: Matroska stores names in capitals."""
     return name.lower() if name.startswith("HALATION:") else name
 
 
 def _open_decoder(av: Any, stream: Any) -> Any:
-    """The stream's own, or one that knows of the transparency that a VP8 or VP9 stream says it has."""
+    """The decoder of the stream, or one with alpha for a VP8 or VP9 stream that has transparency."""
     context = stream.codec_context
     name = _ALPHA_DECODERS.get(context.name, "")
     tags = {key.casefold(): text for key, text in stream.metadata.items()}
@@ -231,5 +231,5 @@ def _open_decoder(av: Any, stream: Any) -> Any:
 
 
 def _is_cover(stream: Any) -> bool:
-    """True for the still picture that some files carry as a title page."""
+    """True for a still picture that some files carry as a cover."""
     return bool(int(stream.disposition) & _ATTACHED_PICTURE)

@@ -1,4 +1,4 @@
-"""Frames of videos as layers: what a video is to whoever reads pictures."""
+"""Frames of videos as layers of pictures."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def read_video_info(path: str, sandbox: Sandbox) -> VideoInfo:
 
 
 def describe_video(video: VideoInfo, sandbox: Sandbox) -> ImageInfo:
-    """A video as a picture of one layer, which is another one at every frame. Raises InputError."""
+    """The description of a video as a picture of one layer. Raises InputError."""
     check_size(video.path, video.size)
     channels = ("R", "G", "B", "A") if video.alpha else ("R", "G", "B")
     format = "uint8" if video.bits == 8 else "uint16" if video.bits < 32 else "float32"
@@ -40,7 +40,7 @@ def describe_video(video: VideoInfo, sandbox: Sandbox) -> ImageInfo:
 
 
 def read_video_layers(path: str, requests: Sequence[LayerRequest], frame: int, sandbox: Sandbox) -> list[Pixels]:
-    """One frame of a video as sockets take it. Raises InputError where there is none, or it is damaged.
+    """One frame of a video as the array of a socket. Raises InputError if it does not exist or is damaged.
 
     Color is decoded to light by the video's own curve, unless the user says which color space its numbers are in.
     """

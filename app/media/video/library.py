@@ -15,4 +15,4 @@ def load_pyav() -> Any:
         import av
     except ImportError:
         return None
-    return av  # it keeps quiet by itself; its levels of logging would have the decoder's threads wait for us
+    return av  # it is quiet by default; its log levels would make decoder threads wait for Python

@@ -1,4 +1,4 @@
-"""A decoded frame as arrays."""
+"""Converts a decoded frame to arrays."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from .index import VideoInfo
 from .signals import GAMUTS, Array, choose_matrix, chroma_to_rgb, code_ranges, decode_transfer, enlarge_plane
 
 _CENTERED = ("mjpeg", "mpeg1video", "theora")
-"""Codecs whose chroma lies in the middle between samples of luma; elsewhere it lies at the left ones, as in MPEG-2."""
+"""Codecs whose chroma samples lie in the middle between luma samples; for others they lie at the left ones, as in
+MPEG-2."""
 
 _UNPACKED = {
     "nv12": "yuv420p",
@@ -37,12 +38,12 @@ _UNPACKED = {
     "ya16le": "gbrap16le",
     "ya16be": "gbrap16le",
 }
-"""Formats that keep several channels in one plane -> the same numbers with a plane each."""
+"""Formats with several channels in one plane -> the format with the same numbers and a plane each."""
 
 
 @dataclass(frozen=True)
 class DecodedFrame:
-    """R'G'B' [h, w, 3] of a frame, 8- or 16-bit integers where the file has these, else floats; straight alpha."""
+    """R'G'B' [h, w, 3] of a frame, as 8- or 16-bit integers if the file has these, else as floats; straight alpha."""
 
     rgb: Array
     alpha: Array | None
@@ -51,7 +52,7 @@ class DecodedFrame:
 
     @property
     def numbers(self) -> Array:
-        """Color and alpha as they are, without any conversion of color."""
+        """Color and alpha without any color conversion."""
         if self.alpha is None:
             return self.rgb
         same = self.rgb.dtype == self.alpha.dtype
@@ -60,7 +61,7 @@ class DecodedFrame:
 
     @property
     def light(self) -> tuple[Array, str]:
-        """Color and alpha as a picture has them, and the space of the color as OpenColorIO names it."""
+        """Color and alpha as a picture, and the OpenColorIO name of the color space."""
         gamut = GAMUTS.get(self.primaries, "")
         if not gamut and self.transfer in (0, 2, 13):
             return self.numbers, "srgb_rec709_scene"
@@ -71,7 +72,7 @@ class DecodedFrame:
 
 
 def convert_frame(frame: Any, facts: VideoInfo) -> DecodedFrame:
-    """What a frame of PyAV shows, upright. Raises InputError for a matrix that nobody knows."""
+    """The picture of a PyAV frame, upright. Raises InputError for an unknown matrix."""
     frame = _separate_planes(frame)
     format = frame.format
     planes = [_read_plane(frame, part) for part in format.components]
@@ -111,7 +112,7 @@ def _decode_chroma(
 
 
 def _is_full(frame: Any, facts: VideoInfo) -> bool:
-    """True where 0 is black; luma with color differences leaves room at both ends unless it says otherwise."""
+    """True for the full range, in which 0 is black; YUV has the limited range unless it says otherwise."""
     return int(frame.color_range) == 2 or facts.pixels.startswith("yuvj")
 
 
@@ -139,7 +140,7 @@ def _separate_planes(frame: Any) -> Any:
 
 
 def _reformat(frame: Any, name: str) -> Any:
-    """Another arrangement of the same numbers: neither matrix nor range changes."""
+    """The same numbers in another format: neither matrix nor range changes."""
     return frame.reformat(format=name)
 
 

@@ -1,7 +1,7 @@
-"""Frames of videos by number: exactly those that decoding from the first one on would give.
+"""Reads frames of videos by number: exactly those that decoding from the first one would give.
 
-A frame is decoded from the key frame before it. What was decoded on the way stays for a while, and where reading goes
-on in order, so does decoding: a video that is read from the first to the last frame is decoded once.
+A frame is decoded from the key frame before it. Frames decoded on the way are kept for a while, and reading in order
+continues decoding: a video that is read from start to end is decoded once.
 """
 
 from __future__ import annotations
@@ -21,10 +21,11 @@ from .index import FrameIndex, KeyFrame, decode_frames, demux_packets, describe_
 from .library import load_pyav
 
 _CACHE_BYTES = 128 << 20
-"""Decoded frames that are kept: 40 of 1920x1080 in 4:2:0, about a second and a half."""
+"""Bytes of decoded frames that are kept: 40 frames of 1920x1080 in 4:2:0, about a second and a half. Chosen by
+judgement."""
 _NEAR = 12
-"""Frames ahead that are decoded without looking for a key frame: the usual distance of key frames in codecs for editing
-and broadcast is 12 to 15 frames."""
+"""A frame at most this far ahead is reached by decoding on, without a search for a key frame: key frames in codecs for
+editing and broadcast are usually 12 to 15 frames apart."""
 
 
 def read_frame(path: str, mark: str, number: int, sandbox: Sandbox) -> Any:
@@ -49,15 +50,15 @@ class VideoReader:
         self._streams: tuple[Any, Any, Any] = (None, None, None)
         self._index: FrameIndex | None = None
         self._start = KeyFrame(0, 0)
-        """Where decoding began."""
+        """The place where decoding began."""
         self._decoding: Iterator[Any] = iter(())
         self._position = 0
-        """The number of the frame that was decoded last; 0 where the next one is unknown."""
+        """The number of the frame that was decoded last; 0 if the next one is unknown."""
         self._cache: OrderedDict[int, Any] = OrderedDict()
         self._cached_bytes = 0
 
     def read_frame(self, number: int) -> Any:
-        """A frame that there is. Raises InputError if it is damaged."""
+        """An existing frame. Raises InputError if it is damaged."""
         av = load_pyav()
         with self._lock:
             if number in self._cache:
@@ -79,7 +80,7 @@ class VideoReader:
     # --- by the times of packets -------------------------------------------------------------------------------------
 
     def _seek_frame(self, index: FrameIndex, number: int) -> Any:
-        """A frame by the key frame before it; where it does not come out whole, by an earlier one."""
+        """A frame, decoded from the key frame before it; if it is incomplete, from an earlier key frame."""
         if self._is_reached_by_decoding_on(index, number) and (frame := self._decode_until(index, number)) is not None:
             return frame
         nearest_key = index.last_key_before(index.times[number - 1])
@@ -91,14 +92,14 @@ class VideoReader:
         return None
 
     def _is_reached_by_decoding_on(self, index: FrameIndex, number: int) -> bool:
-        """True if the frame comes soon, or no later than from the key frame before it."""
+        """True if decoding on reaches the frame soon, or no later than from its key frame."""
         if not 0 < self._position < number:
             return False
         key = index.keys[index.last_key_before(index.times[number - 1])]
         return number - self._position <= _NEAR or key.time <= index.times[self._position - 1]
 
     def _decode_until(self, index: FrameIndex, number: int) -> Any:
-        """Decode up to a frame; None if it does not come, or not whole."""
+        """Decode up to a frame; None if it does not come, or is incomplete."""
         time = index.times[number - 1]
         for frame in self._decoding:
             if frame.pts is None or frame.pts > time:
@@ -113,7 +114,7 @@ class VideoReader:
         return None
 
     def _decode_from(self, index: FrameIndex, key: KeyFrame) -> Iterator[Any]:
-        """All frames from a key frame on; those before it in time, which some codecs put behind it, may be broken."""
+        """All frames from a key frame on. Frames that are shown before it but stored after it may be broken."""
         before = index.keys[max(index.last_key_before(key.time) - 1, 0)].time
         for time in dict.fromkeys((key.time, before)) if key.place else ():
             container, stream, decoder = self._streams
@@ -154,7 +155,7 @@ class VideoReader:
             self._cached_bytes -= _frame_bytes(self._cache.popitem(last=False)[1])
 
     def _reopen(self) -> tuple[Any, Any, Any]:
-        """Open it anew, at the beginning."""
+        """Open the video again, at its beginning."""
         self._resources.close()
         self._position = 0
         self._streams = self._resources.enter_context(open_video(self.path, sandbox=self._sandbox))

@@ -1,7 +1,7 @@
-"""From the numbers of a video's planes to red, green and blue, and back: ITU-R BT.601, BT.709, BT.2020 and H.273.
+"""Converts between the planes of a video and red, green and blue: ITU-R BT.601, BT.709, BT.2020 and H.273.
 
-Everything here is numpy in 32-bit floats. R'G'B' is encoded for the eye; 0 is black and 1 white, and what a limited
-range holds beyond these stays.
+Everything here is numpy in 32-bit floats. R'G'B' are display values; 0 is black and 1 white, and numbers of a limited
+range beyond these are kept.
 """
 
 from __future__ import annotations
@@ -36,18 +36,18 @@ _BT709_ALPHA, _BT709_BETA = 1.09929682680944, 0.018053968510807
 _PQ_WHITE = 203.0
 _HLG_WHITE = 0.75
 GAMUTS = MappingProxyType({9: "lin_rec2020_scene", 12: "lin_p3d65_scene"})
-"""Primaries that are another color space than Rec.709 by far, as linear spaces of OpenColorIO."""
+"""Primaries that differ much from Rec.709, as linear spaces of OpenColorIO."""
 
 
 def choose_matrix(number: int, size: tuple[int, int]) -> int:
-    """The matrix of a video; where it does not say, that of its time: BT.601 up to 1024x576, else BT.709."""
+    """The matrix of a video; without a tag BT.601 up to 1024x576, else BT.709."""
     if number not in _UNSPECIFIED and number != RGB:
         return number
     return 6 if size[0] <= _SMALL[0] and size[1] <= _SMALL[1] else 1
 
 
 def code_ranges(bits: int, limited: bool) -> tuple[float, float, float, float]:
-    """What is black and how much is white in luma, what is none and how much is all in chroma."""
+    """Black and the span to white for luma, and the same for color differences: their center and span."""
     step = float(1 << (bits - 8)) if bits > 8 else 1.0
     if limited:
         return 16.0 * step, 219.0 * step, 128.0 * step, 224.0 * step
@@ -81,7 +81,7 @@ def rgb_to_chroma(rgb: Array, matrix: int) -> tuple[Array, Array, Array]:
 
 
 def enlarge_plane(plane: Array, axis: int, length: int, factor: int, offset: float) -> Array:
-    """A plane of chroma at the size of luma along one axis, linear between samples.
+    """A plane of chroma enlarged to the size of luma along one axis, linear between samples.
 
     Sample 0 lies at luma position `offset`, the others `factor` apart; beyond the border its samples go on.
     """
@@ -100,8 +100,8 @@ def enlarge_plane(plane: Array, axis: int, length: int, factor: int, offset: flo
 def decode_transfer(encoded: Array, transfer: int) -> Array:
     """Scene-linear light of R'G'B' by the number of the transfer characteristics in H.273, without change of primaries.
 
-    Camera curves are undone (BT.709, BT.601, BT.2020); of PQ and HLG, reference white (BT.2408: 203 cd/m2, 75 %)
-    becomes 1. What says nothing is taken for sRGB, as 8-bit pictures are. Raises InputError for an unknown curve.
+    Camera curves are inverted (BT.709, BT.601, BT.2020); PQ and HLG are scaled so that reference white (BT.2408: 203
+    cd/m2, 75 %) is 1. An unspecified curve is taken as sRGB, as for 8-bit pictures.
     """
     if transfer in (1, 6, 14, 15):
         return _mirror_curve(
@@ -133,11 +133,11 @@ def _decode_pq(signal: Array) -> Array:
 
 
 def _decode_hlg(signal: Array) -> Array:
-    """Light of the scene, 0..1 (BT.2100)."""
+    """Scene light, 0..1 (BT.2100)."""
     a, b, c = 0.17883277, 0.28466892, 0.55991073
     return np.where(signal <= 0.5, signal**2 / 3.0, (np.exp((signal - c) / a) + b) / 12.0)
 
 
 def _mirror_curve(encoded: Array, curve: Callable[[Array], Array]) -> Array:
-    """A curve for 0 and above, turned around for numbers below."""
+    """A curve for numbers from 0 up, mirrored for negative numbers."""
     return np.copysign(curve(np.abs(encoded)), encoded).astype(np.float32)

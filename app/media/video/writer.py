@@ -1,4 +1,4 @@
-"""A video that is written frame by frame, and is there when it is whole or not at all."""
+"""Writes a video frame by frame; the file appears when it is complete."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _TAGS = MappingProxyType(
         "g24_rec2020_scene": (9, 14),
     }
 )
-"""Spaces of pictures for people -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
+"""Display color spaces -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
 
 _NTSC = 1001
 
@@ -49,14 +49,14 @@ def check_video(
     encoding: Encoding,
     sandbox: Sandbox,
 ) -> None:
-    """Refuse, before there are pixels, what a `VideoWriter` would refuse. Raises UsageError, OutputError."""
+    """Raise the errors of a `VideoWriter` before anything is rendered: UsageError, OutputError."""
     encoding.check_names()
     find_codec(path, codec, sizes[choose_shown_layer(path, kinds)])
     check_writable(path, sandbox=sandbox)
 
 
 class VideoWriter:
-    """Takes pictures one after the other. Until `close`, and after `abort`, an older file is as it was.
+    """Takes pictures one after the other. Until `close`, and after `abort`, an older file stays unchanged.
 
     Pictures are encoded as PNG files are, and tagged so: for the usual display BT.709 primaries with the curve of sRGB,
     and where there is chroma the BT.709 matrix and the limited range. Without alpha pictures are shown over black.
@@ -75,7 +75,7 @@ class VideoWriter:
         metadata: Mapping[str, Any] | None = None,
         sandbox: Sandbox,
     ) -> None:
-        """Open it. Raises UsageError for what cannot be, OutputError where nothing can be written."""
+        """Open it. Raises UsageError for an impossible video, OutputError if it cannot be written."""
         self.path, self.size, self._rate = Path(path), size, to_exact_rate(rate)
         self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
         self._format, self._count = self._codec.pixels[deep], 0
@@ -100,7 +100,7 @@ class VideoWriter:
         self._encode_frame(frame)
 
     def close(self) -> None:
-        """Finish it and give it its name. Raises OutputError; the file is not there then."""
+        """Finish the file and give it its name. Raises OutputError; then there is no file."""
         try:
             self._encode_frame(None)
             self._try(self._container.close)
@@ -111,7 +111,7 @@ class VideoWriter:
             self.abort()
 
     def abort(self) -> None:
-        """Leave nothing behind, unless it was closed."""
+        """Remove the unfinished file, unless it was closed."""
         self._resources.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -183,13 +183,13 @@ class VideoWriter:
 
 
 def _choose_tags(metadata: Mapping[str, Any]) -> dict[str, str]:
-    """How the video was made; what its pictures say of themselves is that of one frame."""
+    """The metadata of the video: how it was made. Metadata of single frames are left out."""
     own_tags = {name: text for name, text in metadata.items() if name.startswith("halation:") and isinstance(text, str)}
     return {name: text for name, text in own_tags.items() if name != "halation:key"}
 
 
 def to_exact_rate(rate: float | Fraction) -> Fraction:
-    """Frames per second as a fraction: 23.976, 29.97 and 59.94 are those of NTSC, 24000/1001 and so on."""
+    """Frames per second as a fraction: 23.976, 29.97 and 59.94 are the NTSC rates 24000/1001 and so on."""
     if isinstance(rate, Fraction):
         return rate
     whole = round(rate * _NTSC / 1000)
@@ -199,7 +199,7 @@ def to_exact_rate(rate: float | Fraction) -> Fraction:
 
 
 def _rgb_planes(codes: Array, format: str) -> list[Array]:
-    """Red, green, blue and alpha in the order of a format."""
+    """Red, green, blue and alpha in the order of a pixel format."""
     height, width, channels = codes.shape
     if channels == 3:
         opaque = np.full((height, width, 1), np.iinfo(codes.dtype).max, codes.dtype)
@@ -227,7 +227,7 @@ def _chroma_planes(codes: Array, matrix: int, format: str, bits: int) -> list[Ar
 
 
 def _halve_chroma(plane: Array, across: bool, down: bool) -> Array:
-    """Chroma at half the size: over the left samples of luma, and in the middle between its rows."""
+    """Chroma at half the size: horizontally at the left luma samples, vertically between rows."""
     if across:
         wide = np.pad(plane, ((0, 0), (1, 2)), mode="edge")
         count = (plane.shape[1] + 1) // 2 * 2
