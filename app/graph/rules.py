@@ -24,26 +24,29 @@ class Rule(Struct, frozen=True):
 UNKNOWN_TYPE = Rule(
     "unknown-type",
     "error",
-    "A node is of a type that is not installed; it is kept, and does nothing.",
+    "A node has a type that is not installed. It is kept, but has no effect.",
     "Correct the type, or update Halation.",
 )
 MISSING_PLUGIN = Rule(
     "missing-plugin",
     "error",
-    "A node comes from a plug-in that is not installed or cannot be loaded; it is kept, and does nothing.",
+    "A node comes from a plug-in that is not installed or cannot be loaded. It is kept, but has no effect.",
     "Install the package that is named.",
 )
 BROKEN_CODE = Rule(
-    "broken-code", "error", "The code of a written node says no node.", "Correct the line that is named."
+    "broken-code", "error", "The code of a glsl or isf node is invalid.", "Correct the line that is named."
 )
 BAD_NAME = Rule(
     "bad-name",
     "error",
-    "A name could not be told from a path or from an end of the graph.",
+    "A name could be confused with a path or with an input or output of the graph.",
     "Leave out dots, slashes and control characters.",
 )
 BAD_VALUE = Rule(
-    "bad-value", "error", "A value is outside its hard range, no choice, or too large.", "Set one that is allowed."
+    "bad-value",
+    "error",
+    "A value is outside its hard range, not one of its choices, or too large.",
+    "Set an allowed value.",
 )
 UNKNOWN_CONTROL = Rule(
     "unknown-control",
@@ -51,53 +54,53 @@ UNKNOWN_CONTROL = Rule(
     "A group is given a value for a control that it does not have.",
     "Correct the name, or remove the value.",
 )
-UNLINKED_INPUT = Rule(
-    "unlinked-input", "error", "A node that an output needs lacks a picture.", "Link one to its input."
-)
+UNLINKED_INPUT = Rule("unlinked-input", "error", "An input of a node that an output needs is not linked.", "Link it.")
 UNFINISHED_NODE = Rule(
     "unfinished-node",
     "warning",
-    "A node that no output needs lacks a picture.",
+    "An input of a node that no output needs is not linked.",
     "Link its inputs, or remove it.",
 )
 BAD_LINK = Rule(
     "bad-link",
     "error",
-    "A link starts or ends at nothing, or its ends do not fit each other.",
-    "Link to what is there, through a node that converts where one is named.",
+    "A link starts or ends at a node or socket that does not exist, or its ends do not fit each other.",
+    "Link existing sockets; if the message names a node that converts, put it in between.",
 )
-LOOP = Rule("loop", "error", "Nodes feed each other, so that none can be first.", "Remove one of the links.")
+LOOP = Rule("loop", "error", "Links form a loop, so that no node can be computed first.", "Remove one of the links.")
 BAD_ANIMATION = Rule(
     "bad-animation",
     "error",
-    "Keys or an expression do not fit the value that they move, or need themselves.",
-    "Correct what the sentence names.",
+    "Keys or an expression do not fit their value, or depend on themselves.",
+    "Correct what the message names.",
 )
 DEAD_ANIMATION = Rule(
-    "dead-animation", "warning", "A value has keys and is linked as well: the link wins.", "Remove one of the two."
+    "dead-animation", "warning", "A value has keys and a link: the keys have no effect.", "Remove one of them."
 )
-BACKWARD_FRAMES = Rule("backward-frames", "error", "The frames of the graph end before they begin.", "Swap them.")
-DEEP_GROUPS = Rule("deep-groups", "error", "Groups nest too deep.", "Flatten some of them.")
+BACKWARD_FRAMES = Rule(
+    "backward-frames", "error", "The last frame of the graph is before its first frame.", "Swap them."
+)
+DEEP_GROUPS = Rule("deep-groups", "error", "Groups are nested too deep.", "Flatten some of them.")
 BAD_DEFAULT = Rule(
     "bad-default", "error", "The default of an input does not fit its type.", "Give one number, or one per channel."
 )
 BAD_CONTROL = Rule(
-    "bad-control", "error", "A control points at a value that is not there.", "Point it at one, or remove it."
+    "bad-control", "error", "A control points at a value that does not exist.", "Correct its target, or remove it."
 )
-UNFED_OUTPUT = Rule("unfed-output", "error", "Nothing feeds an output.", "Link a node to it, or remove it.")
+UNFED_OUTPUT = Rule("unfed-output", "error", "An output is not linked.", "Link a node to it, or remove it.")
 NO_OUTPUT = Rule(
     "no-output", "warning", "A graph without outputs renders nothing.", "Add an output and link a node to it."
 )
 UNKNOWN_KEY = Rule(
     "unknown-key",
     "warning",
-    "A key means nothing to this version; it is kept, and may be a slip of the pen.",
+    "This version does not know a key. It is kept; it may be a typing error.",
     "Correct its name, or remove it.",
 )
 UNMERGED = Rule(
     "unmerged",
     "error",
-    "A merge left something to be decided: both sides changed it.",
+    "A merge has a conflict: both sides changed a part.",
     "Choose a side with halation merge --resolve.",
 )
 

@@ -11,7 +11,8 @@ from ..graph.rules import Rule
 STALE_ALLOW = Rule(
     "stale-allow",
     "warning",
-    "settings.allow allows what no rule warns of: it was mended since, the name is wrong, or it is an error.",
+    "settings.allow allows a warning that does not exist: it was corrected since, the name is wrong, or "
+    "it is an error.",
     "Remove the entry, or correct its name.",
 )
 RULES = (STALE_ALLOW,)

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 UNREADABLE_FILE = Rule(
     "unreadable-file",
     "error",
-    "A file that the graph reads (a picture, a layer of it, a mesh, a table) is not there, or cannot be read.",
-    "Put it where the path leads, or correct path and layer.",
+    "A file that the graph reads (a picture, a layer of it, a mesh, a table) does not exist, or cannot be read.",
+    "Put the file there, or correct path and layer.",
 )
 LFS_POINTER = Rule(
     "lfs-pointer",
@@ -43,17 +43,20 @@ LFS_POINTER = Rule(
 UNBOUND_INPUT = Rule(
     "unbound-input",
     "warning",
-    "An input has neither a file nor a default, so that rendering needs -i NAME=FILE.",
-    "Bind it when rendering, or allow it where the graph is meant for that.",
+    "An input has neither a file nor a default: rendering needs -i NAME=FILE.",
+    "Bind it when rendering, or allow it if the graph is made for that.",
 )
-CANNOT_COMPILE = Rule("cannot-compile", "error", "The graph as a whole makes no picture.", "Do what the sentence says.")
-BAD_SETTING = Rule(
-    "bad-setting", "error", "A value is a name that nobody knows, such as that of a color space.", "Correct it."
+CANNOT_COMPILE = Rule(
+    "cannot-compile", "error", "The graph as a whole cannot be compiled.", "Do what the message says."
 )
+BAD_SETTING = Rule("bad-setting", "error", "A value is an unknown name, such as of a color space.", "Correct it.")
 BROKEN_SHADER = Rule(
-    "broken-shader", "error", "The shader of a node and what the node declares do not agree.", "Correct the shader."
+    "broken-shader",
+    "error",
+    "The shader of a node does not fit the declaration of the node, or includes a file that does not exist.",
+    "Correct the shader.",
 )
-TOO_LARGE = Rule("too-large", "error", "A picture is larger than any device takes.", "Make it smaller.")
+TOO_LARGE = Rule("too-large", "error", "A picture is larger than any device can hold.", "Make it smaller.")
 RULES = (UNREADABLE_FILE, LFS_POINTER, UNBOUND_INPUT, CANNOT_COMPILE, BAD_SETTING, BROKEN_SHADER, TOO_LARGE)
 
 SIZE = (1920, 1080)

@@ -19,15 +19,15 @@ from .sheet import bodies
 PATH_CASE = Rule(
     "path-case",
     "warning",
-    "A path is spelled in other letters (capitals, or accents made otherwise) than the file on disk: some systems find "
-    "it, others do not.",
-    "Spell it as the disk does.",
+    "A path differs from the name on the disk in case or in the encoding of accents: some systems find "
+    "the file, others do not.",
+    "Write it as on the disk.",
 )
 OUTSIDE_REPOSITORY = Rule(
     "outside-repository",
     "warning",
     "A path leads out of the repository: a fresh clone does not have the file.",
-    "Move the file into the repository, or allow it where a script puts it there.",
+    "Move the file into the repository, or allow it if a script provides the file.",
 )
 RULES = (PATH_CASE, OUTSIDE_REPOSITORY)
 

@@ -16,39 +16,42 @@ from ..graph import Graph, Group, Problem
 from ..graph.rules import Rule
 
 UNREADABLE_GRAPH = Rule(
-    "unreadable-graph", "error", "A graph file is not there, empty, far too large, or no text.", "Name another file."
+    "unreadable-graph",
+    "error",
+    "A graph file does not exist, is empty, far too large, or not text.",
+    "Name another file.",
 )
 CONFLICT_MARKERS = Rule(
     "conflict-markers", "error", "A merge of git was left unfinished in the file.", "Resolve it, or merge it anew."
 )
-SYNTAX = Rule("syntax", "error", "The file is no JSON.", "Correct the line that is named.")
+SYNTAX = Rule("syntax", "error", "The file is not valid JSON.", "Correct the line that is named.")
 DOUBLE_KEY = Rule(
     "double-key",
     "error",
-    "An object has a key twice, as after a merge by lines: one of them would be lost.",
+    "An object has the same key twice, as after a merge by lines: one of them would be lost.",
     "Remove one.",
 )
 SCHEMA = Rule(
     "schema",
     "error",
     "Something in the file is not of the type that the format asks for.",
-    "Correct it; halation schema lets an editor of text show it while it is typed.",
+    "Correct it; with halation schema, a text editor shows it while you type.",
 )
 NEWER_VERSION = Rule(
     "newer-version", "error", "The file, or a node in it, was saved by a newer Halation.", "Update Halation."
 )
-MISSING_GROUP = Rule("missing-group", "error", "The file of a group is not there.", "Correct its path.")
+MISSING_GROUP = Rule("missing-group", "error", "The file of a group does not exist.", "Correct its path.")
 OLD_VERSION = Rule(
     "old-version",
     "warning",
-    "A node was saved by an older version of its type; it is brought up to date when read.",
-    "halation fmt writes the present version.",
+    "A node was saved by an older version of its type. It is converted when it is read.",
+    "halation fmt writes the current version.",
 )
 NOT_CANONICAL = Rule(
     "not-canonical",
     "warning",
-    "The file is not laid out in the one canonical way, or holds values that are the default anyway: the next save "
-    "changes lines that nobody edited.",
+    "The file does not have the canonical layout, or holds values that equal their default: the next save"
+    " changes lines that nobody edited.",
     "halation fmt rewrites it.",
 )
 READING = (UNREADABLE_GRAPH, CONFLICT_MARKERS, SYNTAX, DOUBLE_KEY, SCHEMA, NEWER_VERSION, MISSING_GROUP)

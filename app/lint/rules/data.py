@@ -14,9 +14,8 @@ from ..sheet import Check, GraphFacts, has_trait, layer_read
 DATA_AS_COLOR = Rule(
     "data-as-color",
     "warning",
-    "A layer of data (depth, normals, motion, ids) goes into a node that is about color or light: what comes out "
-    "means nothing.",
-    "Link the picture; to look at data use levels or gradient_map, and read it as a Field or Vector.",
+    "A data layer (depth, normals, motion, ids) is linked to a node for color or light: the result has no meaning.",
+    "Link the picture. To look at data, read it as a Field or Vector, and use levels or gradient_map.",
 )
 
 _DATA = re.compile(

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 FILTERING_TWICE = Rule(
     "filtering-twice",
     "warning",
-    "A picture is resampled or blurred twice where once would do, which costs sharpness and time. Transforms right "
-    "behind each other with the same edge act as one, and are fine.",
+    "A picture is resampled or blurred twice although once would be enough, which costs sharpness and "
+    "time. Transforms directly after one another with the same edge act as one, and are fine.",
     "Put transforms next to each other; make one of two resizes or two blurs.",
 )
 _PLACES = frozenset({"pixel", "extent"})

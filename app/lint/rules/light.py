@@ -15,15 +15,15 @@ from ..sheet import Check, GraphFacts, find_layered_path, has_trait
 DISPLAY_LIGHT = Rule(
     "display-light",
     "warning",
-    "A node that reckons with light gets a picture that a tone map made ready for the display: brightness is bent, "
-    "and lights are cut off.",
+    "A node that calculates with scene light gets a picture after a tone map: its brightness is not "
+    "linear, and bright lights are clipped.",
     "Put the node before the tone map.",
 )
 CLIPPED_LIGHT = Rule(
     "clipped-light",
     "warning",
-    "A node that makes lights glow or spread gets a file of 8 bits, in which nothing is brighter than white.",
-    "Read an EXR of the same picture, or allow it where the file is all there is.",
+    "A node that makes lights glow or spread gets an 8-bit file, in which nothing is brighter than white.",
+    "Read an EXR of the same picture, or allow it if there is none.",
 )
 
 _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})

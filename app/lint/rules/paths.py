@@ -16,8 +16,8 @@ from ..sheet import Check, GraphFacts
 ABSOLUTE_PATH = Rule(
     "absolute-path",
     "warning",
-    "A path is absolute: on another machine the file is not there.",
-    "Write the path from the folder of the graph file.",
+    "A path is absolute: on another machine the file is probably missing.",
+    "Write the path relative to the folder of the graph file.",
 )
 BACKSLASH_PATH = Rule(
     "backslash-path",

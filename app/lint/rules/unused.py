@@ -14,19 +14,19 @@ from ..sheet import Check, GraphFacts
 UNUSED_BRANCH = Rule(
     "unused-branch",
     "warning",
-    "Nodes lead to no output, so that they never do anything.",
+    "Nodes lead to no output, so they have no effect.",
     "Link the last of them to an output, or remove them.",
 )
 UNUSED_INPUT = Rule(
     "unused-input",
     "warning",
-    "An input of the graph feeds nothing, so that a picture bound to it is ignored.",
+    "An input of the graph is not linked, so a picture that is bound to it is ignored.",
     "Link it, or remove it.",
 )
 STALE_LAYOUT = Rule(
     "stale-layout",
     "warning",
-    "The layout places nodes that are not there, as after a node was deleted by hand or in a merge.",
+    "The layout has places of nodes that do not exist, as after a node was deleted by hand or in a merge.",
     "Remove the entries, or save the graph in the editor.",
 )
 
