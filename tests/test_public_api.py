@@ -62,6 +62,7 @@ def test_every_error_is_a_halation_error_with_its_exit_code():
         "GraphError": 3,
         "DocumentError": 3,
         "InputError": 4,
+        "NoFileError": 4,
         "DeviceError": 5,
         "ShaderError": 5,
         "RenderError": 1,

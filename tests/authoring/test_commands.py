@@ -27,6 +27,7 @@ GAIN = port("gain.gain")
 CODE = "float f(float a, float k /* = 1 */) { return a * k; }"
 EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.AddNode: lambda s, p: c.AddNode("soften", (5.0, 6.0), port("n1.out")),
+    c.AppendNode: lambda s, p: c.AppendNode(c.AddNode("soften", (5.0, 6.0))),
     c.AddGroupFile: lambda s, p: c.AddGroupFile(p / "group.json"),
     c.AddCodeFile: lambda s, p: c.AddCodeFile(p / "code.glsl"),
     c.AddMatte: lambda s, p: c.AddMatte("render"),
@@ -34,6 +35,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.SpliceChain: lambda s, p: c.SpliceChain(["gain"], port("n1.image"), (1.0, 2.0)),
     c.DropFiles: lambda s, p: c.DropFiles([p / "group.json", p / "code.glsl", p / "a.png"]),
     c.Connect: lambda s, p: c.Connect(port("n0.out"), port("gain.image")),
+    c.ConnectNodes: lambda s, p: c.ConnectNodes(port("n0.out"), port("gain.image")),
     c.Disconnect: lambda s, p: c.Disconnect(port("n1.image")),
     c.DisconnectAll: lambda s, p: c.DisconnectAll(ElementId("n1")),
     c.CutLinks: lambda s, p: c.CutLinks([port("n1.image"), port("n2.image")]),

@@ -9,6 +9,7 @@ import OpenImageIO as oiio
 import pytest
 from halation import document, presets
 from halation.authoring.commands import AddNode, SetCode
+from halation.authoring.edits.element_id import ElementId
 from halation.authoring.recovery import RecoveryFile
 from halation.editor.problems.findings import list_problems
 from halation.editor.toolkit.keys import chord
@@ -183,3 +184,45 @@ def test_two_editors_on_one_document_warn(gui, shot: Path, tmp_path: Path) -> No
         gui(body, shot)
     finally:
         other.close()
+
+
+def test_nodes_added_by_keyboard_make_a_chain_that_can_be_seen(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.dialogs.open.clear()
+        ui.settled()
+        ui.move("Graph", (0.5, 0.4))
+        chain = ["constant", "bloom", "vignette", "film_grain", "exposure", "sharpen"]
+        for kind in chain:
+            ui.keys("Tab")
+            ui.wait(3)
+            type_keys(ui, kind.replace("_", " "))
+            ui.keys("Enter")
+            ui.settled()
+            left, top, right, bottom = ui.editor.places[f"node {kind}"]
+            panel = ui.editor.places["Graph"]
+            assert panel[0] <= left < right <= panel[2] and panel[1] <= top and bottom <= panel[3] + 1, kind
+        links = ui.session.graph.links
+        assert [links[Port(id, "image")].node for id in chain[1:]] == chain[:-1]
+        boxes = [ui.editor.canvas.sizes[ElementId(id)] for id in chain]
+        spots = [ui.session.position(ElementId(id)) for id in chain]
+        assert all(x + w <= next_x for (x, _), (w, _), (next_x, _) in zip(spots, boxes, spots[1:], strict=False))
+
+    gui(body, size=(1366, 768))
+
+
+def test_one_drag_links_all_sockets_of_the_same_name(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.dialogs.open.clear()
+        ui.settled()
+        ui.session.apply(AddNode("read_render", (0.0, 0.0)))
+        ui.session.apply(AddNode("ambient_occlusion", (400.0, 0.0)))
+        ui.editor.canvas.fit()
+        ui.settled()
+        ui.drag("pin out read_render.depth", "pin in ambient_occlusion.depth")
+        fed = {end.socket: start.socket for end, start in ui.session.graph.links.items()}
+        assert fed == {name: name for name in ("depth", "normal", "camera", "albedo")}
+        ui.session.undo()
+        ui.drag("pin out read_render.depth", "pin in ambient_occlusion.depth", keys="Ctrl")
+        assert list(ui.session.graph.links) == [Port("ambient_occlusion", "depth")]
+
+    gui(body, size=(1366, 768))

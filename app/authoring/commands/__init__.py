@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .adding import AddCodeFile, AddGroupFile, AddMatte, AddNode, DropFiles, InsertNode, SpliceChain
+from .adding import AddCodeFile, AddGroupFile, AddMatte, AddNode, AppendNode, DropFiles, InsertNode, SpliceChain
 from .clipboard import CutSelection, DuplicateSelection, PasteText
 from .coding import EmbedCode, LinkCodeFile, SetCode
 from .command import EditCommand, Edited
@@ -13,6 +13,7 @@ from .keys import AnimateValue, AnimateValues, BakeKeys, RemoveKey, SetExpressio
 from .layout import AlignSelection, ArrangeElements, MoveElements, PlaceElement
 from .linking import (
     Connect,
+    ConnectNodes,
     CutLinks,
     DeleteSelection,
     Disconnect,
@@ -43,10 +44,12 @@ __all__ = [
     "AlignSelection",
     "AnimateValue",
     "AnimateValues",
+    "AppendNode",
     "ArrangeElements",
     "AssignViewer",
     "BakeKeys",
     "Connect",
+    "ConnectNodes",
     "CutLinks",
     "CutSelection",
     "DeleteSelection",

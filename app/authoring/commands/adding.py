@@ -14,15 +14,12 @@ from ...errors import GraphError
 from ...graph import Group, Item, Port, did_you_mean
 from ...render_layers.render import is_render
 from ...watch.sequence_files import representative_file
-from ..edits import coding, elements, naming, paths, room, routes, wiring
+from ..edits import appending, coding, elements, layout, naming, paths, room, routes, wiring
 from ..edits.element_id import ElementId
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
 from ..state.open_document import OpenDocument
 from .command import EditCommand, Edited
-
-DROP_STEP = 100.0
-"""Canvas units between the nodes of files that are dropped together: about the height of a node with three sockets."""
 
 ABOVE = 380.0
 """Canvas units between a render's node and a matte node above it: the height of a `read_render` with all outputs."""
@@ -71,6 +68,21 @@ class AddCodeFile(EditCommand[str]):
     def apply(self, document: OpenDocument) -> Edited[str]:
         item = _make_code_node(document, self.path)
         return add_item(document, naming.node_stem(self.path), item, self.at, self.link, self.output)
+
+
+@dataclass(frozen=True)
+class AppendNode(EditCommand[str]):
+    """Add a node behind what is selected, linked with it and in free room; gives its id. Several make a chain."""
+
+    addition: AddNode | AddGroupFile | AddCodeFile
+    sizes: Sizes | None = None
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        edited = self.addition.apply(document)
+        assert edited.graph is not None
+        selected = sorted(document.selection, key=lambda element: (element != document.active, element))
+        graph = appending.append_node(edited.graph, edited.outcome, selected, self.sizes)
+        return Edited(edited.label, edited.outcome, graph, (ElementId(edited.outcome),))
 
 
 @dataclass(frozen=True)
@@ -145,19 +157,29 @@ class SpliceChain(EditCommand[None]):
 
 @dataclass(frozen=True)
 class DropFiles(EditCommand[tuple[str, ...]]):
-    """Add files as nodes: graphs become groups, shaders code, renders `read_render`, others `read_image`; gives ids."""
+    """Add files as nodes: graphs become groups, shaders code, renders `read_render`, others `read_image`; gives ids.
+
+    They stand below each other in a column, where they cover nothing.
+    """
 
     paths: Sequence[str | Path]
     at: Place = (0.0, 0.0)
+    sizes: Sizes | None = None
 
     def apply(self, document: OpenDocument) -> Edited[tuple[str, ...]]:
         graph, ids = document.graph, list[str]()
         if not self.paths:
             return Edited("Drop files", ())
-        for number, path in enumerate(self.paths):
+        x, y = self.at
+        for path in self.paths:
             id = graph.fresh_id(naming.node_stem(path))
-            spot = (self.at[0], self.at[1] + number * DROP_STEP)
-            graph = elements.with_places(graph.add(id, _make_file_item(document, path)), {ElementId(id): spot})
+            node = ElementId(id)
+            graph = elements.with_places(graph.add(id, _make_file_item(document, path)), {node: (x, y)})
+            sizes = appending.estimate_sizes(graph, self.sizes)
+            places = {key: at for key, at in layout.positions(graph, sizes).items() if key != node}
+            x, y = layout.find_free_place(graph, node, (x, y), places, sizes)
+            graph = elements.with_places(graph, {node: (x, y)})
+            y += sizes[node][1] + layout.GAP[1]
             ids.append(id)
         label = naming.node_stem(self.paths[0]) if len(ids) == 1 else f"{len(ids)} files"
         return Edited(f"Drop {label}", tuple(ids), graph, map(ElementId, ids))

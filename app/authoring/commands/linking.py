@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Port
-from ..edits import deleting, elements, naming, wiring
+from ..edits import appending, deleting, elements, naming, wiring
 from ..edits.element_id import ElementId
 from ..edits.selection import order_selection
 from ..state.open_document import OpenDocument
@@ -24,6 +24,19 @@ class Connect(EditCommand[None]):
 
     def apply(self, document: OpenDocument) -> Edited[None]:
         graph = document.graph.connect(self.source, self.target)
+        return Edited(f"Link {self.source} to {self.target}", None, graph)
+
+
+@dataclass(frozen=True)
+class ConnectNodes(EditCommand[None]):
+    """Link `source` to `target`, and all free sockets of the two nodes that have the same name and fit."""
+
+    source: Port
+    target: Port
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph.connect(self.source, self.target)
+        graph = appending.connect_alike(graph, self.source.node, self.target.node)
         return Edited(f"Link {self.source} to {self.target}", None, graph)
 
 

@@ -146,11 +146,11 @@ def _place_beside(graph: Graph, key: ElementId, places: Places, sizes: Sizes | N
         left, _, right, _ = bounds(graph, places, places, sizes)
         x = right + GAP[0] if key.kind == "output" else left
         spot = (x, _bottom(graph, places, sizes))
-    return _find_free_place(graph, key, spot, places, sizes)
+    return find_free_place(graph, key, spot, places, sizes)
 
 
-def _find_free_place(graph: Graph, key: ElementId, spot: Place, places: Places, sizes: Sizes | None) -> Place:
-    """The nearest place below `spot` where an element covers no other node or end."""
+def find_free_place(graph: Graph, key: ElementId, spot: Place, places: Places, sizes: Sizes | None) -> Place:
+    """The nearest place at or below `spot` where an element covers no node or end of `places`."""
     width, height = element_size(graph, key, sizes)
     boxes = [
         (*at, *element_size(graph, element, sizes)) for element, at in places.items() if can_be_linked(element, graph)

@@ -16,8 +16,9 @@ from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
 from .frame import CanvasFrame
-from .geometry import Point, Rect, contains, find_bounds, fit_view, make_curve, make_transform, overlaps
+from .geometry import Point, Rect, contains, find_bounds, fit_view, make_curve, make_transform, overlaps, reveal_rect
 from .gestures import Band, CutGesture, Idle, LinkGesture, MoveGesture, ResizeGesture, make_band_rect
+from .layout import PICTURE
 from .legend import Legend
 from .live import LiveFields, has_live_widget
 from .looks import LookFacts, gather_look_facts
@@ -101,6 +102,7 @@ class Canvas:
         self._restore_view()
         scene = self._build_scene()
         self._fit(scene, (area[0] / scale, area[1] / scale))
+        self._reveal(scene, (area[0] / scale, area[1] / scale))
         to = make_transform(panel, view.center, view.zoom * scale)
         low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
         brush = DrawContext(
@@ -190,6 +192,18 @@ class Canvas:
         self._last_fit = _FitState(keys, (view.center, view.zoom), size, scene, self._context.session.root)
 
     _last_fit = _FitState()
+
+    def _reveal(self, scene: CanvasScene, size: Point) -> None:
+        view = self._context.canvas
+        boxes = [scene.boxes[key] for key in view.pending_reveal if key in scene.boxes]
+        if around := find_bounds(box.rect for box in boxes):
+            # A new node gets its thumbnail a moment later.
+            grows = self._context.store.current.thumbnails and any(
+                box.layout and not box.layout.picture for box in boxes
+            )
+            around = (*around[:3], around[3] + (PICTURE if grows else 0.0))
+            view.center = reveal_rect(around, view.center, view.zoom, size)
+        view.pending_reveal = ()
 
     def _is_covered(self, panel: Rect) -> bool:
         mouse = imgui.get_mouse_pos()

@@ -78,6 +78,20 @@ def fit_view(bounds: Rect, size: Point, max_zoom: float = 1.0) -> tuple[Point, f
     return ((left + right) / 2, (top + bottom) / 2), min(max(zoom, MIN_ZOOM), MAX_ZOOM)
 
 
+def reveal_rect(rect: Rect, center: Point, zoom: float, size: Point) -> Point:
+    """The center of the view, moved until a rectangle can be seen in a panel of `size`; its top left if it is larger.
+
+    `size` is in pixels at UI scale 1.
+    """
+    moved: list[float] = []
+    for low, high, middle, side in zip(rect[:2], rect[2:], center, size, strict=True):
+        margin = min(_MARGIN, side * 0.1) / zoom
+        half = side / zoom / 2
+        middle = max(middle, high + margin - half)
+        moved.append(min(middle, low - margin + half))
+    return moved[0], moved[1]
+
+
 def contains(rect: Rect, x: float, y: float, margin: float = 0.0) -> bool:
     """True if a point is in a rectangle, or at most `margin` outside."""
     return rect[0] - margin <= x <= rect[2] + margin and rect[1] - margin <= y <= rect[3] + margin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -11,6 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.commands import (
     AddDot,
     Connect,
+    ConnectNodes,
     CutLinks,
     Disconnect,
     ExtractSelection,
@@ -301,6 +303,8 @@ class CanvasMouse:
                 return
             if detached:
                 context.log.attempt(lambda: session.apply(MoveLink(detached, target)))
+            elif self._links_nodes(frame, source, target, snap[1]):
+                context.log.attempt(lambda: session.apply(ConnectNodes(source, target)))
             else:
                 context.log.attempt(lambda: session.apply(Connect(source, target)))
         elif not frame.is_far(self._find_link_start(frame, link)):
@@ -314,6 +318,15 @@ class CanvasMouse:
                 context.log.attempt(lambda: session.apply(Disconnect(target)))
             elif contains(frame.panel, *frame.screen):
                 self.requests.search = link.port, link.output
+
+    def _links_nodes(self, frame: CanvasFrame, source: Port, target: Port, pin: Point) -> bool:
+        """True if all sockets of the same name are meant: dropped on a node, or on a socket that is called alike.
+
+        Ctrl links one socket alone.
+        """
+        reach = _SNAP_REACH * frame.scale / frame.to.scale
+        on_node = math.dist(frame.pointer, pin) > reach
+        return (on_node or source.socket == target.socket) and not imgui.get_io().key_ctrl
 
     def _find_link_start(self, frame: CanvasFrame, link: LinkGesture) -> Point:
         end = link.detached or link.port

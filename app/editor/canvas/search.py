@@ -18,9 +18,11 @@ from ...authoring.commands import (
     AddInput,
     AddNode,
     AddOutput,
+    AppendNode,
     ReplaceNode,
 )
 from ...authoring.edits.coding import with_code_type
+from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.wiring import fits_picture, list_fitting_types
 from ...authoring.state.group_files import GroupFiles
 from ...custom_nodes.plugins import preset_paths
@@ -224,12 +226,12 @@ class NodeSearch:
         if port is not None:
             # The socket that takes the link lies near the pointer, not the node's corner.
             at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
-        if entry.kind == SHADER:
-            session.apply(AddCodeFile(entry.id, at, port, output))
-        elif entry.category == GROUP:
-            session.apply(AddGroupFile(entry.id, at, port, output))
-        elif entry.category != GRAPH:
-            session.apply(AddNode(entry.id, at, port, output))
+        if entry.category != GRAPH or entry.kind == SHADER:
+            add = AddCodeFile if entry.kind == SHADER else AddGroupFile if entry.category == GROUP else AddNode
+            addition = add(entry.id, at, port, output)
+            canvas = self.context.canvas
+            id = session.apply(addition if port is not None else AppendNode(addition, canvas.sizes))
+            canvas.reveal((ElementId(id),))
         elif entry.id == "frame":
             session.apply(AddFrame("", at))
         elif entry.id == "comment":

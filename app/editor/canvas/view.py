@@ -22,6 +22,8 @@ class CanvasView:
     zoom: float = 1.0
     pending_fit: Collection[ElementId] | None = ()
     """Elements to fit into the view in the next frame: empty means all, None nothing."""
+    pending_reveal: Collection[ElementId] = ()
+    """Elements that must be in view in the next frame; the view moves no further than it needs to."""
     pointer: tuple[float, float] = (0.0, 0.0)
     """The canvas position under the mouse when it was last over the panel: where new things go."""
     sizes: Sizes | None = None
@@ -43,3 +45,7 @@ class CanvasView:
     def fit(self, elements: Collection[ElementId] = ()) -> None:
         """Fit the view to elements; none means all."""
         self.pending_fit = elements
+
+    def reveal(self, elements: Collection[ElementId]) -> None:
+        """Move the view until elements can be seen."""
+        self.pending_reveal = elements

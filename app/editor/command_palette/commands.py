@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...authoring.commands import AddGroupFile, AddNode
+from ...authoring.commands import AddGroupFile, AddNode, AppendNode
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
@@ -104,11 +104,16 @@ def _all(context: PaletteContext) -> Iterator[Command]:
 
 
 def _add(context: PaletteContext, type_id: str) -> None:
-    context.session.select(ElementId(context.session.apply(AddNode(type_id, context.canvas.pointer))))
+    _append(context, AddNode(type_id, context.canvas.pointer))
 
 
 def _add_preset(context: PaletteContext, path: Path) -> None:
-    context.session.select(ElementId(context.session.apply(AddGroupFile(path, context.canvas.pointer))))
+    _append(context, AddGroupFile(path, context.canvas.pointer))
+
+
+def _append(context: PaletteContext, addition: AddNode | AddGroupFile) -> None:
+    id = context.session.apply(AppendNode(addition, context.canvas.sizes))
+    context.canvas.reveal((ElementId(id),))
 
 
 def _go(context: PaletteContext, element: ElementId) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from ...authoring.edits.element_id import ElementId
+    from ...authoring.edits.elements import Sizes
     from ...authoring.session import Session
 
 
@@ -30,8 +31,17 @@ class ElementView(Protocol):
         """The canvas position where new elements go."""
         ...
 
+    @property
+    def sizes(self) -> Sizes | None:
+        """Width and height of elements as drawn last, in canvas units."""
+        ...
+
     def fit(self, elements: Collection[ElementId] = ()) -> None:
         """Bring elements into view; none means all."""
+        ...
+
+    def reveal(self, elements: Collection[ElementId]) -> None:
+        """Move the view until elements can be seen."""
         ...
 
 

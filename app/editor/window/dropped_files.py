@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...authoring.commands import DropFiles
 from ...authoring.edits.coding import ENDINGS
+from ...authoring.edits.element_id import ElementId
 from ...errors import HalationError
 from ...media.sequences import find_sequence
 from ...renderer.provenance.recipe import has_recipe
@@ -62,7 +63,8 @@ def add_files(editor: Editor, paths: Sequence[Path]) -> None:
     editor.dialogs.open.discard("start")
 
     def drop(files: Sequence[Path]) -> None:
-        editor.session.apply(DropFiles(list(files), at))
+        ids = editor.session.apply(DropFiles(list(files), at, editor.canvas.sizes))
+        editor.canvas.reveal([ElementId(id) for id in ids])
 
     single = [path for path in files if path in frames]
     if not single:

@@ -1,0 +1,121 @@
+"""New nodes behind what is selected: what they are linked with, and where they lie."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ...errors import GraphError
+from ...graph import OUTPUTS, Graph, Port, signature
+from .element_id import ElementId
+from .elements import Place, Sizes, entry, list_elements, with_places
+from .layout import GAP, find_free_place, positions
+from .sizes import element_size
+from .wiring import first_source, why_not_linkable
+
+_HEADER, _ROW, _PICTURE, _MOST_FIELDS = 32.0, 24.0, 116.0, 5
+"""The header, a row, and a thumbnail with its borders as the canvas draws them, and the fields that it shows at most:
+the room that a node needs before anybody has measured it."""
+
+
+def list_alike(graph: Graph, source_id: str, target_id: str) -> dict[Port, Port]:
+    """The free inputs of one node that have the name of an output of the other, which fits; with that output."""
+    if source_id not in graph.nodes or target_id not in graph.nodes:
+        return {}
+    outputs = signature(graph.nodes[source_id]).outputs
+    inputs = [Port(target_id, name) for name in signature(graph.nodes[target_id]).inputs if name in outputs]
+    pairs = {port: Port(source_id, port.socket) for port in inputs if port not in graph.links}
+    return {target: source for target, source in pairs.items() if why_not_linkable(graph, source, target) is None}
+
+
+def connect_alike(graph: Graph, source_id: str, target_id: str) -> Graph:
+    """A graph where all sockets of the same name of two nodes are linked, as far as they are free and fit."""
+    for target, source in list_alike(graph, source_id, target_id).items():
+        graph = graph.connect(source, target)
+    return graph
+
+
+def append_node(graph: Graph, id: str, feeders: Iterable[ElementId], sizes: Sizes | None = None) -> Graph:
+    """A graph where node `id`, which has no links, is fed by the first socket of each element that fits one of its own.
+
+    It lies right of the first of them in free room. Where that fed nothing but outputs of the graph, the new node
+    stands between: the picture that comes out is that of the longer chain. Without feeders that fit, the node only
+    moves away from what it would cover.
+    """
+    sources: list[Port] = []
+    for element in feeders:
+        before = graph.links
+        graph = _feed(graph, element, id)
+        sources += [source for target, source in graph.links.items() if target not in before]
+    if sources:
+        graph = _move_outputs_behind(graph, sources[0], id)
+    return _place_node(graph, ElementId(id), sources, sizes)
+
+
+def estimate_sizes(graph: Graph, sizes: Sizes | None = None) -> dict[ElementId, tuple[float, float]]:
+    """Width and height of all elements: as measured, else what they need with a thumbnail."""
+    return {element: _estimate_size(graph, element) for element in list_elements(graph)} | dict(sizes or {})
+
+
+def _estimate_size(graph: Graph, element: ElementId) -> tuple[float, float]:
+    width, height = element_size(graph, element)
+    if element not in graph.nodes or entry(graph, element).get("collapsed") is True:
+        return width, height
+    face = signature(graph.nodes[element])
+    rows = max(len(face.inputs), len(face.outputs)) + min(len(face.values), _MOST_FIELDS)
+    return width, _HEADER + rows * _ROW + _PICTURE
+
+
+def _feed(graph: Graph, element: ElementId, id: str) -> Graph:
+    """A graph where an element feeds a node: by sockets of the same name, else by its first output that fits."""
+    if element in graph.nodes:
+        alike = connect_alike(graph, element, id)
+        if alike is not graph:
+            return alike
+        outputs = [Port(element, name) for name in signature(graph.nodes[element]).outputs]
+    else:
+        outputs = [element.port] if element.port and element.kind == "input" else []
+    for output in outputs:
+        target = _find_free_input(graph, output, id)
+        if target is not None:
+            return graph.connect(output, target)
+    return graph
+
+
+def _find_free_input(graph: Graph, source: Port, id: str) -> Port | None:
+    """The first input that `source` fits and nothing feeds; those that need a link come first."""
+    inputs = signature(graph.nodes[id]).inputs
+    ports = sorted((Port(id, name) for name in inputs), key=lambda port: inputs[port.socket].optional)
+    free = (port for port in ports if port not in graph.links)
+    return next((port for port in free if why_not_linkable(graph, source, port) is None), None)
+
+
+def _move_outputs_behind(graph: Graph, source: Port, id: str) -> Graph:
+    """A graph where the outputs that `source` fed are fed by node `id`, if it fed nothing else and the node fits."""
+    readers = [target for target, start in graph.links.items() if start == source and target.node != id]
+    if not readers or any(target.node != OUTPUTS for target in readers):
+        return graph
+    for target in readers:
+        try:
+            graph = graph.connect(first_source(graph, id, target), target)
+        except GraphError:
+            continue
+    return graph
+
+
+def _place_node(graph: Graph, node: ElementId, sources: list[Port], sizes: Sizes | None) -> Graph:
+    """A graph where a new node lies in free room: right of what feeds it first, else where it was put."""
+    measured = estimate_sizes(graph, sizes)
+    places = positions(graph, measured)
+    spot: Place = places.pop(node)
+    readers = [target for target, start in graph.links.items() if start.node == node]
+    if sources:
+        feeder = ElementId.of_port(sources[0])
+        spot = places[feeder][0] + element_size(graph, feeder, measured)[0] + GAP[0], places[feeder][1]
+    # The outputs that it feeds now give way to the right; everything else stays where it is.
+    ends = dict.fromkeys(ElementId.of_port(target) for target in readers)
+    spots = {end: places.pop(end) for end in ends}
+    places[node] = find_free_place(graph, node, spot, places, measured)
+    right = places[node][0] + measured[node][0] + GAP[0]
+    for end, (x, y) in spots.items():
+        places[end] = find_free_place(graph, end, (max(x, right), y), places, measured)
+    return with_places(graph, {key: places[key] for key in (node, *ends)})

@@ -1,0 +1,124 @@
+"""Nodes behind what is selected: linked, in free room, several a chain; files in a column; sockets of the same name."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from halation.authoring.commands import AddNode, AppendNode, Connect, ConnectNodes, DropFiles
+from halation.authoring.edits.element_id import ElementId
+from halation.authoring.edits.layout import positions
+from halation.authoring.session import Session
+from halation.editor.canvas.layout import NodeFacts, make_node_layout
+from halation.graph import Graph, Port
+from halation.resources.sandbox import UNRESTRICTED
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(sandbox=UNRESTRICTED)
+
+
+def append(session: Session, kind: str) -> str:
+    return session.apply(AppendNode(AddNode(kind, (10.0, 10.0))))
+
+
+def find_overlaps(graph: Graph) -> list[tuple[str, str]]:
+    """Nodes whose boxes, as the canvas draws them with thumbnails, cover each other."""
+    places, boxes = positions(graph), {}
+    for id, item in graph.nodes.items():
+        layout = make_node_layout(id, item, graph, NodeFacts(picture=True))
+        x, y = places[ElementId(id)]
+        boxes[id] = (x, y, x + layout.width, y + layout.height)
+    return [
+        (first, second)
+        for (first, a), (second, b) in combinations(boxes.items(), 2)
+        if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+    ]
+
+
+def test_several_in_a_row_make_a_chain_that_feeds_the_output(session: Session) -> None:
+    ids = [append(session, kind) for kind in ("constant", "bloom", "vignette", "film_grain", "exposure")]
+    links = session.graph.links
+    assert [links[Port(id, "image")].node for id in ids[1:]] == ids[:-1]
+    assert not find_overlaps(session.graph)
+    left = [session.positions[ElementId(id)][0] for id in ids]
+    assert left == sorted(left) and len(set(left)) == len(left)
+    assert session.selection == {ElementId(ids[-1])}
+    session.undo()
+    assert ids[-1] not in session.graph.nodes and not any(target.node == ids[-1] for target in session.graph.links)
+
+
+def test_an_output_of_the_graph_moves_behind_the_new_node(session: Session) -> None:
+    first = append(session, "constant")
+    session.apply(Connect(Port(first, "out"), Port("outputs", "image")))
+    second = append(session, "vignette")
+    assert session.graph.links[Port("outputs", "image")] == Port(second, "out")
+    assert session.positions[ElementId.of("output", "image")][0] > session.positions[ElementId(second)][0]
+
+
+def test_a_node_that_feeds_others_keeps_its_links(session: Session) -> None:
+    first = append(session, "constant")
+    second = append(session, "vignette")
+    session.select(ElementId(first))
+    third = append(session, "exposure")
+    assert session.graph.links[Port(second, "image")].node == first
+    assert session.graph.links[Port(third, "image")].node == first
+    assert not find_overlaps(session.graph)
+
+
+def test_two_selected_nodes_feed_two_inputs(session: Session) -> None:
+    ids = []
+    for _ in range(2):
+        session.select(())
+        ids.append(append(session, "constant"))
+    session.select([ElementId(id) for id in ids])
+    merged = append(session, "merge")
+    assert {source.node for target, source in session.graph.links.items() if target.node == merged} == set(ids)
+    assert not find_overlaps(session.graph)
+
+
+def test_what_takes_no_picture_is_not_linked_and_covers_nothing(session: Session) -> None:
+    ids = [append(session, "constant") for _ in range(4)]
+    assert not session.graph.links
+    assert len(ids) == 4 and not find_overlaps(session.graph)
+
+
+def test_sockets_of_the_same_name_are_linked_at_once(session: Session) -> None:
+    render = append(session, "read_render")
+    session.select(())
+    occlusion = append(session, "ambient_occlusion")
+    session.apply(ConnectNodes(Port(render, "depth"), Port(occlusion, "depth")))
+    fed = {target.socket: str(source) for target, source in session.graph.links.items() if target.node == occlusion}
+    assert fed == {name: f"{render}.{name}" for name in ("depth", "normal", "camera", "albedo")}
+    assert len(session.history.steps) == 3  # two nodes and one link
+
+
+def test_a_link_that_is_there_stays(session: Session) -> None:
+    render = append(session, "read_render")
+    session.select(())
+    gray = append(session, "constant")
+    session.select(())
+    occlusion = append(session, "ambient_occlusion")
+    session.apply(Connect(Port(gray, "out"), Port(occlusion, "albedo")))
+    session.apply(ConnectNodes(Port(render, "depth"), Port(occlusion, "depth")))
+    assert session.graph.links[Port(occlusion, "albedo")].node == gray
+    assert session.graph.links[Port(occlusion, "normal")].node == render
+
+
+def test_occlusion_behind_a_selected_render_takes_all_its_layers(session: Session) -> None:
+    render = append(session, "read_render")
+    occlusion = append(session, "ambient_occlusion")
+    fed = {target.socket: source.socket for target, source in session.graph.links.items() if target.node == occlusion}
+    assert fed == {name: name for name in ("depth", "normal", "camera", "albedo")}
+    assert not find_overlaps(session.graph), render
+
+
+def test_dropped_files_stand_in_a_column(session: Session, tmp_path: Path) -> None:
+    paths = [tmp_path / f"plate_{letter}.exr" for letter in "abcd"]
+    ids = session.apply(DropFiles([*paths, *paths], (40.0, 30.0)))
+    assert len({session.positions[ElementId(id)][0] for id in ids}) == 1
+    assert not find_overlaps(session.graph)
+    session.apply(DropFiles(paths, (40.0, 30.0)))
+    assert not find_overlaps(session.graph)
