@@ -197,12 +197,8 @@ class Canvas:
         view = self._context.canvas
         boxes = [scene.boxes[key] for key in view.pending_reveal if key in scene.boxes]
         if around := find_bounds(box.rect for box in boxes):
-            # A new node gets its thumbnail a moment later.
-            grows = self._context.store.current.thumbnails and any(
-                box.layout and not box.layout.picture for box in boxes
-            )
-            around = (*around[:3], around[3] + (PICTURE if grows else 0.0))
-            view.center = reveal_rect(around, view.center, view.zoom, size)
+            below = around[3] + (PICTURE if self._context.store.current.thumbnails else 0.0)  # it comes a moment later
+            view.center = reveal_rect((*around[:3], below), view.center, view.zoom, size)
         view.pending_reveal = ()
 
     def _is_covered(self, panel: Rect) -> bool:
@@ -358,8 +354,7 @@ class Canvas:
 
     def _draw_overlays(self, brush: DrawContext, frame: CanvasFrame) -> None:
         requests, view = self._mouse.requests, self._context.canvas
-        if requests.toggle:
-            self._builder.expanded ^= {requests.toggle}
+        self._builder.expanded ^= {requests.toggle} if requests.toggle else set()
         if view.renaming or requests.rename:
             self._naming.begin(view.renaming or requests.rename)
             view.renaming = NO_ELEMENT
