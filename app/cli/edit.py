@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..resources.sandbox import read_process_sandbox
+from ..resources.sandbox import Sandbox, read_process_sandbox
 from . import parsing
 from .options import Inputs, locate_graph, resolve_inputs
 
@@ -18,7 +18,8 @@ def edit(
         typer.Argument(
             parser=locate_graph,
             metavar="[GRAPH]",
-            help="A graph file (JSON), or the name of a preset; without one the start screen opens.",
+            help="A graph file (JSON), the name of a preset, or a picture, which a new graph reads; without one the "
+            "start screen opens.",
         ),
     ] = None,
     inputs: Inputs = None,
@@ -30,7 +31,11 @@ def edit(
         raise UsageError("-i needs a graph: name the graph file too")
     sandbox = read_process_sandbox()
     bindings: dict[str, str] = {}
-    if graph is not None:
+    if graph is not None and graph.suffix.lower() != ".json" and _is_picture(graph):
+        if inputs:
+            raise UsageError(f"{graph}: -i is for the inputs of a graph, and this is a picture: leave -i out")
+        _check_is_there(graph, sandbox)
+    elif graph is not None:
         from .. import document
 
         bindings = resolve_inputs(document.load(graph, sandbox=sandbox), parsing.parse_inputs(inputs))
@@ -38,3 +43,17 @@ def edit(
 
     open_editor(graph, bindings, sandbox)
     return 0
+
+
+def _is_picture(path: Path) -> bool:
+    from ..media.pictures.thumbnail import is_picture
+
+    return is_picture(path)
+
+
+def _check_is_there(path: Path, sandbox: Sandbox) -> None:
+    """Raise InputError if there is no such picture, before a window opens."""
+    from ..resources.input_files import check_file
+    from ..watch.sequence_files import representative_file
+
+    check_file(representative_file(path, sandbox=sandbox), sandbox)

@@ -49,7 +49,7 @@ from ..resources.sandbox import Sandbox
 
 
 def edit(path: Path | None, bindings: Mapping[str, str] | None, sandbox: Sandbox) -> None:
-    """Open the editor on a graph file, or on the start screen; returns when its window is closed.
+    """Open the editor on a graph file, a picture, or on the start screen; returns when its window is closed.
 
     `bindings` are files for graph inputs by name. Raises DocumentError for a file that cannot be read, DeviceError
     where no window can be opened.

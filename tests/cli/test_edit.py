@@ -103,10 +103,13 @@ def test_without_a_display_it_says_so(place: dict[str, str]) -> None:
         (["broken.json"], 3, "broken.json: not valid JSON"),
         ([LOOK, "-i", "nothing=shot.exr"], 2, "the graph has no input 'nothing'"),
         (["-i", "beauty=shot.exr"], 2, "name the graph file too"),
+        (["missing/render.exr"], 4, "missing/render.exr: there is no such file"),
+        (["shot.exr", "-i", "beauty=shot.exr"], 2, "leave -i out"),
     ],
 )
 def test_what_cannot_be_opened_is_a_sentence(place, tmp_path: Path, words, code: int, sentence: str) -> None:
     (tmp_path / "broken.json").write_text("{")
+    (tmp_path / "shot.exr").write_bytes(b"")
     found, said = ended(place, *words, cwd=tmp_path)
     assert (found, said.count("\n")) == (code, 0) and sentence in said and "Traceback" not in said
 

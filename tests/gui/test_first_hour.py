@@ -227,3 +227,17 @@ def test_one_drag_links_all_sockets_of_the_same_name(gui) -> None:
         assert list(ui.session.graph.links) == [Port("ambient_occlusion", "depth")]
 
     gui(body, size=(1366, 768))
+
+
+def test_a_picture_is_opened_in_a_new_graph_with_a_reader(gui, shot: Path) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ((id, node),) = ui.session.graph.nodes.items()
+        assert node.id == "read_image" and node.path.endswith("render.exr")
+        assert ui.session.graph.links[Port("outputs", "image")].node == id
+        assert ui.session.path is None and not ui.session.dirty and ui.session.name == "render"
+        image = ui.editor.preview.find_whole_image("A")
+        assert ui.ask(lambda: ui.editor.probe.read_pixel(image.texture, 3, 3)[0]) == pytest.approx(0.5, abs=1e-3)
+        assert "start" not in ui.editor.dialogs.open
+
+    gui(body, shot.with_name("render.exr"))

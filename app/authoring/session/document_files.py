@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...document import load, loads, save
 from ...errors import UsageError
-from ...graph import Graph, Output
+from ...graph import Graph, Output, Port, signature
 from ...renderer.provenance.file_finder import load_graph_of_picture
+from ..commands.adding import DropFiles
 from ..commands.grouping import LinkGroup
+from ..commands.layout import MoveElements
+from ..commands.linking import Connect
 from ..commands.viewing import ReplaceDocument
 from ..edits import folding, layout, paths
+from ..edits.element_id import ElementId
+from ..edits.sizes import WIDTH
 from .code_files import CodeFiles
 from .undoable_document import UndoableDocument
 
 if TYPE_CHECKING:
     from ..recovery import RecoveredWork
+
+
+_OUTPUT = Port("outputs", "image")
+
+
+def _make_blank_graph() -> Graph:
+    """What a new document holds: one output, and nothing that feeds it."""
+    return layout.pin_places(Graph(outputs={_OUTPUT.socket: Output()}))
 
 
 class DocumentFiles:
@@ -27,7 +41,7 @@ class DocumentFiles:
 
     def new(self) -> None:
         """Begin an empty document: one output, and nothing to show yet."""
-        root = layout.pin_places(Graph(outputs={"image": Output()}))
+        root = _make_blank_graph()
         self._restart(root, saved=root)
 
     def open(self, path: str | Path) -> None:
@@ -39,6 +53,20 @@ class DocumentFiles:
         """Open a graph file as a new document, as presets are: saving asks for a name. Raises DocumentError."""
         root = self._load(path)
         self._restart(root, saved=root)
+
+    def open_pictures(self, files: Sequence[str | Path]) -> None:
+        """Begin a new document with nodes that read pictures, the first of which feeds the output.
+
+        Raises HalationError; then everything is as before.
+        """
+        session = self._session
+        blank = UndoableDocument(session.types, sandbox=session.sandbox)
+        blank.restart(_make_blank_graph())
+        ids = blank.apply(DropFiles(files))
+        output = next(iter(signature(blank.graph.node(ids[0])).outputs))
+        blank.apply(Connect(Port(ids[0], output), _OUTPUT))
+        blank.apply(MoveElements([ElementId.of_port(_OUTPUT)], 2 * WIDTH, 0.0))
+        self._restart(blank.root, saved=blank.root, title=Path(files[0]).stem)
 
     def open_graph_of_picture(self, path: str | Path) -> None:
         """Open the graph that rendered a picture, as a new document with the picture's name. Raises HalationError."""

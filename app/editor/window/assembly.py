@@ -17,6 +17,7 @@ from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
 from ...graph import Graph
 from ...inputs.provider import MediaProvider
+from ...media.pictures.thumbnail import is_picture
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import PixelProbe
@@ -71,9 +72,12 @@ def _measure(graph: Graph, bindings: Mapping[str, str], sandbox: Sandbox) -> tup
 
 
 def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -> None:
-    """Show a graph with files bound to its inputs, or the start screen."""
+    """Show a graph with files bound to its inputs, a picture in a new graph, or the start screen."""
     if path is None:
         editor.dialogs.open.add("start")
+        return
+    if is_picture(path):
+        editor.session.files.open_pictures([path])
         return
     editor.session.files.open(path)
     editor.store.note_opened(path)

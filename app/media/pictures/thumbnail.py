@@ -11,6 +11,7 @@ from halation.nodes import Kind
 from ...color.display import NO_VIEW, to_display
 from ...color.transforms import Array
 from ...errors import InputError
+from ...graph.frames import VIDEO_ENDINGS
 from ...resources.atomic_write import write_atomically
 from ...resources.input_files import check_file
 from ...resources.sandbox import Sandbox
@@ -47,6 +48,12 @@ def list_readable_endings() -> frozenset[str]:
     formats = oiio.get_string_attribute("extension_list").split(";")
     entries = [entry.partition(":") for entry in formats if not entry.startswith(_NO_PICTURES)]
     return frozenset(f".{ending.lower()}" for _, _, endings in entries for ending in endings.split(",") if ending)
+
+
+def is_picture(path: str | Path) -> bool:
+    """True if the ending of a path is that of a picture or video that can be read."""
+    ending = Path(path).suffix.lower()
+    return ending != ".json" and (ending in VIDEO_ENDINGS or ending in list_readable_endings())
 
 
 def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
