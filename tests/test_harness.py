@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -19,7 +20,9 @@ Suite = Callable[..., subprocess.CompletedProcess[str]]
 @pytest.fixture
 def suite(tmp_path: Path) -> Suite:
     """`suite(code, *words)` runs the tests in `code` with the plugins of this suite."""
-    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = -p time_limits -p costs -p failures\ntimeout_grace = 1\n")
+    (tmp_path / "pytest.ini").write_text(
+        "[pytest]\naddopts = -p children -p costs -p failures -p time_limits\ntimeout_grace = 1\n"
+    )
 
     def run_tests(code: str, *words: str) -> subprocess.CompletedProcess[str]:
         (tmp_path / "test_it.py").write_text(code)
@@ -98,6 +101,64 @@ def test_next(capsys):
 """
     said = suite(code).stdout
     assert said.index("FAILED test_it.py::test_wrong - assert 1 == 2") < said.index("the next test")
+
+
+LEAVING = """
+import os, signal, subprocess, sys, time, pytest
+from pathlib import Path
+SLEEP = [sys.executable, "-c", "import time; time.sleep(1000)"]
+def test_child():
+    with pytest.warns(ResourceWarning):
+        subprocess.Popen(SLEEP)
+        __import__("gc").collect()
+def test_orphan():
+    assert subprocess.run(["sh", "-c", '"$@" >&- 2>&- &', "sh", *SLEEP]).returncode == 0
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
+def test_processes_end_with_their_test_or_module(suite: Suite) -> None:
+    ended = suite(LEAVING, "-n", "1", "-W", "ignore::pytest.PytestUnraisableExceptionWarning")
+    assert "2 passed, 2 errors" in ended.stdout, ended.stdout
+    for name in ("test_child", "test_orphan"):
+        assert (
+            f"test_it.py::{name} has left processes, which were ended: {sys.executable} -c import time" in ended.stdout
+        )
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
+def test_processes_end_with_a_worker_that_is_stuck(suite: Suite, tmp_path: Path) -> None:
+    code = """
+import ctypes, os, pytest
+from pathlib import Path
+@pytest.mark.timeout(0.5)
+def test_stuck():
+    os.system("sleep 1000 >&- 2>&- & echo $! >number")
+    lock = ctypes.create_string_buffer(64)
+    ctypes.CDLL(None).pthread_mutex_lock(lock)
+    assert ctypes.CDLL(None).pthread_mutex_lock(lock)
+"""
+    assert "1 failed" in suite(code, "-n", "1").stdout
+    assert not Path("/proc", (tmp_path / "number").read_text().strip(), "cmdline").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+def test_children_hear_interrupts_though_a_shell_ignores_them(suite: Suite) -> None:
+    code = """
+import signal, subprocess, sys
+def test_interrupt():
+    with subprocess.Popen([sys.executable, "-c", "print(1, flush=True); import time; time.sleep(1000)"],
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+    assert process.returncode == -signal.SIGINT
+"""
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        ended = suite(code, "-n", "1", "--timeout", "30")
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert "1 passed" in ended.stdout, ended.stdout
 
 
 def test_costs_are_written(suite: Suite, tmp_path: Path) -> None:

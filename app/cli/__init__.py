@@ -10,6 +10,8 @@ import sys
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
+from .signals import raise_on_requests
+
 _INTERRUPTED = 130
 _YOUNG = 100_000
 """New objects after which Python collects garbage, instead of 700: importing modules creates many, and none of them
@@ -28,6 +30,7 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+    raise_on_requests()
     try:
         from .program import run
 

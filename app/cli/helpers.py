@@ -10,9 +10,7 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import signal
 import subprocess
-import sys
 import tempfile
 import threading
 from collections.abc import Mapping, Sequence
@@ -84,7 +82,7 @@ class _Helper:
         """Ask it to end; the files that it has finished stay."""
         if self.process.poll() is None:
             with contextlib.suppress(OSError):
-                self.process.send_signal(signal.SIGINT) if sys.platform != "win32" else self.process.terminate()
+                self.process.terminate()
 
 
 class _HelperPool:

@@ -6,7 +6,6 @@ the process that uses it, so another process has to read the file and kill the f
 
 from __future__ import annotations
 
-import contextlib
 import os
 import select
 import signal
@@ -14,8 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -23,6 +21,7 @@ import typer
 
 from ..errors import DeviceError, HalationError, RenderError, describe_owner
 from ..resources.machine import has_memory_limit, machine_memory, resident_memory
+from .signals import end_with_parent_thread, relay_requests
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -115,6 +114,14 @@ def needs_watchdog(graph: Graph) -> bool:
     return not os.environ.get(BEACON_FILE) and has_code(graph)
 
 
+def end_with_watchdog() -> None:
+    """Have the system end this process with the one that watches it, if one does: nothing else ends a stuck device."""
+    from ..renderer.execution.progress_beacon import BEACON_FILE
+
+    if os.environ.get(BEACON_FILE):
+        end_with_parent_thread()
+
+
 def can_fork() -> bool:
     """True if a copy of this process can go on in its place: nothing but its one thread works in it yet."""
     if sys.platform != "linux" or not hasattr(os, "pidfd_open") or DEVICE_MODULE in sys.modules:
@@ -135,11 +142,11 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
         process = os.fork()
         if process == 0:
             os.environ.update(watchdog.environment)
-            _end_with_parent()
+            end_with_parent_thread()
             os._exit(work())
         handle = os.pidfd_open(process)
         try:
-            with _ignore_interrupts():
+            with relay_requests(process) as requests:
                 while not select.select([handle], [], [], CHECK_INTERVAL)[0]:
                     if fault := watchdog.check(process):
                         os.kill(process, signal.SIGKILL)
@@ -149,16 +156,8 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
         finally:
             os.close(handle)
         if code < 0:
-            raise watchdog.explain_signal(-code)
+            raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
         return code
-
-
-def _end_with_parent() -> None:
-    """Have the system end this process when the one that watches it is gone."""
-    import ctypes
-
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)
 
 
 def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: float) -> int | None:
@@ -169,6 +168,7 @@ def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: flo
     pass takes longer than `timeout` seconds.
     """
     if not needs_watchdog(graph):
+        end_with_watchdog()
         return None
     from .. import document
 
@@ -181,8 +181,8 @@ def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: flo
 def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
     environment = {**os.environ, **watchdog.environment}
     with (
-        _ignore_interrupts(),
         subprocess.Popen(command, stdin=subprocess.PIPE if text else None, env=environment) as process,
+        relay_requests(process.pid) as requests,
     ):
         if process.stdin:
             process.stdin.write(text.encode())
@@ -196,15 +196,5 @@ def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
                     raise fault from None
                 continue
             if code < 0:
-                raise watchdog.explain_signal(-code)
+                raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
             return code
-
-
-@contextmanager
-def _ignore_interrupts() -> Iterator[None]:
-    """Ignore interrupts here: the other process gets them too, and tidies up before it ends."""
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from .execute import execute
 from .options import AsJson, read_standard_input
+from .signals import end_with_parent
+from .watchdog import end_with_watchdog
 
 
 def worker(as_json: AsJson = True) -> int:
@@ -13,6 +15,8 @@ def worker(as_json: AsJson = True) -> int:
     from ..renderer.jobs.render_job import RenderJob
     from ..resources.sandbox import read_process_sandbox
 
+    end_with_parent()
+    end_with_watchdog()
     job = RenderJob.from_json(read_standard_input())
     if job.sandbox.root:
         job = replace(job, sandbox=read_process_sandbox().narrow(job.sandbox.root))

@@ -11,8 +11,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import cache
-from multiprocessing import get_context
-from threading import current_thread, main_thread
+from multiprocessing import get_context, parent_process
+from threading import Thread, current_thread, main_thread
 
 from .. import renderer as engine
 from ..errors import RenderError
@@ -77,7 +77,7 @@ def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[_CaseRes
 def _run_shared(cases: Sequence[Case], options: RunOptions, jobs: int) -> Generator[_CaseResult, None, None]:
     # If each process used all cores, they would only slow each other down.
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _limit_threads, (threads,))
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _prepare_worker, (threads,))
     try:
         with _ignore_interrupts():
             waiting: list[Future[_CaseResult]] = [pool.submit(_run_in_worker, case, options) for case in cases]
@@ -107,8 +107,17 @@ def _ignore_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _limit_threads(threads: str) -> None:
+def _prepare_worker(threads: str) -> None:
+    """Limit the threads of the driver, and end this process with its parent: it would wait for work for ever."""
     os.environ.setdefault("LP_NUM_THREADS", threads)
+    parent = parent_process()
+
+    def end() -> None:
+        if parent is not None:
+            parent.join()
+            os._exit(1)
+
+    Thread(target=end, name="parent", daemon=True).start()
 
 
 def _run_in_worker(case: Case, options: RunOptions) -> _CaseResult:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -84,6 +85,8 @@ class Renderer:
         self.device = device or open_device(sandbox=sandbox)
         self.pictures = MediaProvider(prefetcher=prefetcher, sandbox=sandbox)
         self._trial_process = trial_process or TrialProcess()
+        if trial_process is None:  # its thread keeps it alive, also where nobody closes this renderer
+            weakref.finalize(self, self._trial_process.abandon)
         self.runner = Runner(self.device, self.pictures.load_pixels, budget, Trials(self._trial_process))
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""

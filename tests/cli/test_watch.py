@@ -58,7 +58,7 @@ class Watching:
 
 
 @contextmanager
-def watching(graph, *words):
+def watching(graph, *words, end=signal.SIGINT):
     command = [sys.executable, "-m", "halation.cli", "watch", graph, *words, "--json"]
     with subprocess.Popen(
         [str(word) for word in command],
@@ -70,7 +70,7 @@ def watching(graph, *words):
         watch = Watching(process)
         try:
             yield watch
-            process.send_signal(signal.SIGINT)
+            process.send_signal(end)
             said = process.stderr.read()
             assert process.wait(PATIENCE) == 130 and said.endswith("interrupted; no unfinished file is left\n")
         finally:
@@ -134,7 +134,7 @@ def test_everything_that_a_picture_is_made_of(graphs, shot, tmp_path):
 def test_a_burst_of_changes_is_one_turn(graphs, tmp_path):
     out, path = tmp_path / "out.exr", graphs()
     tree = json.loads(path.read_text())
-    with watching(path, "-o", out) as watch:
+    with watching(path, "-o", out, end=signal.SIGTERM) as watch:
         assert "written" in watch.turn()
         for stops in range(20):
             tree["nodes"]["light"]["values"]["stops"] = stops / 10.0

@@ -126,7 +126,7 @@ class QueuedRender:
             self._cancelled = True
         # Killed at once, it could not remove what it had begun to write. It may be busy, so it gets a moment.
         if sys.platform != "win32":
-            self._process.send_signal(signal.SIGINT)
+            self._process.terminate()
         deadline = threading.Timer(_PATIENCE if sys.platform != "win32" else 0.0, self._kill)
         deadline.daemon = True
         deadline.start()

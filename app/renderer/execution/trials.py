@@ -69,11 +69,17 @@ class TrialProcess:
 
     def close(self) -> None:
         """End the process."""
-        if self._process is not None:
-            self._process.kill()
-        if self._thread is not None:
+        if (thread := self.abandon()) is not None:
+            thread.join()
+
+    def abandon(self) -> Thread | None:
+        """Have the process ended, and return the thread that does it, if there is one."""
+        thread, self._thread = self._thread, None
+        if thread is not None:
+            if (process := self._process) is not None:
+                process.kill()
             self._tasks.put(None)
-            self._thread.join()
+        return thread
 
     # --- on the thread -----------------------------------------------------------------------------------------------
 

@@ -14,6 +14,8 @@ from msgspec import Struct, field
 from ...errors import DeviceError
 from ..device import WEIGHTS_BLOCK
 
+_INTERRUPTS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name))
+
 # One triangle that covers everything.
 _COVERING_VERTEX = """#version 410 core
 void main() {
@@ -88,15 +90,16 @@ def _bind_weights(program: OpenGLProgram) -> OpenGLProgram:
 @contextmanager
 def _postpone_interrupts() -> Iterator[None]:
     """An interrupt is raised after this block: moderngl calls Python while it links, and crashes if that raises."""
-    handler = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or handler is None:
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
     pending: list[int] = []
-    signal.signal(signal.SIGINT, lambda number, _: pending.append(number))
+    numbers = [number for number in _INTERRUPTS if callable(signal.getsignal(number))]
+    before = {number: signal.signal(number, lambda number, _: pending.append(number)) for number in numbers}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, handler)
+        for number, handler in before.items():
+            signal.signal(number, handler)
     if pending:
-        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(pending[0])

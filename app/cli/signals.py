@@ -1,0 +1,75 @@
+"""Signals that ask a process to end: each ends a command as Ctrl-C does, so that no unfinished file is left."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_REQUESTS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+
+_PARENT_INTERVAL = 0.5
+"""Seconds between two looks at the parent: a choice, shorter than most frames take."""
+
+_PATIENCE = 10.0
+"""Seconds that a process without a parent may take to remove what it has begun to write: a choice."""
+
+
+def raise_on_requests() -> None:
+    """Raise KeyboardInterrupt when a signal asks this process to end. Signals that are ignored stay so (`nohup`)."""
+    for number in _REQUESTS:
+        if signal.getsignal(number) == signal.SIG_DFL:
+            signal.signal(number, signal.default_int_handler)
+
+
+@contextmanager
+def relay_requests(process: int) -> Iterator[list[int]]:
+    """Leave signals that ask this process to end to another one; the list that is given holds those that came.
+
+    An interrupt is not passed on, because a terminal sends it to both processes.
+    """
+    received: list[int] = []
+
+    def relay(number: int, _: object) -> None:
+        received.append(number)
+        if number != signal.SIGINT:
+            with contextlib.suppress(OSError):
+                os.kill(process, number)
+
+    # What ignores a signal keeps ignoring it: a shell starts commands in the background so.
+    numbers = [number for number in (signal.SIGINT, *_REQUESTS) if callable(signal.getsignal(number))]
+    before = {number: signal.signal(number, relay) for number in numbers}
+    try:
+        yield received
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def end_with_parent_thread() -> None:
+    """Have the system end this process with the thread that has started it, even while a driver is stuck."""
+    if sys.platform == "linux":
+        import ctypes
+
+        with contextlib.suppress(OSError, AttributeError):
+            ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+
+
+def end_with_parent() -> None:
+    """End this process when the one that has started it is gone, whichever thread that was."""
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_PARENT_INTERVAL)
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(_PATIENCE)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+    if sys.platform != "win32":
+        threading.Thread(target=watch, name="parent", daemon=True).start()
