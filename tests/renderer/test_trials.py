@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -15,7 +16,7 @@ from halation.custom_nodes import Code, node_type
 from halation.errors import DeviceError, ShaderError
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Renderer, RenderRequest
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.trials import TrialProcess
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -91,6 +92,27 @@ def test_code_that_ends_the_process(tried: Renderer) -> None:
         with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
             next(run)
     assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
+def test_a_renderer_that_nobody_closes_leaves_no_process() -> None:
+    device = open_device(sandbox=UNRESTRICTED)
+    others = list_children()
+    renderer = Renderer(device, sandbox=UNRESTRICTED)
+    renderer.render(effect(0.75), REQUEST)
+    assert list_children() - others
+    del renderer
+    gc.collect()
+    while list_children() - others:
+        time.sleep(0.01)
+    device.close()
+
+
+def test_a_closed_process_can_be_started_again(trial_process: TrialProcess) -> None:
+    for number in (0.3, 0.4):
+        renderer = Renderer(trial_process=trial_process, sandbox=UNRESTRICTED)
+        assert np.allclose(renderer.render(effect(number), REQUEST)["out"], number / 2.0)
+        renderer.close()
 
 
 def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
