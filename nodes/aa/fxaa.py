@@ -15,6 +15,8 @@ class Fxaa(Filter):
     (sRGB), colors are mixed in linear light.
     """
 
+    aliases = ("anti-aliasing", "antialias", "aa", "fast approximate anti-aliasing", "smooth edges", "jaggies")
+
     image = Image()
     quality: Annotated[
         Literal["low", "medium", "high"],

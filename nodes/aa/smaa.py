@@ -14,6 +14,8 @@ class Smaa(Filter):
     (sRGB), colors are mixed in linear light.
     """
 
+    aliases = ("anti-aliasing", "antialias", "aa", "morphological anti-aliasing", "smooth edges", "jaggies")
+
     image = Image()
     quality: Annotated[
         Literal["low", "medium", "high", "ultra"],

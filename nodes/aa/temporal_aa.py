@@ -13,6 +13,8 @@ class TemporalAa(Temporal):
     ghost. See `jitter` of Scene.
     """
 
+    aliases = ("taa", "anti-aliasing", "temporal anti-aliasing", "supersampling")
+
     image = Image(doc="One sample per pixel.")
     velocity = Vector(
         width=4,

@@ -11,6 +11,11 @@ class BilateralBlur(Filter):
     compared instead (joint bilateral, Petschnigg et al. 2004): noisy light may follow clean albedo or normals.
     """
 
+    aliases = (
+        "bilateral", "denoise", "smart blur", "surface blur", "edge-preserving blur", "remove noise", "remove grain",
+        "degrain", "noise reduction", "reduce noise", "smooth", "beauty", "skin smoothing", "dust and scratches",
+    )  # fmt: skip
+
     image = Image()
     guide = Image(0.0, doc="Where this changes, the picture is not blurred. Without a link, the picture itself.")
     sigma: Annotated[

@@ -17,6 +17,8 @@ class BoxBlur(Filter):
     Three boxes: Wells 1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
     """
 
+    aliases = ("fast box blur", "fast blur", "average blur", "mean filter")
+
     proxy_notes = (ProxyNote(("out",), "a box is a whole number of pixels wide, and one more than twice the radius"),)
 
     image = Image()

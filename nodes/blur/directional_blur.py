@@ -10,6 +10,8 @@ class DirectionalBlur(Filter):
     The mean along the line, sampled at every pixel or closer (bilinear). The cost grows with the length.
     """
 
+    aliases = ("dir blur", "motion blur 2d", "linear blur", "angle blur", "cross blur", "smear", "streak blur")
+
     image = Image()
     angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up.")] = 0.0
     length: Annotated[

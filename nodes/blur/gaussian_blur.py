@@ -9,6 +9,7 @@ class GaussianBlur(Filter):
     Within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, within 3e-4 (RMS) of it above.
     """
 
+    aliases = ("blur", "soften", "defocus", "smooth", "fast blur", "low pass", "feather", "edge blur", "out of focus")
     traits = (Trait.RESAMPLES,)
 
     image = Image()

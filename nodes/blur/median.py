@@ -10,6 +10,11 @@ class Median(Filter):
     (Paeth 1990, McGuire 2008).
     """
 
+    aliases = (
+        "rank filter", "despeckle", "denoise", "dust and scratches", "dust bust", "remove noise", "salt and pepper",
+        "noise reduction", "minimax",
+    )  # fmt: skip
+
     image = Image()
     window: Annotated[Literal["3x3", "5x5"], Doc("Which neighbors are sorted.")] = "3x3"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -11,6 +11,8 @@ class RadialBlur(Filter):
     times.
     """
 
+    aliases = ("zoom blur", "spin blur", "rotational blur", "cc radial blur", "cc radial fast blur", "crash zoom")
+
     image = Image()
     kind: Annotated[Literal["zoom", "spin"], Doc("Zoom blurs away from the center, spin around it.")] = "zoom"
     zoom: Annotated[

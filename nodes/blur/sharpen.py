@@ -10,6 +10,8 @@ class Sharpen(Filter):
     faint grain is not sharpened, and is cut at the limit, so that lamps do not get black halos. Alpha is kept.
     """
 
+    aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture")
+
     image = Image()
     amount: Annotated[
         float,

@@ -21,6 +21,8 @@ class VariableBlur(Filter):
     Within 1.5 percent (RMS) of that Gaussian even on white noise, and far closer on pictures.
     """
 
+    aliases = ("vari blur", "compound blur", "blur by mask", "tilt shift", "channel blur", "masked blur", "lens blur")
+
     image = Image()
     field = Field(1.0, doc="How much of sigma, 0..1.")
     sigma: Annotated[

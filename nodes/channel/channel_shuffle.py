@@ -24,6 +24,11 @@ Pick = Annotated[
 class ChannelShuffle(Pointwise):
     """Rearrange channels of one or two images. Values are copied as they are, without regard to alpha."""
 
+    aliases = (
+        "shuffle", "shuffle copy", "swizzle", "copy channels", "channel copy", "copy", "channel booleans",
+        "set channels", "shift channels", "reorder channels", "channel merge", "copy aux", "set matte", "set alpha",
+    )  # fmt: skip
+
     image = Image()
     other = Image(0.0, doc="A second image to take channels from.")
     red: Pick = "red"

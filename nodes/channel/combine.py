@@ -4,6 +4,11 @@ from .._declare import Field, Image, OutputSocket, Pointwise
 class Combine(Pointwise):
     """Make an image of up to four channels, as they are (premultiplied)."""
 
+    aliases = (
+        "combine color", "combine rgb", "combine rgba", "join channels", "channel combiner", "merge channels",
+        "set alpha",
+    )  # fmt: skip
+
     red = Field(0.0)
     green = Field(0.0)
     blue = Field(0.0)

@@ -4,6 +4,11 @@ from .._declare import Field, Image, OutputSocket, Pointwise
 class Separate(Pointwise):
     """Split an image into its four channels, as they are (premultiplied)."""
 
+    aliases = (
+        "separate color", "separate rgb", "separate rgba", "split channels", "split rgb", "channel split",
+        "extract channel", "channel isolate", "get alpha",
+    )  # fmt: skip
+
     image = Image()
 
     red = OutputSocket(Field())

@@ -7,6 +7,10 @@ class Unpremultiply(Pointwise):
     Where alpha is 0 the color stays as it is.
     """
 
+    aliases = (
+        "unpremult", "alpha convert", "alpha divide", "divide alpha", "remove color matting", "straight alpha",
+        "unassociate alpha",
+    )  # fmt: skip
     traits = (Trait.USES_ALPHA,)
 
     image = Image()

@@ -10,6 +10,7 @@ class Cdl(Pointwise):
     on the color without its alpha; alpha stays, and so do the alphas of the three colors.
     """
 
+    aliases = ("ocio cdl transform", "asc cdl", "color decision list", "slope offset power", "color balance")
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

@@ -12,6 +12,7 @@ class ChannelMixer(Pointwise):
     white film behind a colored filter. Linear: the constant is added where alpha covers. Alpha stays.
     """
 
+    aliases = ("channel mix", "mix channels", "rgb mixer", "monochrome mixer", "crosstalk")
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

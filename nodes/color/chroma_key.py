@@ -12,6 +12,13 @@ class ChromaKey(Pointwise):
     the screen's, over the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
     """
 
+    aliases = (
+        "keyer", "keying", "keylight", "primatte", "ultimatte", "ibk", "ibk colour", "delta keyer", "chroma keyer",
+        "ultra keyer", "color key", "channel key", "hue keyer", "green screen", "blue screen", "greenscreen",
+        "bluescreen", "despill", "spill suppressor", "advanced spill suppressor", "color spill", "hue spill replace",
+        "color range", "linear color key", "distance key", "difference key", "remove background", "3d keyer",
+        "qualifier",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.USES_ALPHA)
 
     image = Image()

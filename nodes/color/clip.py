@@ -6,6 +6,11 @@ from .._declare import Image, Pointwise, Slider
 class Clip(Pointwise):
     """Limit every color channel to a range. Alpha stays; the color is limited without its alpha."""
 
+    aliases = (
+        "clamp", "limit", "soft clip", "range limit", "legalize", "broadcast colors", "video limiter", "min max",
+        "gamut clip",
+    )  # fmt: skip
+
     image = Image()
     low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="Nothing is darker.")] = 0.0
     high: Annotated[float, Slider(0.0, 16.0, unit="scene", doc="Nothing is brighter.")] = 1.0

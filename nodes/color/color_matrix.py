@@ -65,6 +65,8 @@ class ColorMatrix(Filter):
     Alpha stays.
     """
 
+    aliases = ("matrix", "rgb matrix", "color transform matrix", "matrix color")
+
     image = Image()
     preset: Annotated[
         Literal[

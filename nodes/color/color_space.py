@@ -13,6 +13,12 @@ class ColorSpace(Filter):
     config does not have comes from the ACES studio config. Works on the color without its alpha; alpha stays.
     """
 
+    aliases = (
+        "colorspace", "convert colorspace", "color space transform", "cst", "ocio color space", "ocio display",
+        "ocio log convert", "log to lin", "log2lin", "lin to log", "linear to log", "cineon converter", "cineon log",
+        "color profile converter", "color management", "aces", "acescg", "srgb to linear", "linearize", "gamut",
+        "gamut mapping", "convert to display", "rec709", "alexa log",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 
     image = Image()

@@ -13,6 +13,11 @@ class Curves(Pointwise):
     its alpha; alpha stays.
     """
 
+    aliases = (
+        "rgb curves", "color curves", "color lookup", "color look up", "hue correct", "hue curves", "luma curve",
+        "tone curve", "channel curves", "arbitrary map", "contrast", "s curve",
+    )  # fmt: skip
+
     image = Image()
     space: Annotated[
         Literal["display", "log", "linear"],

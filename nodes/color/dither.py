@@ -12,6 +12,7 @@ class Dither(Pointwise):
     alpha; alpha stays.
     """
 
+    aliases = ("ordered dither", "bayer", "banding", "deband", "reduce banding")
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

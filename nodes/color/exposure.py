@@ -6,6 +6,7 @@ from .._declare import Image, Pointwise, Slider, Trait
 class Exposure(Pointwise):
     """Brighten or darken in photographic stops: every stop doubles the light."""
 
+    aliases = ("stops", "ev", "gain", "brightness", "expose", "exptool", "lighten", "darken", "multiply exposure")
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

@@ -11,6 +11,13 @@ class Grade(Pointwise):
     Works on the color without its alpha; alpha stays as it is, and so do the alphas of the four colors.
     """
 
+    aliases = (
+        "color correct", "color correction", "color corrector", "color balance", "lift gamma gain", "three way",
+        "color wheels", "primary grade", "brightness contrast", "brightness", "contrast", "gamma", "color gain",
+        "gamma pedestal gain", "lumetri color", "color grading", "gain", "offset", "rolloff contrast", "log wheels",
+        "black point", "white point", "multiply color", "add color",
+    )  # fmt: skip
+
     image = Image()
     lift: Annotated[RGBA, Doc("What black becomes, while white stays.")] = (0.0, 0.0, 0.0, 0.0)
     gamma: Annotated[RGBA, Doc("Above 1 brightens the midtones, while black and white stay.")] = (1.0, 1.0, 1.0, 1.0)

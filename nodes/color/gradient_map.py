@@ -11,6 +11,11 @@ class GradientMap(Filter):
     multiplied by that of the ramp. Link a Field to the image to paint data.
     """
 
+    aliases = (
+        "color ramp", "colorama", "tint", "tritone", "duotone", "pseudo color", "false color", "pseudocolor",
+        "tri tone", "cc toner", "gradient", "heat map", "colorize", "colormap",
+    )  # fmt: skip
+
     image = Image()
     palette: Annotated[
         Literal[

@@ -11,6 +11,11 @@ class HueSaturation(Pointwise):
     programs do. Alpha stays.
     """
 
+    aliases = (
+        "hue shift", "hue correct", "hsv", "hsl", "hsv tool", "hue saturation value", "hue saturation lightness",
+        "color balance hls", "change color", "shift hue", "hue rotate", "selective color", "leave color",
+        "change to color", "vibrance", "desaturate",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

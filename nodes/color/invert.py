@@ -11,6 +11,8 @@ class Invert(Pointwise):
     itself. Works on the color without its alpha; alpha stays.
     """
 
+    aliases = ("negative", "invert color", "negate", "inverse", "complement", "invert mask")
+
     image = Image()
     space: Annotated[Literal["display", "linear", "stops"], Doc("In what the picture is mirrored.")] = "display"
     amount: Annotated[

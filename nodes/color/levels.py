@@ -10,6 +10,12 @@ class Levels(Pointwise):
     point skips the gamma and goes on straight. Works on the color without its alpha; alpha stays.
     """
 
+    aliases = (
+        "brightness contrast", "black point", "white point", "input levels", "gamma", "auto contrast", "auto levels",
+        "equalize", "stretch", "normalize", "histogram stretch", "set range", "map range", "remap", "fit range",
+        "contrast", "remap range", "map value",
+    )  # fmt: skip
+
     image = Image()
     space: Annotated[
         Literal["linear", "display"], Doc("What the points count: scene light, or sRGB codes as in paint programs.")

@@ -10,6 +10,11 @@ class LumaKey(Pointwise):
     picture times the matte, `matte` the matte times alpha. Brightness is that of the color without its alpha.
     """
 
+    aliases = (
+        "luminance key", "luma keyer", "keyer", "brightness key", "threshold", "extract", "luminance keyer",
+        "luma matte", "cc threshold", "binary alpha",
+    )  # fmt: skip
+
     image = Image()
     measure: Annotated[
         Literal["luminance", "maximum", "minimum", "saturation"],

@@ -6,6 +6,11 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise
 class Luminance(Pointwise):
     """One channel from color: how bright every pixel is, as it lies over black."""
 
+    aliases = (
+        "rgb to bw", "black and white", "grayscale", "greyscale", "gray", "desaturate", "luma", "brightness",
+        "monochrome", "luminance to alpha",
+    )  # fmt: skip
+
     image = Image()
     measure: Annotated[
         Literal["luminance", "average", "maximum", "minimum"],

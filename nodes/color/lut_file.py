@@ -12,6 +12,10 @@ class LutFile(Filter):
     interpolated in tetrahedra. Works on the color without its alpha; alpha stays. Without a file the picture passes.
     """
 
+    aliases = (
+        "lut", "apply color lut", "3d lut", "cube", "vectorfield", "file lut", "ocio file transform", "apply lut",
+        "look up table", "film look", "csp",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 
     image = Image()

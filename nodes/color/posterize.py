@@ -10,6 +10,8 @@ class Posterize(Pointwise):
     without its alpha; alpha stays.
     """
 
+    aliases = ("quantize", "reduce colors", "color steps", "threshold", "banding", "levels of color")
+
     image = Image()
     levels: Annotated[
         float,

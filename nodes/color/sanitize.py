@@ -10,6 +10,8 @@ class Sanitize(Filter):
     none, as OpenImageIO's fixNonFinite; sound channels of the same pixel stay.
     """
 
+    aliases = ("remove nan", "fix nan", "clean infinite", "nan fix", "kill nan", "remove infinity")
+
     image = Image()
     repair: Annotated[Literal["neighbors", "black"], Doc("What a broken channel (NaN, infinity) becomes.")] = (
         "neighbors"

@@ -11,6 +11,10 @@ class SplitToning(Pointwise):
     do the alphas of the tints.
     """
 
+    aliases = (
+        "tint", "duotone", "tritone", "photo filter", "shadows highlights color", "teal and orange", "split tone",
+        "color tint", "toning", "color temperature shadows",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

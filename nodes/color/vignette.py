@@ -9,6 +9,8 @@ class Vignette(Pointwise):
     Distances are counted in half pictures: 1 is the middle of an edge, 1.41 a corner.
     """
 
+    aliases = ("cc vignette", "darken corners", "lens falloff", "edge darkening", "vignetting")
+
     image = Image()
     falloff: Annotated[
         Literal["smooth", "cos4"],

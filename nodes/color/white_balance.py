@@ -13,6 +13,10 @@ class WhiteBalance(Pointwise):
     1 in CIE 1960 uv. The eye adapts by Bradford (Lam 1985) or CAT16 (Li et al. 2017). Linear: alpha does not matter.
     """
 
+    aliases = (
+        "color temperature", "temperature", "tint", "kelvin", "photo filter", "warm", "cool", "auto white balance",
+        "warming filter", "cooling filter", "color cast", "auto color",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()

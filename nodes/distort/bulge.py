@@ -11,6 +11,10 @@ class Bulge(Filter):
     border: the image is read at center + distance * (1 - strength (1 - (distance / radius)^2)^2).
     """
 
+    aliases = (
+        "spherize", "pinch", "fish eye", "fisheye", "magnify", "dent", "punch", "cc lens", "warp", "liquify", "squeeze",
+    )  # fmt: skip
+
     image = Image()
     strength: Annotated[
         float, Slider(-1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches.")

@@ -12,6 +12,11 @@ class ChromaticAberration(Filter):
     where the picture is even. Alpha is gathered evenly.
     """
 
+    aliases = (
+        "ca", "color fringe", "fringing", "rgb split", "lateral color", "dispersion", "prism", "channel offset",
+        "rgb shift", "lens aberration",
+    )  # fmt: skip
+
     image = Image()
     shape: Annotated[
         Literal["radial", "straight"],

@@ -11,6 +11,11 @@ class Crop(Filter):
     remains.
     """
 
+    aliases = (
+        "trim", "letterbox", "cut", "region of interest", "adjust bbox", "black outside", "rectangle", "matte bars",
+        "adjust bounding box", "border", "aspect bars",
+    )  # fmt: skip
+
     image = Image()
     top_left: Annotated[Position, Doc("One corner of what is kept.")] = (0.0, 0.0)
     bottom_right: Annotated[Position, Doc("The corner across.")] = (1.0, 1.0)

@@ -11,6 +11,11 @@ class Crt(Filter):
     and stripes are cosines, averaged over each pixel so that they never beat with the picture, and keep its light.
     """
 
+    aliases = (
+        "tv", "television", "scanlines", "old monitor", "tube", "retro screen", "analog tv", "interlace",
+        "venetian blinds",
+    )  # fmt: skip
+
     image = Image()
     barrel: Annotated[
         float,

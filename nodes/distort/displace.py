@@ -9,6 +9,11 @@ class Displace(Filter):
     x points right and y down. Positions between pixels are interpolated (bilinear).
     """
 
+    aliases = (
+        "idistort", "displacement map", "displacement", "vector distort", "warp", "distort", "vector warp", "push",
+        "refract", "normal map distort",
+    )  # fmt: skip
+
     image = Image()
     vector = Vector(0.0, width=2, doc="Where to look, as a multiple of `amount`. Without a link nothing moves.")
     amount: Annotated[

@@ -12,6 +12,8 @@ class Glass(Filter):
     link to `surface` the glass is hammered at random (gradient noise, Perlin 2002).
     """
 
+    aliases = ("cc glass", "refraction", "frosted glass", "ribbed glass", "fluted glass", "window", "glass distort")
+
     image = Image()
     surface = Field(0.0, doc="How high the glass is, 0 to 1. Without a link, random bumps.")
     relief: Annotated[

@@ -11,6 +11,11 @@ class Glitch(Filter):
     hash (pcg3d: Jarzynski and Olano 2020), so that the same frame always looks the same.
     """
 
+    aliases = (
+        "datamosh", "digital damage", "bad tv", "signal error", "corruption", "vhs", "bad signal", "block glitch",
+        "jitter",
+    )  # fmt: skip
+
     image = Image()
     amount: Annotated[Fraction, Doc("How many of the bands jump.")] = 0.25
     shift: Annotated[float, Slider(0.0, 0.5, unit="height", doc="How far they jump at most.")] = 0.12

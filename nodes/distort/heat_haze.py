@@ -11,6 +11,8 @@ class HeatHaze(Filter):
     every frame; the same frame always looks the same.
     """
 
+    aliases = ("heat distortion", "haze", "hot air", "shimmer", "air distortion", "mirage")
+
     image = Image()
     heat = Field(1.0, doc="Where it is hot: factor on the amount, pixel by pixel.")
     amount: Annotated[float, Slider(0.0, 0.05, unit="height", doc="How far points move at most.")] = 0.008

@@ -6,6 +6,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class Kaleidoscope(Filter):
     """Mirror one slice of the picture all around, as in a tube of mirrors."""
 
+    aliases = ("cc kaleida", "mirror", "mandala", "reflect", "symmetry", "kaleido")
+
     image = Image()
     segments: Annotated[
         int,

@@ -20,6 +20,11 @@ class LensDistortion(Filter):
     takes it back; with equal numbers each undoes the other.
     """
 
+    aliases = (
+        "lens distort", "undistort", "optics compensation", "barrel", "pincushion", "fish eye", "fisheye",
+        "lens correction", "st map lens", "distort lens", "movie distortion", "wide angle",
+    )  # fmt: skip
+
     image = Image()
     direction: Annotated[
         Literal["distort", "undistort"],

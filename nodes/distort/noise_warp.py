@@ -11,6 +11,11 @@ class NoiseWarp(Filter):
     noises; flow by the curl of one (Bridson, Hourihan and Nordenstam, 2007), which stirs without squeezing anything.
     """
 
+    aliases = (
+        "turbulent displace", "turbulence", "wiggle", "liquid", "fluid warp", "distort by noise", "rough edges",
+        "roughen edges", "wave", "warp",
+    )  # fmt: skip
+
     image = Image()
     mask = Field(1.0, doc="Factor on the amount, pixel by pixel.")
     amount: Annotated[float, Slider(0.0, 0.2, unit="height", doc="How far points move at most, across and down.")] = (

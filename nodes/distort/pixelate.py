@@ -10,6 +10,8 @@ class Pixelate(Filter):
     A square counts the pixels at its border by how much of them it covers.
     """
 
+    aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate")
+
     image = Image()
     size: Annotated[
         tuple[float, float],

@@ -11,6 +11,10 @@ class Polar(Filter):
     back for a spin.
     """
 
+    aliases = (
+        "polar coordinates", "coord space", "rectangular to polar", "tiny planet", "spherical transform", "unwrap",
+    )  # fmt: skip
+
     image = Image()
     direction: Annotated[Literal["wrap", "unwrap"], Doc("Wrap makes a disc, unwrap opens it.")] = "wrap"
     radius: Annotated[float, Slider(0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc.")] = 0.5

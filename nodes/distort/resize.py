@@ -12,6 +12,10 @@ class Resize(Filter):
     and Mitchell: Mitchell and Netravali 1988. The size is rounded to whole pixels, at least one.
     """
 
+    aliases = (
+        "reformat", "scale", "scale image", "resample", "change resolution", "resolution", "canvas size", "letterbox",
+        "fit", "downscale", "upscale", "image size", "down-res", "up-res", "tv scale",
+    )  # fmt: skip
     traits = (Trait.RESAMPLES,)
 
     image = Image()

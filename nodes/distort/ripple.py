@@ -11,6 +11,10 @@ class Ripple(Filter):
     distance from the center as exp(-distance / reach).
     """
 
+    aliases = (
+        "wave warp", "wave", "water", "drip", "ripple pulse", "cc ripple pulse", "radio waves", "waves", "sine warp",
+    )  # fmt: skip
+
     image = Image()
     shape: Annotated[Literal["circular", "straight"], Doc("Rings around the center, or waves that run one way.")] = (
         "circular"

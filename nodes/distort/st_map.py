@@ -10,6 +10,11 @@ class StMap(Filter):
     between. Where the map is NaN, nothing is shown.
     """
 
+    aliases = (
+        "stmap", "uv map", "map uv", "uv lookup", "texture lookup", "remap", "uv remap", "warp by uv", "coordinates",
+        "texture",
+    )  # fmt: skip
+
     image = Image()
     st = Vector(width=2, doc="Where to look: 0 to 1 across the picture, pixel centers at halves.")
     origin: Annotated[

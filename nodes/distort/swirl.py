@@ -11,6 +11,8 @@ class Swirl(Filter):
     The opposite angle with the same radius takes it back.
     """
 
+    aliases = ("twirl", "vortex", "twist", "whirl", "spin", "spiral")
+
     image = Image()
     angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
     radius: Annotated[

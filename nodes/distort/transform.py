@@ -16,6 +16,11 @@ class Transform(Filter):
     1988.
     """
 
+    aliases = (
+        "move", "translate", "rotate", "scale", "position", "mirror", "flip", "flop", "flip horizontal",
+        "flip vertical", "dve", "offset", "shift", "pan", "tile", "motion tile", "camera shake", "transform image",
+        "geometry", "turn", "zoom", "reposition", "pivot", "skew", "corner pin",
+    )  # fmt: skip
     traits = (Trait.RESAMPLES,)
 
     image = Image()

@@ -15,6 +15,8 @@ class Canny(Filter):
     tone (luminance as a display shows it, sRGB), where a step from black to white is 1. Alpha is kept.
     """
 
+    aliases = ("edge detect", "find edges", "edges", "line art", "contours")
+
     proxy_notes = (ProxyNote(("lines", "out"), "its lines are one or two pixels wide at any size", "look"),)
 
     image = Image()

@@ -14,6 +14,8 @@ class DifferenceOfGaussians(Filter):
     long calm strokes. All work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
     """
 
+    aliases = ("dog", "xdog", "line drawing", "edge detect", "sketch", "ink", "lines", "photocopy", "pencil")
+
     proxy_notes = (
         ProxyNote(("out", "value"), "its lines have hard edges, around specks too that a proxy averages away"),
     )

@@ -12,6 +12,12 @@ class DistanceField(Filter):
     far away as the picture's diagonal.
     """
 
+    aliases = (
+        "sdf", "erode", "dilate", "grow", "shrink", "choke", "matte choker", "simple choker", "dilate erode",
+        "erode dilate", "spread", "expand mask", "offset mask", "grow bounds", "stroke", "minimax", "outer glow",
+        "edge extend",
+    )  # fmt: skip
+
     proxy_notes = (ProxyNote(("distance",), "its lines have hard edges, around specks too that a proxy averages away"),)
 
     mask = Field()

@@ -11,6 +11,11 @@ class EdgeDetect(Filter):
     brightness. Sobel and Feldman 1968, Prewitt 1970, Scharr 2000. Alpha is kept.
     """
 
+    aliases = (
+        "find edges", "sobel", "prewitt", "laplacian", "edges", "filter", "edge filter", "outline", "roberts", "kirsch",
+        "edge",
+    )  # fmt: skip
+
     proxy_notes = (ProxyNote(("magnitude", "out"), "its lines are one or two pixels wide at any size", "look"),)
 
     image = Image()

@@ -10,6 +10,8 @@ class Emboss(Filter):
     shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978), 1 where the picture is flat. Alpha is kept.
     """
 
+    aliases = ("bump boss", "bump", "relief", "bevel", "color emboss", "create bump map", "texturize", "bevel alpha")
+
     proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
 
     image = Image()

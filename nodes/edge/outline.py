@@ -12,6 +12,8 @@ class Outline(Filter):
     grows slowly with its width. Around the picture's own alpha, an outside line lies behind the picture.
     """
 
+    aliases = ("stroke", "contour", "cel outline", "ink", "toon lines", "line art", "freestyle", "border")
+
     proxy_notes = (
         ProxyNote(("line", "out"), "its lines have hard edges, around specks too that a proxy averages away"),
     )

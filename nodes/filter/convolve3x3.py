@@ -32,6 +32,11 @@ class Convolve3x3(Filter):
     out = scale * sum(kernel * neighbors) + bias. The kernel is drawn as it is seen (correlation: it is not flipped).
     """
 
+    aliases = (
+        "convolve", "convolution", "matrix", "kernel", "custom filter", "custom convolution", "filter", "laplacian",
+        "edge enhance", "soften", "shadow filter", "3x3",
+    )  # fmt: skip
+
     proxy_notes = (ProxyNote(("out",), "it weighs the next pixels, which are farther away in a proxy"),)
 
     image = Image()

@@ -11,6 +11,10 @@ class CameraVelocity(Filter):
     are now minus the frame before, z and w the frame after minus now.
     """
 
+    aliases = (
+        "motion vectors", "vector generator", "velocity", "camera motion", "motion vector pass", "vector pass", "speed",
+    )  # fmt: skip
+
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = CameraSocket(doc="The camera now.")
     before = CameraSocket(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")

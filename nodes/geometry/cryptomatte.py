@@ -27,6 +27,11 @@ class Cryptomatte(Reader):
     sum of what every id that was picked covers, exactly. Names are looked up in the file's manifest, else hashed.
     """
 
+    aliases = (
+        "crypto", "object matte", "encryptomatte", "matte", "object id", "material id", "mask by name", "psyop",
+        "pick object",
+    )  # fmt: skip
+
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
     layer: Annotated[Literal["object", "material", "asset"], Doc("What has a matte of its own.")] = "object"
     pick: Annotated[

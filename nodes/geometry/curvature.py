@@ -12,6 +12,8 @@ class Curvature(Filter):
     from normals alone, the view is taken for parallel and lengths count picture heights.
     """
 
+    aliases = ("edge wear", "cavity", "convexity", "dirt mask", "pointiness", "worn edges", "ridges")
+
     proxy_notes = (
         ProxyNote(("cavity", "mean", "ridge"), "it weighs the next pixels, which are farther away in a proxy"),
     )

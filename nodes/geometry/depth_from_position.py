@@ -8,6 +8,8 @@ class DepthFromPosition(Filter):
     which renderers write there, and behind the camera.
     """
 
+    aliases = ("depth", "z depth", "position to depth", "depth generator", "world to depth")
+
     position = Vector(width=3, doc="Places in the world.")
     camera = CameraSocket(doc="The camera that the positions were rendered with.")
 

@@ -10,6 +10,11 @@ class DepthSlice(Pointwise):
     the scene makes a ramp of the depth. What has no depth lies farther than everything.
     """
 
+    aliases = (
+        "zslice", "z slice", "depth matte", "depth mask", "depth key", "z matte", "z combine", "zmerge", "z mask",
+        "depth range", "isolate depth", "z depth mask",
+    )  # fmt: skip
+
     depth = Field(doc="Distance from the camera.")
     near: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is nearer is cut away.")] = 6.0
     far: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is farther is cut away.")] = 9.0

@@ -8,6 +8,8 @@ class Facing(Filter):
     background, are 0. Where antialiasing has mixed several normals, it is the mean of what the pixels around say.
     """
 
+    aliases = ("facing ratio", "fresnel", "incidence", "falloff", "layer weight", "rim", "silhouette")
+
     proxy_notes = (ProxyNote(("facing",), "it weighs the next pixels, which are farther away in a proxy"),)
 
     normal = Vector(width=3, doc="Directions of surfaces.")

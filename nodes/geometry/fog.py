@@ -28,6 +28,10 @@ class Fog(Filter):
     one it is the depth. Distances are in units of the scene.
     """
 
+    aliases = (
+        "fog 3d", "depth fog", "mist", "haze", "atmosphere", "volume fog", "depth cue", "aerial perspective", "smoke",
+        "atmospherics", "depth haze",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()

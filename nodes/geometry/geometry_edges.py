@@ -16,6 +16,10 @@ class GeometryEdges(Filter):
     1 - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run along seams between pixels.
     """
 
+    aliases = (
+        "edges from depth", "crease", "wireframe", "depth edges", "normal edges", "outline", "line art", "toon outline",
+    )  # fmt: skip
+
     proxy_notes = (
         ProxyNote(("border", "crease", "gap"), "its lines are one or two pixels wide at any size", "look"),
         ProxyNote(("edges",), "its lines are narrower than two pixels of the proxy, and fainter for that", "look"),

@@ -17,6 +17,11 @@ class IdMask(Filter):
     For passes of one number per pixel, such as object and material index. Cryptomatte does the same with soft edges.
     """
 
+    aliases = (
+        "id matte", "object id", "material id", "object mask", "index matte", "object index", "material index",
+        "multimatte", "puzzle matte",
+    )  # fmt: skip
+
     proxy_notes = (
         ProxyNote(("colors",), "strong colors meet at hard edges, which are those of single pixels in a proxy"),
     )

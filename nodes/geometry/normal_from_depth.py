@@ -13,6 +13,8 @@ class NormalFromDepth(Filter):
     0 in its hollows. Where there is nothing, both are 0.
     """
 
+    aliases = ("normals", "create normals", "depth to normal", "normal map", "surface normal")
+
     proxy_notes = (ProxyNote(("curvature", "normal"), "it weighs the next pixels, which are farther away in a proxy"),)
 
     depth = Field(doc="Planar distance along the way the camera looks.")

@@ -8,6 +8,11 @@ class PositionFromDepth(Filter):
     renderers write it.
     """
 
+    aliases = (
+        "world position", "depth to position", "position pass", "depth to points", "p world", "unproject", "world pos",
+        "reconstruct position", "points",
+    )  # fmt: skip
+
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
 

@@ -11,6 +11,11 @@ class RebuildBeauty(Filter):
     colored already. With the render itself as beauty, it says how far the sum is off.
     """
 
+    aliases = (
+        "beauty rebuild", "combine passes", "back to beauty", "light groups", "aov rebuild", "sum passes",
+        "relight passes", "light mixer",
+    )  # fmt: skip
+
     beauty = Image(0.0, doc="The render, to compare with and for its alpha.")
     diffuse_color = Image(1.0)
     diffuse_direct = Image(0.0)

@@ -26,6 +26,8 @@ class RimLight(Filter):
     It is added on what the mask and the picture's alpha cover.
     """
 
+    aliases = ("rim", "back light", "edge light", "fresnel light", "light wrap", "kicker")
+
     proxy_notes = (ProxyNote(("out", "rim"), "it weighs the next pixels, which are farther away in a proxy"),)
 
     image = Image()

@@ -39,6 +39,10 @@ class Bloom(Filter):
     firefly filter the glow is linear and loses no light. Alpha is kept.
     """
 
+    aliases = (
+        "glow", "soft glow", "glare", "fog glow", "halation", "exponential glow", "diffusion", "optical glow", "halo",
+        "deep glow", "light bloom", "dreamy", "shine",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()

@@ -13,6 +13,10 @@ class BrightPass(Pointwise):
     arrives, that is premultiplied; alpha is kept.
     """
 
+    aliases = (
+        "threshold", "highlights", "highlight extract", "extract", "high pass", "luminance threshold",
+        "isolate highlights",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS, Trait.USES_ALPHA)
 
     image = Image()

@@ -23,6 +23,7 @@ class EyeGlare(Filter):
     alone. Alpha is kept.
     """
 
+    aliases = ("glare", "starburst", "veiling glare", "temporal glare", "lens glare", "eyelashes")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (
         ProxyNote(("glow",), "what scatters within a pixel counts as sharp, and pixels of a proxy are larger", "look"),

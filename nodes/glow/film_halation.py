@@ -41,6 +41,7 @@ class FilmHalation(Filter):
     halo alone. Alpha is kept.
     """
 
+    aliases = ("halation", "red glow", "film glow")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()

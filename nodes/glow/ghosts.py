@@ -36,6 +36,10 @@ class Ghosts(Filter):
     `glow` is the flare alone. Alpha is kept.
     """
 
+    aliases = (
+        "lens flare", "flare", "hot spot", "lens ghosts", "optical flares", "sun flare", "lens reflection",
+        "lens reflections",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (
         ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),

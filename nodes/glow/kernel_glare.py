@@ -42,6 +42,10 @@ class KernelGlare(Filter):
     kept.
     """
 
+    aliases = (
+        "glare", "bokeh glare", "convolve", "image kernel", "convolution bloom", "starburst", "aperture glare",
+        "diffraction",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 

@@ -35,6 +35,10 @@ class Star(Filter):
     of a single pixel within 7 percent only. Alpha is kept.
     """
 
+    aliases = (
+        "star glow", "glint", "starburst", "cross filter", "star filter", "sparkles", "star burst", "twinkle",
+        "simple star", "highlight", "lens flare",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 

@@ -26,6 +26,10 @@ class Streaks(Filter):
     an arm by about a pixel. Two arms at 0 degrees are an anamorphic lens. Alpha is kept.
     """
 
+    aliases = (
+        "anamorphic flare", "glint", "light streaks", "blue streak", "horizontal flare", "lens flare", "highlight",
+        "anamorphic streak", "light sweep",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
 

@@ -36,6 +36,10 @@ class SunBeams(Filter):
     the beams alone. Alpha is kept.
     """
 
+    aliases = (
+        "god rays", "godrays", "light rays", "rays", "cc light rays", "volume rays", "volumetric light",
+        "crepuscular rays", "shine", "cc light burst", "light burst", "radial rays", "sunbeams",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
     proxy_notes = (
         ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),

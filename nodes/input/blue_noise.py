@@ -10,6 +10,8 @@ class BlueNoise(Pointwise):
     other. Next to nothing of it is left in low frequencies.
     """
 
+    aliases = ("white noise", "dither pattern", "random", "noise pattern", "noise")
+
     proxy_notes = (ProxyNote(("out", "value", "vector"), "every pixel is another number", "look"),)
 
     size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a cell, at least one pixel.")] = 1.0

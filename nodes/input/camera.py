@@ -13,6 +13,8 @@ class Camera(Filter):
     The field of view is `2 atan(sensor / (2 focal))` across the picture. Depth grows along the way it looks.
     """
 
+    aliases = ("camera 3d", "lens", "projection", "view", "camera3d")
+
     eye: Annotated[Place, Doc("Where it stands.")] = (0.0, -5.0, 1.5)
     target: Annotated[Place, Doc("What it looks at.")] = (0.0, 0.0, 1.0)
     focal: Annotated[

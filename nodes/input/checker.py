@@ -6,6 +6,11 @@ from .._declare import RGBA, Doc, Field, Image, OutputSocket, Pointwise, Slider
 class Checker(Pointwise):
     """A checkerboard."""
 
+    aliases = (
+        "checkerboard", "checker texture", "checker board", "test pattern", "color bars", "uv grid", "grid", "brick",
+        "test card",
+    )  # fmt: skip
+
     size: Annotated[float, Slider(1.0, 256.0, unit="px", minimum=0.01, doc="Side of a square.")] = 32.0
     first: Annotated[RGBA, Doc("The color of the square at the offset, premultiplied.")] = (0.05, 0.05, 0.05, 1.0)
     second: Annotated[RGBA, Doc("The color of its neighbors, premultiplied.")] = (0.5, 0.5, 0.5, 1.0)

@@ -10,6 +10,8 @@ class CurlNoise(Pointwise):
     taken exactly. The stream function is simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm).
     """
 
+    aliases = ("flow field", "turbulence", "vector noise", "swirl noise", "flow")
+
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest eddies.")] = 128.0
     octaves: Annotated[
         int, Slider(1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before.")

@@ -11,6 +11,11 @@ class Noise(Pointwise):
     (Quilez, 2002). They are divided by the sum of their strengths: every output keeps its range whatever the values.
     """
 
+    aliases = (
+        "fractal noise", "perlin", "fast noise", "clouds", "turbulent noise", "plasma", "fbm", "noise texture",
+        "simplex", "turbulence", "cloud", "fractal", "musgrave", "gabor", "magic texture", "smoke",
+    )  # fmt: skip
+
     kind: Annotated[
         Literal["gradient", "value", "white", "simplex"],
         Doc(

@@ -6,6 +6,11 @@ from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwis
 class Ramp(Pointwise):
     """A gradient between two colors: along a line, around a point outward, or as a clock hand sweeps."""
 
+    aliases = (
+        "gradient", "gradient ramp", "gradient texture", "linear gradient", "radial", "radial gradient",
+        "4-color gradient", "color wheel", "four color gradient", "blend texture", "background", "vertical gradient",
+    )  # fmt: skip
+
     shape: Annotated[
         Literal["linear", "radial", "angular"],
         Doc(

@@ -12,6 +12,11 @@ class ReadImage(Reader):
     (`Depth`, `Depth.Z`, `ViewLayer.Combined`).
     """
 
+    aliases = (
+        "read", "load", "loader", "image", "open", "import", "file", "footage", "input", "media", "image sequence",
+        "movie", "movie clip", "video", "picture", "plate", "texture file", "media in",
+    )  # fmt: skip
+
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""
     layer: Annotated[str, Doc("Name of the layer; empty for the file's first color layer.")] = ""
     color_space: Annotated[

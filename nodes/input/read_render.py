@@ -43,6 +43,11 @@ class ReadRender(Reader):
     is solved from positions, or named by the header. Where a guess is wrong, name the layer or the convention.
     """
 
+    aliases = (
+        "render layers", "read", "load", "loader", "exr", "multilayer exr", "aov", "passes", "render passes",
+        "extractor", "3d channel extract", "import render", "g-buffer", "gbuffer", "open exr", "view layer",
+    )  # fmt: skip
+
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
     color_layer: Annotated[str, OfLayer("beauty"), Doc(f"The layer of the picture; {_FOUND}.")] = ""
     albedo_layer: Annotated[str, OfLayer("albedo"), Doc(f"The layer of the surfaces' own color; {_FOUND}.")] = ""

@@ -38,6 +38,11 @@ class Scene(Source):
     sampled in their middle, so edges are hard and data is exact; with jitter, elsewhere in each frame (Halton 1960).
     """
 
+    aliases = (
+        "3d scene", "mesh", "geometry", "obj", "gltf", "fbx", "read geo", "3d", "model", "scanline render",
+        "renderer 3d", "import 3d", "shape 3d", "card", "cube", "sphere",
+    )  # fmt: skip
+
     scene: Annotated[
         Literal["stage", "corner", "blocks", "file"],
         Doc("A still life, a corner of a room, a town, or the meshes of a file."),

@@ -11,6 +11,8 @@ class SolveCamera(Reader):
     FILE` says how many pixels it is off.
     """
 
+    aliases = ("camera from position", "match camera", "camera solve", "camera tracker", "extract camera")
+
     path: Annotated[RenderPath, Doc("A render with a position layer, or with a camera in its header.")] = ""
 
     camera = OutputSocket(CameraSocket())

@@ -11,6 +11,10 @@ class Worley(Pointwise):
     Olano 2020), the same on every device.
     """
 
+    aliases = (
+        "voronoi", "voronoi texture", "cell pattern", "cellular", "cells", "cell noise", "cells noise", "mosaic cells",
+    )  # fmt: skip
+
     proxy_notes = (ProxyNote(("cell",), "its pattern is as fine as pixels of the proxy"),)
 
     feature: Annotated[

@@ -44,6 +44,10 @@ class DepthOfField(Filter):
     below 0 nearer than the focus.
     """
 
+    aliases = (
+        "dof", "defocus", "z defocus", "zdefocus", "z blur", "zblur", "bokeh", "bokeh blur", "camera lens blur",
+        "lens blur", "depth blur", "focus", "rack focus", "focal blur", "frischluft",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()

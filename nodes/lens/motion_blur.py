@@ -13,6 +13,10 @@ class MotionBlur(Filter):
     0 and nothing passes by, pixels stay as they are.
     """
 
+    aliases = (
+        "vector blur", "vector motion blur", "pixel motion blur", "force motion blur", "rsmb", "shutter", "motionblur",
+        "cc force motion blur", "motion blur 3d", "reelsmart",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()

@@ -29,6 +29,10 @@ class AmbientOcclusion(Filter):
     et al. 2011). `out` is the same as a picture, tinted by light that bounces between walls of the albedo.
     """
 
+    aliases = (
+        "ssao", "ao", "hbao", "gtao", "occlusion", "screen space ambient occlusion", "contact occlusion", "dirt", "sao",
+    )  # fmt: skip
+
     proxy_notes = (
         ProxyNote(
             ("bent_normal", "occlusion"),

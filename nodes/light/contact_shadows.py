@@ -31,6 +31,8 @@ class ContactShadows(Filter):
     in the picture throws no shadow.
     """
 
+    aliases = ("screen space shadows", "drop shadow", "shadow", "shadows", "contact shadow", "ray shadows")
+
     proxy_notes = (
         ProxyNote(
             ("shadow",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"

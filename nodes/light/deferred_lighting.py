@@ -89,6 +89,10 @@ class DeferredLighting(Filter):
     emission.
     """
 
+    aliases = (
+        "relight", "lights", "lighting", "light", "shader", "deferred shading", "point light", "spot light",
+        "relighting", "normal light", "normality",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")

@@ -32,6 +32,8 @@ class DirectionalOcclusion(Filter):
     kept.
     """
 
+    aliases = ("ssdo", "bent normal", "color bleeding", "directional ambient occlusion", "indirect light")
+
     proxy_notes = (
         ProxyNote(
             ("light",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"

@@ -43,6 +43,10 @@ class ImageBasedLight(Filter):
     Nothing blocks the light: link an ambient occlusion. Where there is no normal, nothing is lit.
     """
 
+    aliases = (
+        "ibl", "hdri", "environment light", "sky light", "environment", "env light", "skylight", "hdr light",
+        "dome light", "reflection map", "spherical harmonics",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     normal = Vector(width=3, doc="In the world.")

@@ -18,6 +18,10 @@ class LightShafts(Filter):
     haze scatters forward as in Henyey and Greenstein 1941. The picture is not dimmed: Fog does that.
     """
 
+    aliases = (
+        "god rays", "godrays", "volumetric light", "volume rays", "light rays", "crepuscular rays", "volumetrics",
+        "light beams", "sun shafts", "cc light rays", "volumetric shadows",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()

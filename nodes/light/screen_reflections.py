@@ -33,6 +33,10 @@ class ScreenReflections(Filter):
     Schlick's (1994) Fresnel. What is not in the picture cannot be mirrored: there, the surface stays as it is.
     """
 
+    aliases = (
+        "ssr", "screen space reflections", "reflection", "reflections", "wet floor", "mirror floor",
+        "ray traced reflections",
+    )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
     proxy_notes = (
         ProxyNote(

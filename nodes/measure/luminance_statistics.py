@@ -11,6 +11,11 @@ class LuminanceStatistics(Filter):
     drive any value. The logarithmic average is exp(mean(ln(delta + L))) (Reinhard et al. 2002).
     """
 
+    aliases = (
+        "levels", "histogram", "sampler", "curve tool", "average", "mean", "min max color", "measure", "analyze",
+        "image stats", "statistics", "auto levels", "min color", "normalize",
+    )  # fmt: skip
+
     image = Image()
     delta: Annotated[
         float,

@@ -37,6 +37,12 @@ Operation = Literal[
 class Math(Pointwise):
     """Arithmetic with Fields and Numbers. What has no result (a division by 0, a root of less than 0) is 0."""
 
+    aliases = (
+        "multiply", "add", "subtract", "divide", "expression", "calculate", "arithmetic", "calculations", "vector math",
+        "merge expression", "maths", "power", "min", "max", "modulo", "compound arithmetic", "absolute", "compare",
+        "sine", "clamp", "custom tool",
+    )  # fmt: skip
+
     a = Field(0.0)
     operation: Annotated[
         Operation,

@@ -43,6 +43,12 @@ class Merge(Pointwise):
     comment beside each says how).
     """
 
+    aliases = (
+        "over", "composite", "alpha over", "blend", "layer", "mix", "comp", "a over b", "blend mode", "blending mode",
+        "layers", "channel merge", "transfer mode", "set matte", "z combine", "zmerge", "mix color", "apply mode",
+        "alpha matte", "track matte", "solid composite", "screen",
+    )  # fmt: skip
+
     a = Image(doc="The foreground.")
     b = Image(doc="The background.")
     mask = Field(1.0, doc="Where the result is seen; elsewhere the background stays.")

@@ -12,6 +12,10 @@ class FilmGrain(Pointwise):
     stays, divided by the average of that. Pixels that hold several clumps average them (Selwyn, 1935).
     """
 
+    aliases = (
+        "grain", "add grain", "noise", "film noise", "scanned grain", "match grain", "iso noise", "film stock",
+        "noise hls", "add noise", "sensor noise",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
     proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 

@@ -11,6 +11,11 @@ class Halftone(Pointwise):
     printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
     """
 
+    aliases = (
+        "dot screen", "newspaper", "print", "comic dots", "ben day", "color halftone", "raster", "screen print",
+        "half tone",
+    )  # fmt: skip
+
     proxy_notes = (ProxyNote(("out",), "its pattern is as fine as pixels of the proxy"),)
 
     image = Image()

@@ -13,6 +13,11 @@ class Kuwahara(Filter):
     display shows them (sRGB), straight and clipped nowhere.
     """
 
+    aliases = (
+        "oil paint", "painterly", "watercolor", "paint", "anisotropic kuwahara", "brush strokes", "painting", "stylize",
+        "artistic",
+    )  # fmt: skip
+
     image = Image()
     kind: Annotated[
         Literal["anisotropic", "generalized", "classic"],

@@ -11,6 +11,8 @@ class Oil(Filter):
     color of the fullest step is shown, of equally full ones that of the darkest (Holzmann 1988, "Beyond Photography").
     """
 
+    aliases = ("oil paint", "painting", "brush strokes", "painterly", "paint", "oil painting", "impressionist")
+
     proxy_notes = (ProxyNote(("out",), "the tone that is most frequent is one of fewer"),)
 
     image = Image()

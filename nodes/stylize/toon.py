@@ -11,6 +11,8 @@ class Toon(Pointwise):
     steps; brighter light has steps of its own. Works on the color without its alpha.
     """
 
+    aliases = ("cartoon", "cel shading", "cel shader", "anime", "comic", "toon shader", "cell shading")
+
     image = Image()
     levels: Annotated[
         float, Slider(2.0, 16.0, unit="count", minimum=2.0, maximum=1024.0, doc="How many steps from black to white.")

@@ -11,6 +11,10 @@ class TvSnow(Pointwise):
     and not with light. Works on the color without its alpha; alpha stays.
     """
 
+    aliases = (
+        "static", "tv static", "noise", "white noise", "no signal", "tv", "tv noise", "interference", "analog noise",
+    )  # fmt: skip
+
     image = Image()
     amount: Annotated[Fraction, Doc("How much of the picture is lost; 1 leaves nothing but snow.")] = 0.35
     mode: Annotated[

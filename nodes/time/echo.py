@@ -12,6 +12,11 @@ class Echo(Filter):
     black. Average keeps the exposure: all are added and divided by the sum of their weights.
     """
 
+    aliases = (
+        "time echo", "trails", "motion trail", "ghosting", "frame echo", "cc wide time", "wide time", "repeat frames",
+        "strobe", "after image",
+    )  # fmt: skip
+
     image = Image()
     echoes: Annotated[int, Slider(0, 12, unit="count", minimum=0, maximum=127, doc="How many frames besides this.")] = 4
     spacing: Annotated[

@@ -13,6 +13,7 @@ class EyeAdaptation(Temporal):
     (Krawczyk et al. 2005). Before the first frame, the eye was used to that.
     """
 
+    aliases = ("auto exposure", "adaptation", "auto gain", "hdr adaptation", "eye adaption")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
     proxy_notes = (ProxyNote(("out",), "it measures the logarithm of light, which of averages is more"),)
 

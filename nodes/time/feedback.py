@@ -16,6 +16,11 @@ class Feedback(Temporal):
     first frame, the screen showed that.
     """
 
+    aliases = (
+        "trails", "video feedback", "recursion", "previous frame", "loop", "feedback loop", "tunnel", "infinite zoom",
+        "image loop",
+    )  # fmt: skip
+
     image = Image()
     position: Annotated[
         tuple[float, float], Slider(-50.0, 50.0, unit="px", doc="How far the past moves each frame, right and down.")

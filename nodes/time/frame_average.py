@@ -19,6 +19,12 @@ class FrameAverage(Filter):
     played N times as fast, has the motion blur of a whole frame.
     """
 
+    aliases = (
+        "temporal denoise", "denoise", "temporal median", "average frames", "time average", "reduce noise",
+        "remove noise", "noise reduction", "long exposure", "temporal blur", "time blur", "reduce grain",
+        "remove grain", "median time",
+    )  # fmt: skip
+
     image = Image()
     frames: Annotated[int, Slider(1, 16, unit="count", minimum=1, maximum=128, doc="How many frames.")] = 5
     weights: Annotated[Shape, Doc("How much the frames count.")] = "box"

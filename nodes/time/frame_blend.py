@@ -12,6 +12,11 @@ class FrameBlend(Temporal):
     lost, and trails never fade out.
     """
 
+    aliases = (
+        "blend frames", "time blur", "frame mix", "shutter", "motion blur by frames", "cc force motion blur",
+        "frame blending",
+    )  # fmt: skip
+
     image = Image()
     mode: Annotated[Literal["time", "persistence"], Doc("What says how fast the past fades.")] = "time"
     time: Annotated[

@@ -10,6 +10,10 @@ class Freeze(Filter):
     All that changes over time upstream stands still.
     """
 
+    aliases = (
+        "frame hold", "framehold", "freeze frame", "hold frame", "still", "hold", "posterize time", "stop",
+        "time freeze",
+    )  # fmt: skip
     traits = (Trait.KEEPS_NON_FINITE,)
 
     image = Image((0.0, 0.0, 0.0, 0.0))

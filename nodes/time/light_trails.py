@@ -12,6 +12,10 @@ class LightTrails(Temporal):
     any frame rate. The picture is seen wherever it is brighter. The trail is kept in 32 bits.
     """
 
+    aliases = (
+        "trails", "light painting", "light streaks", "long exposure", "car lights", "particle trails", "max trails",
+    )  # fmt: skip
+
     image = Image()
     fade: Annotated[
         Literal["time", "never"],

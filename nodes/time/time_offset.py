@@ -10,6 +10,10 @@ class TimeOffset(Filter):
     All that changes over time upstream is seen then: sequences, keys, expressions, noise, what moves in a scene.
     """
 
+    aliases = (
+        "shift time", "slip", "delay", "offset", "time shift", "frame offset", "slip clip", "frame delay",
+        "append clip", "time stretch offset",
+    )  # fmt: skip
     traits = (Trait.KEEPS_NON_FINITE,)
 
     image = Image((0.0, 0.0, 0.0, 0.0))

@@ -12,6 +12,11 @@ class TimeSpeed(Filter):
     all frames before; key `source` instead, as in a time remap: the steeper its curve, the faster.
     """
 
+    aliases = (
+        "retime", "time warp", "timewarp", "time stretch", "time stretcher", "speed", "slow motion", "fast forward",
+        "time remap", "time remapping", "reverse", "kronos", "oflow", "optical flow", "frame rate", "posterize time",
+        "time curve", "time lapse", "speed ramp", "frame range",
+    )  # fmt: skip
     traits = (Trait.KEEPS_NON_FINITE,)
 
     image = Image((0.0, 0.0, 0.0, 0.0))

@@ -35,6 +35,10 @@ class AutoExposure(Filter):
     their alpha; NaN does not count. `exposure` is in stops, `average` the luminance metered.
     """
 
+    aliases = (
+        "auto gain", "auto levels", "automatic exposure", "normalize", "auto brightness", "auto contrast",
+        "exposure normalize", "metering", "match exposure",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()

@@ -18,6 +18,10 @@ class LocalToneMap(Filter):
     plain sRGB (view `none`), not through another view transform. Works on the color without its alpha.
     """
 
+    aliases = (
+        "shadow highlight", "shadows highlights", "shadow and highlight", "hdr toning", "local contrast", "clarity",
+        "dodge and burn", "hdr compander", "local adaptation", "dynamic range compression", "detail",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
     proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
 

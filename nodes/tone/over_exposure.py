@@ -12,6 +12,7 @@ class OverExposure(Pointwise):
     Works on the color without its alpha.
     """
 
+    aliases = ("blown highlights", "burn out", "highlight clipping", "blow out", "highlight rolloff")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()

@@ -11,6 +11,7 @@ class PhotoreceptorToneMap(Filter):
     sRGB (view `none`), not through another view transform. Works on the color without its alpha.
     """
 
+    aliases = ("reinhard", "tone map", "tonemap", "rd photoreceptor", "hdr", "photoreceptor")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
     proxy_notes = (ProxyNote(("out",), "it measures the darkest and the brightest pixel, which a proxy averages away"),)
 

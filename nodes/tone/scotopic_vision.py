@@ -19,6 +19,7 @@ class ScotopicVision(Filter):
     degree, as far as it is below that of daylight. The picture is not darkened: take its exposure down as you like.
     """
 
+    aliases = ("night vision", "day for night", "moonlight", "purkinje", "night", "rod vision", "moon light")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()

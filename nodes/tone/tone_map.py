@@ -18,6 +18,11 @@ class ToneMap(Pointwise):
     Turismo); AgX by Troy Sobotka, Rec.2020 version by Eary Chow; Khronos PBR Neutral 2024.
     """
 
+    aliases = (
+        "tonemap", "filmic", "aces", "agx", "hdr to ldr", "tone mapping", "view transform", "reinhard", "compress",
+        "soft clip", "hdr", "film curve", "hdr highlight compression", "hdr compander", "toe", "hable", "tonemapping",
+        "highlight rolloff", "roll-off", "print film",
+    )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
 
     image = Image()

@@ -241,3 +241,19 @@ def test_a_picture_is_opened_in_a_new_graph_with_a_reader(gui, shot: Path) -> No
         assert "start" not in ui.editor.dialogs.open
 
     gui(body, shot.with_name("render.exr"))
+
+
+def test_a_merge_mode_is_added_by_its_name(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.dialogs.open.clear()
+        ui.settled()
+        ui.move("Graph", (0.5, 0.4))
+        ui.keys("Tab")
+        ui.wait(3)
+        type_keys(ui, "linear dodge")
+        ui.keys("Enter")
+        ui.wait(3)
+        assert ui.session.graph.nodes["merge"].mode == "plus"
+        assert ui.session.history.steps == ("Add merge",)
+
+    gui(body, size=(1366, 768))

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from halation.nodes import Node
+from halation.nodes import Node, Plain
 
 from ...custom_nodes.plugins import preset_paths
 from ...document import load
@@ -29,16 +29,18 @@ ABOVE = 380.0
 class AddNode(EditCommand[str]):
     """Add a node of a type at canvas position `at`, and select it; gives its id.
 
-    With `link`, a source if `output` else a target, it is linked by the first socket that fits.
+    With `link`, a source if `output` else a target, it is linked by the first socket that fits. `values` are those that
+    differ from the defaults.
     """
 
     type_id: str
     at: Place = (0.0, 0.0)
     link: Port | None = None
     output: bool = True
+    values: Sequence[tuple[str, Plain]] = ()
 
     def apply(self, document: OpenDocument) -> Edited[str]:
-        item = make_node(document, self.type_id)
+        item = make_node(document, self.type_id).with_values(**dict(self.values))
         return add_item(document, type_stem(self.type_id), item, self.at, self.link, self.output)
 
 

@@ -38,6 +38,7 @@ from ..shared.entries import (
     code_entries,
     graph_entries,
     keep_fitting,
+    mode_entries,
     node_entries,
     preset_entries,
     shader_entries,
@@ -74,6 +75,7 @@ class NodeSearch:
     """True while a search for the shader files of this machine runs; its shaders are added at the end."""
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
+    _arranged: tuple[object, tuple[Section, ...]] = ((), ())
     _groups: GroupFiles = field(default_factory=GroupFiles)
 
     @cached_property
@@ -84,7 +86,7 @@ class NodeSearch:
         """Open the search at a canvas position; with a port, for nodes that can be linked with it."""
         session = self.context.session
         self._replaced = ""
-        nodes = node_entries(session.types)
+        nodes = (*node_entries(session.types), *mode_entries(session.types))
         if port is None:
             self._link, self._entries = None, (*nodes, *self._fixed)
         else:
@@ -160,7 +162,7 @@ class NodeSearch:
         record(self.context, "search field")
         if self._query != before:
             self._marked = 0
-        sections = arrange_entries(self._entries, self._query, self._recent)
+        sections = self._arrange()
         lines = [entry for section in sections for entry in section.entries]
         moved = _read_arrows()
         self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
@@ -171,6 +173,13 @@ class NodeSearch:
         imgui.end_child()
         self._draw_footer(lines)
         return lines[self._marked] if lines and is_enter_pressed() else chosen
+
+    def _arrange(self) -> tuple[Section, ...]:
+        """The list for the query; the same one as in the last frame if nothing has changed."""
+        inputs = self._entries, self._query, tuple(self._recent)
+        if self._arranged[0] != inputs:
+            self._arranged = inputs, arrange_entries(*inputs)
+        return self._arranged[1]
 
     def _draw_list(self, sections: tuple[Section, ...], follow: bool) -> CatalogEntry | None:
         chosen, index = None, 0
@@ -227,8 +236,12 @@ class NodeSearch:
             # The socket that takes the link lies near the pointer, not the node's corner.
             at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
         if entry.category != GRAPH or entry.kind == SHADER:
-            add = AddCodeFile if entry.kind == SHADER else AddGroupFile if entry.category == GROUP else AddNode
-            addition = add(entry.id, at, port, output)
+            if entry.kind == SHADER:
+                addition = AddCodeFile(entry.id, at, port, output)
+            elif entry.category == GROUP:
+                addition = AddGroupFile(entry.id, at, port, output)
+            else:
+                addition = AddNode(entry.id, at, port, output, entry.values)
             canvas = self.context.canvas
             id = session.apply(addition if port is not None else AppendNode(addition, canvas.sizes))
             canvas.reveal((ElementId(id),))

@@ -2,17 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 
-from halation.nodes import Kind, Node
+from halation.nodes import Kind, Node, Plain
 
 from ...authoring.background.shader_files import ShaderFile
 from ...authoring.edits.coding import CODE, make_starter_node
 from .fuzzy import match
 
 GROUP, GRAPH, SHADER = "group", "graph", "code"
+MERGE = "merge"
+
+_MODE_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        "over": ("alpha over", "normal", "a over b", "source over", "blend over"),
+        "under": ("behind", "destination over", "b over a"),
+        "in": ("mask by alpha", "inside", "held in", "stencil alpha", "source in"),
+        "out": ("held out", "holdout", "outside", "silhouette alpha", "source out", "cutout"),
+        "atop": ("source atop", "on top of"),
+        "xor": ("exclusive or", "non-overlapping"),
+        "clear": ("none", "erase"),
+        "plus": ("add", "linear dodge", "additive", "additive dissolve", "linear dodge add", "sum", "lighten add"),
+        "multiply": ("mult", "times", "product"),
+        "screen": ("negative multiply",),
+        "soft light": ("softlight",),
+        "hard light": ("hardlight", "vivid light", "linear light"),
+        "color dodge": ("dodge", "colour dodge"),
+        "color burn": ("burn", "colour burn", "linear burn"),
+        "darken": ("min", "minimum", "darker color", "darken only"),
+        "lighten": ("max", "maximum", "lighter color", "lighten only"),
+        "difference": ("absminus", "abs minus", "absolute difference"),
+        "exclusion": ("exclude",),
+        "subtract": ("minus", "from", "linear subtract"),
+        "divide": ("by",),
+        "hypot": ("diagonal",),
+        "average": ("mean", "half and half"),
+        "luminosity": ("luminance blend", "value"),
+    }
+)
+"""What other programs call a mode of the merge node."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +58,20 @@ class CatalogEntry:
     doc: str = ""
     kind: str = ""
     """The category whose color it has, if not its own."""
+    aliases: tuple[str, ...] = ()
+    """What other programs call it."""
+    values: tuple[tuple[str, Plain], ...] = ()
+    """Values of the new node that are not its defaults."""
+
+    @cached_property
+    def names(self) -> tuple[tuple[str, ...], ...]:
+        """The words of the title, then of what else it is called."""
+        return tuple(split_words(name) for name in (self.title, *self.aliases))
 
     @property
-    def searched(self) -> str:
-        """The text in which letters are looked for: the title counts most since it comes first."""
-        return f"{self.title}  {self.category}  {self.doc}"
+    def description(self) -> str:
+        """What is said of this entry alone: sentences that many entries share tell none from another."""
+        return f"{self.category} {self.doc}" if self.category not in (GROUP, GRAPH) else ""
 
 
 def spell_out(name: str) -> str:
@@ -40,8 +82,28 @@ def spell_out(name: str) -> str:
 def node_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
     """Every node type, in the order of the menu."""
     return tuple(
-        CatalogEntry(id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
+        CatalogEntry(
+            id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0], aliases=kind.aliases
+        )
         for id, kind in types.items()
+    )
+
+
+def mode_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
+    """Every way to merge: a merge node with that mode. Only a search lists them."""
+    kind = types.get(MERGE)
+    modes = kind.values["mode"].choices if kind is not None else ()
+    return tuple(
+        CatalogEntry(
+            MERGE,
+            mode,
+            kind.category,
+            f"Merge two pictures with the mode {mode}.",
+            aliases=(f"merge {mode}", f"{mode} blend", *_MODE_ALIASES.get(mode, ())),
+            values=(("mode", mode),),
+        )
+        for mode in modes
+        if kind is not None
     )
 
 
@@ -92,11 +154,8 @@ class Section:
 def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequence[str] = ()) -> tuple[Section, ...]:
     """What the list shows: the best matches of `query`, or without one the recent ones and then all by category."""
     if query.strip():
-        title_matches = match(query, [entry.title for entry in entries])
-        named = [entries[hit.index] for hit in title_matches]
-        described = [entries[hit.index] for hit in match(query, [entry.searched for entry in entries])]
-        rest = [entry for entry in described if entry not in named and _says(entry, query)]
-        return (Section("", (*named, *rest)),)
+        return (Section("", rank_entries(entries, query)),)
+    entries = [entry for entry in entries if not entry.values]
     by_id = {entry.id: entry for entry in entries}
     last = tuple(by_id[id] for id in recent if id in by_id)
     groups: dict[str, list[CatalogEntry]] = {}
@@ -112,7 +171,54 @@ def keep_fitting(entries: Collection[CatalogEntry], fitting: Collection[str]) ->
     return tuple(entry for entry in entries if entry.id in fitting_ids)
 
 
-def _says(entry: CatalogEntry, query: str) -> bool:
-    """True if every word of the query stands in the category or description as it was typed."""
-    text = entry.searched.lower()
-    return all(word in text for word in query.lower().split())
+def rank_entries(entries: Sequence[CatalogEntry], query: str) -> tuple[CatalogEntry, ...]:
+    """The entries that a query finds, best first.
+
+    The better a name fits, the earlier its entry stands: the whole name, its beginning, beginnings of its words; then
+    the same of what other programs call it; then names with these letters in order, then descriptions with these
+    words. Presets come behind all nodes whose name fits, unless the query is their whole name.
+    """
+    words = split_words(query)
+    letters = {hit.index: hit.score for hit in match(query, [entry.title for entry in entries])}
+    ranked: list[tuple[tuple[float, ...], CatalogEntry]] = []
+    for index, entry in enumerate(entries):
+        fit = min(_measure_fit(words, name, place > 0) for place, name in enumerate(entry.names))
+        if fit == _NONE:
+            fit = _LETTERS if index in letters else _DESCRIBED if _says(entry, words) else _NONE
+        if fit != _NONE:
+            order = 2 if entry.category in (GROUP, GRAPH) else 1 if entry.values else 0
+            stands_back = order == 2 and fit != _WHOLE and fit < _LETTERS
+            key = (_BEHIND_NODES if stands_back else fit, fit, order, -letters.get(index, 0.0), index)
+            ranked.append((key, entry))
+    return tuple(entry for _, entry in sorted(ranked, key=lambda pair: pair[0]))
+
+
+def split_words(text: str) -> tuple[str, ...]:
+    """The words of a name in lower case, without signs; capitals begin a word: `TimeWarp` is two."""
+    spaced = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", text)
+    return tuple(re.findall(r"[a-z0-9]+", spaced.lower()))
+
+
+_WHOLE, _WHOLE_ALIAS, _START, _WORDS, _START_ALIAS, _WORDS_ALIAS = 0.0, 1.0, 2.0, 3.0, 4.0, 5.0
+_BEHIND_NODES, _LETTERS, _DESCRIBED, _NONE = 6.0, 7.0, 8.0, 9.0
+"""How a query fits a name, best first."""
+
+
+def _measure_fit(words: tuple[str, ...], name: tuple[str, ...], is_alias: bool) -> float:
+    """How well a query fits one name; small is good."""
+    typed, text = "".join(words), "".join(name)
+    if not typed:
+        return _NONE
+    if typed == text:
+        return _WHOLE_ALIAS if is_alias else _WHOLE
+    if text.startswith(typed) and name[0].startswith(words[0]):
+        return _START_ALIAS if is_alias else _START
+    if all(any(part.startswith(word) for part in name) for word in words):
+        return _WORDS_ALIAS if is_alias else _WORDS
+    return _NONE
+
+
+def _says(entry: CatalogEntry, words: tuple[str, ...]) -> bool:
+    """True if every word of the query begins a word of the category or description."""
+    text = split_words(entry.description)
+    return bool(words) and all(any(part.startswith(word) for part in text) for word in words)

@@ -33,7 +33,9 @@ def desk(tmp_path: Path) -> Editor:
     """An editor whose pictures and files are left out."""
     store = PreferenceStore(tmp_path)
     none = cast(Any, None)
-    preview, recovery, watcher = (cast(Any, SimpleNamespace(fault="", faults={})) for _ in range(3))
+    preview, recovery, watcher = (
+        cast(Any, SimpleNamespace(fault="", faults={}, errors={}, find_rivals=str)) for _ in range(3)
+    )
     log = Log()
     actions = Actions(lambda: store.current.shortcuts, log)
     return Editor(
