@@ -9,10 +9,10 @@ _REACH = 25
 class Fxaa(Filter):
     """Smooth jagged edges of a finished picture, without any other layer: best after tone mapping.
 
-    FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper: where the tone changes, the ends of the edge's
-    step are searched along it, and the pixel is read from as far across the edge as the step has risen there. Nearer
-    than some 25 degrees to a diagonal it does less: SMAA knows those. The tone is the luminance as a display shows it
-    (sRGB), colors are mixed in linear light.
+    FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper. Where the tone changes, the two ends of the step
+    are searched along the edge, and the pixel is read from a place across the edge, farther away the nearer the end is.
+    Within about 25 degrees of a diagonal it does less; SMAA handles diagonals. The tone is the luminance as a display
+    shows it (sRGB); colors are mixed in linear light.
     """
 
     aliases = ("anti-aliasing", "antialias", "aa", "fast approximate anti-aliasing", "smooth edges", "jaggies")
@@ -42,7 +42,7 @@ class Fxaa(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The least contrast in the dark, from black to white 1.",
+            doc="The least contrast in dark areas; black to white is 1.",
         ),
     ] = 0.0833
 

@@ -9,9 +9,9 @@ _REACH = {"low": (8, 0), "medium": (16, 0), "high": (32, 8), "ultra": (64, 16)}
 class Smaa(Filter):
     """Smooth jagged edges of a finished picture and keep its fine detail and corners: best after tone mapping.
 
-    SMAA 1x (Jimenez et al. 2012): each stair of an edge is taken for a slanted line, and pixels are mixed by the areas
-    that the line cuts off them. Areas are exact, not from a table. Edges are steps of the tone as a display shows it
-    (sRGB), colors are mixed in linear light.
+    SMAA 1x (Jimenez et al. 2012): each stair of an edge is treated as a slanted line, and pixels are mixed by the areas
+    on both sides of the line. Areas are exact, not from a table. Edges are steps of the tone as a display shows it
+    (sRGB); colors are mixed in linear light.
     """
 
     aliases = ("anti-aliasing", "antialias", "aa", "morphological anti-aliasing", "smooth edges", "jaggies")
@@ -19,7 +19,7 @@ class Smaa(Filter):
     image = Image()
     quality: Annotated[
         Literal["low", "medium", "high", "ultra"],
-        Doc("How far the ends of an edge are searched: 8, 16, 32 or 64 pixels; high and ultra know diagonals too."),
+        Doc("How far the ends of an edge are searched: 8, 16, 32 or 64 pixels. High and ultra handle diagonals too."),
     ] = "high"
     detection: Annotated[
         Literal["luminance", "color"],
@@ -35,13 +35,13 @@ class Smaa(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The least step that is an edge; black to white is 1.",
+            doc="The least step that counts as an edge; black to white is 1.",
         ),
     ] = 0.1
     contrast: Annotated[
         float,
         Slider(
-            1.0, 8.0, unit="ratio", minimum=1.0, doc="An edge is overlooked beside one that is so many times as strong."
+            1.0, 8.0, unit="ratio", minimum=1.0, doc="An edge is ignored beside one that is this many times as strong."
         ),
     ] = 2.0
     corner_rounding: Annotated[Fraction, Doc("How much sharp corners are rounded: 0 keeps them.")] = 0.25

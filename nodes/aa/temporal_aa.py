@@ -5,12 +5,11 @@ from .._declare import Doc, Draw, Drawn, Field, Fraction, Image, Slider, Tempora
 
 
 class TemporalAa(Temporal):
-    """Smooth edges and fine detail with samples of many frames: for renders whose pixels are sampled elsewhere in each.
+    """Smooth edges and detail with samples of many frames: for renders with jittered samples.
 
-    What the picture became in the frame before is fetched from where every surface was (by its velocity, that of the
-    nearest of 3 x 3 pixels), and mixed with this frame. It is held within the mean and the
-    standard deviation of the 3 x 3 colors around, in YCoCg (Karis 2014, Salvi 2016): what is no longer there leaves no
-    ghost. See `jitter` of Scene.
+    The result of the previous frame is read where each surface was then (by its velocity, that of the nearest of 3 x 3
+    pixels), and mixed with this frame. It is limited to the mean and the standard deviation of the 3 x 3 colors around,
+    in YCoCg (Karis 2014, Salvi 2016), so that objects that are gone leave no ghosts. See `jitter` of Scene.
     """
 
     aliases = ("taa", "anti-aliasing", "temporal anti-aliasing", "supersampling")
@@ -20,12 +19,12 @@ class TemporalAa(Temporal):
         width=4,
         doc=("Pixels of the full-size picture, x right, y down: x and y from the frame before. The rest is not used."),
     )
-    depth = Field(0.0, doc="Says what is nearest, and what was hidden in the frame before.")
+    depth = Field(0.0, doc="Shows which surface is nearest, and which was hidden in the frame before.")
     share: Annotated[
         Fraction,
         Doc(
-            "How much this frame counts: little is smooth, much is quick to follow what changes. At least 0.25 where "
-            "things move by half a pixel."
+            "The weight of this frame: low is smooth, high follows changes quickly. At least 0.25 "
+            "where surfaces move by half a pixel."
         ),
     ] = 0.1
     gamma: Annotated[
@@ -36,19 +35,16 @@ class TemporalAa(Temporal):
             unit="ratio",
             minimum=0.0,
             maximum=100.0,
-            doc="How many standard deviations the past may be off: more is smoother, less leaves no ghosts.",
+            doc="How many standard deviations the past may differ: more is smoother, less leaves no ghosts.",
         ),
     ] = 1.0
     weigh_light: Annotated[
         bool,
-        Doc(
-            "Let a sample of a lamp count less the brighter it is, as 1 / (1 + luminance): edges of lights are "
-            "smooth too."
-        ),
+        Doc("Weight samples by 1 / (1 + luminance), so that edges of bright lights are smooth too."),
     ] = True
     kernel: Annotated[
         Literal["catmull-rom", "lanczos"],
-        Doc("How the past is read between pixels: Lanczos (3 lobes) keeps it sharper while things move."),
+        Doc("The interpolation of the past: Lanczos (3 lobes) keeps it sharper during motion."),
     ] = "lanczos"
     tolerance: Annotated[
         float,
@@ -58,7 +54,7 @@ class TemporalAa(Temporal):
             unit="ratio",
             minimum=0.0,
             maximum=1e6,
-            doc="With depth: what was nearer or farther by more than this part was something else.",
+            doc="With depth: a surface whose depth differs by more than this part is another surface.",
         ),
     ] = 0.1
 

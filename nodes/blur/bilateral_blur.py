@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
 
 
 class BilateralBlur(Filter):
-    """Smooth surfaces and noise while edges stay: neighbors of another color count less.
+    """Smooth surfaces and noise while edges stay: neighbors with another color have less weight.
 
     A neighbor's weight is `exp(-d^2 / (2 sigma^2) - c^2 / (2 sigma_range^2))`, d its distance in pixels and c that of
     its color (Tomasi and Manduchi 1998), within 1.5 sigma as in OpenCV. With a guide, that picture's colors are
@@ -21,11 +21,11 @@ class BilateralBlur(Filter):
     sigma: Annotated[
         float,
         Slider(
-            0.5, 12.0, unit="px", minimum=0.0, maximum=64.0, doc="How far it blurs. The cost grows with its square."
+            0.5, 12.0, unit="px", minimum=0.0, maximum=64.0, doc="Radius of the blur. The cost grows with its square."
         ),
     ] = 4.0
     sigma_range: Annotated[
-        float, Slider(0.01, 1.0, unit="scene", minimum=1e-6, doc="How different a color may be and still be mixed in.")
+        float, Slider(0.01, 1.0, unit="scene", minimum=1e-6, doc="How much a color may differ to be mixed in.")
     ] = 0.1
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

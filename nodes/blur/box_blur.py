@@ -11,10 +11,10 @@ _DIRECT = 64
 class BoxBlur(Filter):
     """Blur evenly with a box: hard-edged and fast at any radius. Repeated, it comes close to a Gaussian.
 
-    A box is 2 radius + 1 pixels wide; a radius between whole numbers counts its two end pixels in part. Wide boxes are
-    put together from blocks, with what sticks out taken off again: exact. Three boxes that reach over 70 pixels are
-    applied to a smaller picture, within 1e-3 of what a single pixel becomes. The cost hardly grows with the radius.
-    Three boxes: Wells 1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
+    A box is 2 radius + 1 pixels wide; with a fractional radius its two end pixels count in part. Wide boxes are sums of
+    blocks, minus the pixels outside of the box: exact. Three boxes with a reach over 70 pixels are applied to a smaller
+    picture: the spread of a single pixel is exact to 1e-3. The cost hardly grows with the radius. Three boxes: Wells
+    1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
     """
 
     aliases = ("fast box blur", "fast blur", "average blur", "mean filter")
@@ -25,9 +25,9 @@ class BoxBlur(Filter):
     kind: Annotated[
         Literal["box", "tent", "iterated"],
         Doc(
-            "Box weighs all pixels alike. Tent, two boxes of half the radius, falls off in straight lines. Iterated, "
-            "three "
-            "boxes of a third, is nearly a Gaussian whose sigma is a third of the radius."
+            "Box weights all pixels equally. Tent, two boxes of half the radius, falls off linearly. "
+            "Iterated, three boxes of a third, is nearly a Gaussian whose sigma is a third of the "
+            "radius."
         ),
     ] = "box"
     radius: Annotated[

@@ -25,7 +25,7 @@ class DirectionalBlur(Filter):
             unit="ratio",
             minimum=-16.0,
             maximum=16.0,
-            doc="0 spreads to both sides, 0.5 only where the line points, -0.5 only to the other side.",
+            doc="0 spreads to both sides, 0.5 only in the direction of the line, -0.5 only in the opposite one.",
         ),
     ] = 0.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

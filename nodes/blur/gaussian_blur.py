@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Trait
 
 
 class GaussianBlur(Filter):
-    """Blur with a Gaussian, alike in all directions or more across than down. The cost hardly grows with sigma.
+    """Blur with a Gaussian, equal in all directions or different across and down. The cost hardly grows with sigma.
 
     Within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, within 3e-4 (RMS) of it above.
     """
@@ -21,7 +21,7 @@ class GaussianBlur(Filter):
             unit="px",
             minimum=0.0,
             maximum=2000.0,
-            doc="Standard deviation; the visible reach is about thrice that.",
+            doc="Standard deviation; the visible reach is about three times that.",
         ),
     ] = 5.0
     scale: Annotated[

@@ -4,10 +4,10 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
 
 
 class Sharpen(Filter):
-    """Sharpen by an unsharp mask: what a Gaussian blur would take away is added once more.
+    """Sharpen by an unsharp mask: the detail that a Gaussian blur would remove is added once more.
 
-    `out = in + amount * detail`, where `detail = in - blur(in, sigma)` first loses the threshold from its size, so that
-    faint grain is not sharpened, and is cut at the limit, so that lamps do not get black halos. Alpha is kept.
+    `out = in + amount * detail`. `detail = in - blur(in, sigma)`, reduced by the threshold so that faint grain is not
+    sharpened, and limited so that lamps do not get black halos. Alpha is kept.
     """
 
     aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture")

@@ -14,17 +14,17 @@ _NOTHING = 0.1
 
 
 class VariableBlur(Filter):
-    """Blur by a mask: with the whole sigma where the field is 1, not at all where it is 0.
+    """Blur by a mask: with the full sigma where the field is 1, not at all where it is 0.
 
-    Every pixel shows its surroundings through a Gaussian of its own sigma, `sigma * field`. It is mixed from three of a
-    ladder of blurs, three to an octave: with the right variance, as near as can be in shape, and nowhere negative.
-    Within 1.5 percent (RMS) of that Gaussian even on white noise, and far closer on pictures.
+    Every pixel is blurred by a Gaussian with its own sigma, `sigma * field`. It is a mixture of three blurs of a ladder
+    with three steps per octave, with the right variance, the most similar shape, and no negative weights. It is within
+    1.5 percent (RMS) of that Gaussian even on white noise, and far closer on pictures.
     """
 
     aliases = ("vari blur", "compound blur", "blur by mask", "tilt shift", "channel blur", "masked blur", "lens blur")
 
     image = Image()
-    field = Field(1.0, doc="How much of sigma, 0..1.")
+    field = Field(1.0, doc="The factor on sigma, 0..1.")
     sigma: Annotated[
         float,
         Slider(0.0, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="Standard deviation where the field is 1."),

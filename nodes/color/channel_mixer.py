@@ -25,7 +25,7 @@ class ChannelMixer(Pointwise):
         Slider(-2.0, 2.0, unit="ratio", doc="How much R, G and B go into gray; by default their luminance (Rec.709)."),
     ] = (0.2126, 0.7152, 0.0722)
     constant: Annotated[_Mix, Slider(-1.0, 1.0, unit="scene", doc="Light added to R, G and B.")] = (0.0, 0.0, 0.0)
-    normalized: Annotated[bool, Doc("Divide each mix by its sum, where that is not 0, so that grays keep.")] = False
+    normalized: Annotated[bool, Doc("Divide each mix by its sum, if that is not 0, so that grays stay gray.")] = False
 
     def identity(self) -> str | None:
         rows = (self.red, self.green, self.blue) == ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

@@ -4,12 +4,12 @@ from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwis
 
 
 class ChromaKey(Pointwise):
-    """Cut a subject out in front of a green, blue or red screen, and take the screen's light off it.
+    """Cut out a subject in front of a green, blue or red screen, and remove the screen's light from it.
 
-    The screen's color decides which channel is keyed. Difference is the color difference of film and video keyers
-    (Vlahos 1964): how far that channel exceeds the others, compared to the screen; exact for gray subjects (Smith and
-    Blinn 1996). Distance compares the color alone, with its brightness taken out: how far `rgb / (r + g + b)` lies from
-    the screen's, over the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
+    The color of the screen decides which channel is keyed. Difference is the color difference of film and video keyers
+    (Vlahos 1964): how far that channel exceeds the others, relative to the screen; exact for gray subjects (Smith and
+    Blinn 1996). Distance compares colors without brightness: the distance of `rgb / (r + g + b)` from the screen's,
+    divided by the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
     """
 
     aliases = (
@@ -36,12 +36,24 @@ class ChromaKey(Pointwise):
     ] = "maximum"
     black: Annotated[
         float,
-        Slider(0.0, 1.0, unit="ratio", minimum=-1.0, maximum=1.0, doc="Matte that becomes 0: cleans the screen up."),
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=-1.0,
+            maximum=1.0,
+            doc="Mattes below this become 0, which cleans the screen.",
+        ),
     ] = 0.0
     white: Annotated[
         float,
         Slider(
-            0.0, 1.0, unit="ratio", minimum=0.0, maximum=2.0, doc="Matte that becomes 1: closes holes in the subject."
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=2.0,
+            doc="Mattes above this become 1, which closes holes in the subject.",
         ),
     ] = 1.0
     tolerance: Annotated[
@@ -56,7 +68,7 @@ class ChromaKey(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="How much of the screen's light is taken off the subject.",
+            doc="How much of the screen's light is removed from the subject.",
         ),
     ] = 1.0
 

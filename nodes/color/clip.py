@@ -12,5 +12,5 @@ class Clip(Pointwise):
     )  # fmt: skip
 
     image = Image()
-    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="Nothing is darker.")] = 0.0
-    high: Annotated[float, Slider(0.0, 16.0, unit="scene", doc="Nothing is brighter.")] = 1.0
+    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="The lowest value of a channel.")] = 0.0
+    high: Annotated[float, Slider(0.0, 16.0, unit="scene", doc="The highest value of a channel.")] = 1.0

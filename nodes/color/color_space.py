@@ -22,8 +22,8 @@ class ColorSpace(Filter):
     traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 
     image = Image()
-    source: Annotated[Space, Doc("What the numbers are in.")] = WORKING
-    target: Annotated[Space, Doc("What they come out in.")] = "acescg"
+    source: Annotated[Space, Doc("The color space of the input.")] = WORKING
+    target: Annotated[Space, Doc("The color space of the output.")] = "acescg"
     source_name: Annotated[
         str, OfSpace(), Doc("A space or role of the graph's color config, in place of the source.")
     ] = ""

@@ -22,9 +22,8 @@ class Curves(Pointwise):
     space: Annotated[
         Literal["display", "log", "linear"],
         Doc(
-            "What runs along a curve from 0 to 1: sRGB codes as in paint programs, stops of light (ACEScct, 0.41 is "
-            "middle "
-            "gray, 1 is 222 times white), or scene light."
+            "The horizontal axis of a curve from 0 to 1: sRGB values as in paint programs, stops of "
+            "light (ACEScct, 0.41 is middle gray, 1 is 222 times white), or scene light."
         ),
     ] = "display"
     keep_color: Annotated[

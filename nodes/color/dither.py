@@ -28,7 +28,7 @@ class Dither(Pointwise):
     ] = 256.0
     space: Annotated[
         Literal["display", "linear"],
-        Doc("What is divided evenly: sRGB codes, as files of 8 bits store them, or scene light."),
+        Doc("In what the levels are evenly spaced: sRGB values, as files of 8 bits store them, or scene light."),
     ] = "display"
     size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a dot, at least one pixel.")] = 1.0
     colored: Annotated[bool, Doc("Another pattern for each of red, green and blue.")] = False

@@ -5,7 +5,7 @@ from ._palettes import PALETTES
 
 
 class GradientMap(Filter):
-    """Paint brightness in the colors of a ramp: heat vision, false color, duotones.
+    """Map brightness to the colors of a ramp: heat vision, false color, duotones.
 
     The luminance (Rec.709) of the color without its alpha runs along the ramp from the low to the high end. Alpha is
     multiplied by that of the ramp. Link a Field to the image to paint data.
@@ -55,7 +55,7 @@ class GradientMap(Filter):
     )
     scale: Annotated[
         Literal["stops", "display", "linear"],
-        Doc("What is even along the ramp: stops of light, sRGB codes as the eye sees, or scene light."),
+        Doc("In what the ramp is evenly spaced: stops of light, sRGB values as the eye sees, or scene light."),
     ] = "stops"
     low: Annotated[
         float,

@@ -4,11 +4,11 @@ from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 
 class HueSaturation(Pointwise):
-    """Turn all hues around the color wheel, and make colors stronger, paler or brighter.
+    """Rotate all hues on the color wheel, and make colors stronger, paler or brighter.
 
-    Perceptual works in OKLab (Ottosson 2020): colors stay as light and as strong as they look. Luminance turns about
-    gray and keeps Rec.709 luminance (Haeberli 1993); it is linear. HSV (Smith 1978) keeps the largest channel, as paint
-    programs do. Alpha stays.
+    Perceptual works in OKLab (Ottosson 2020): lightness and saturation stay as perceived. Luminance rotates around the
+    gray axis and keeps the luminance of the working space (Haeberli 1993); it is linear. HSV (Smith 1978) keeps the
+    largest channel, as paint programs do. Alpha stays.
     """
 
     aliases = (

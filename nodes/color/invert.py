@@ -14,7 +14,7 @@ class Invert(Pointwise):
     aliases = ("negative", "invert color", "negate", "inverse", "complement", "invert mask")
 
     image = Image()
-    space: Annotated[Literal["display", "linear", "stops"], Doc("In what the picture is mirrored.")] = "display"
+    space: Annotated[Literal["display", "linear", "stops"], Doc("In what values the picture is inverted.")] = "display"
     amount: Annotated[
         Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here.")
     ] = 1.0

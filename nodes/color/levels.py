@@ -6,8 +6,8 @@ from .._declare import Doc, Image, Pointwise, Slider
 class Levels(Pointwise):
     """Stretch the light between a black and a white point, and bend the midtones between them.
 
-    `out = low + (high - low) * ((in - black) / (white - black)) ^ (1 / gamma)` per channel. What lies below the black
-    point skips the gamma and goes on straight. Works on the color without its alpha; alpha stays.
+    `out = low + (high - low) * ((in - black) / (white - black)) ^ (1 / gamma)` per channel. Values below the black
+    point skip the gamma and continue linearly. Works on the color without its alpha; alpha stays.
     """
 
     aliases = (
@@ -18,7 +18,7 @@ class Levels(Pointwise):
 
     image = Image()
     space: Annotated[
-        Literal["linear", "display"], Doc("What the points count: scene light, or sRGB codes as in paint programs.")
+        Literal["linear", "display"], Doc("The unit of the points: scene light, or sRGB values as in paint programs.")
     ] = "linear"
     black: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What becomes black.")] = 0.0
     white: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What becomes white.")] = 1.0
@@ -33,9 +33,9 @@ class Levels(Pointwise):
             doc="Above 1 brightens the midtones, below 1 darkens them.",
         ),
     ] = 1.0
-    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What black comes out as.")] = 0.0
-    high: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What white comes out as.")] = 1.0
-    clip: Annotated[bool, Doc("Keep what lies beyond the two points at them.")] = False
+    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="The result for black.")] = 0.0
+    high: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="The result for white.")] = 1.0
+    clip: Annotated[bool, Doc("Limit values beyond the two points to them.")] = False
 
     def identity(self) -> str | None:
         neutral = (self.black, self.white) == (self.low, self.high) and self.gamma == 1.0 and self.black != self.white

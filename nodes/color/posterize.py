@@ -6,8 +6,8 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider
 class Posterize(Pointwise):
     """Round the picture to a few levels of light, as in a screen print.
 
-    `round(c (levels - 1)) / (levels - 1)`; what is brighter than 1 goes on in the same steps. Works on the color
-    without its alpha; alpha stays.
+    `round(c (levels - 1)) / (levels - 1)`; brighter than 1, the steps continue. Works on the color without its alpha;
+    alpha stays.
     """
 
     aliases = ("quantize", "reduce colors", "color steps", "threshold", "banding", "levels of color")
@@ -20,7 +20,8 @@ class Posterize(Pointwise):
         ),
     ] = 5.0
     space: Annotated[
-        Literal["display", "linear"], Doc("What is divided evenly: sRGB codes, as the eye sees, or scene light.")
+        Literal["display", "linear"],
+        Doc("In what the levels are evenly spaced: sRGB values, as the eye sees, or scene light."),
     ] = "display"
     channels: Annotated[
         Literal["luminance", "separate"],

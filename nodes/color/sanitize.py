@@ -6,8 +6,8 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
 class Sanitize(Filter):
     """Repair pixels that are NaN, infinite, too bright or negative, before they spread.
 
-    `neighbors` gives a broken channel the average of the sound ones among the 3 x 3 pixels around, or 0 where there is
-    none, as OpenImageIO's fixNonFinite; sound channels of the same pixel stay.
+    `neighbors` gives a broken channel the mean of the finite ones among the 3 x 3 pixels around, or 0 without any, as
+    OpenImageIO's fixNonFinite; finite channels of the same pixel stay.
     """
 
     aliases = ("remove nan", "fix nan", "clean infinite", "nan fix", "kill nan", "remove infinity")
@@ -18,7 +18,7 @@ class Sanitize(Filter):
     )
     negative: Annotated[
         Literal["keep", "clip", "mirror"],
-        Doc("What becomes of light below 0: kept, black, or as much light above 0. Negative alpha always becomes 0."),
+        Doc("What light below 0 becomes: unchanged, black, or its absolute value. Negative alpha always becomes 0."),
     ] = "clip"
     maximum: Annotated[
         float,
@@ -28,7 +28,7 @@ class Sanitize(Filter):
             unit="scene",
             minimum=0.0,
             maximum=65504.0,
-            doc="Nothing is brighter; 65504 is the largest half float.",
+            doc="The highest value; 65504 is the largest half float.",
         ),
     ] = 65504.0
     limit_alpha: Annotated[bool, Doc("Keep alpha within 0..1.")] = True

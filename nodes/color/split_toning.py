@@ -6,9 +6,9 @@ from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Trait
 class SplitToning(Pointwise):
     """Tint shadows and highlights in different colors, as toned prints and film looks do; luminance stays.
 
-    How far a pixel counts as a highlight eases (3t^2 - 2t^3) from the dark to the bright end of the range, in stops
-    about middle gray (0.18). A tint of gray changes nothing. Works on the color without its alpha; alpha stays, and so
-    do the alphas of the tints.
+    The share of the highlights in a pixel rises smoothly (3t^2 - 2t^3) over the range, in stops around middle gray
+    (0.18). A gray tint changes nothing. Works on the color without its alpha; alpha stays, and so do the alphas of the
+    tints.
     """
 
     aliases = (
@@ -29,7 +29,7 @@ class SplitToning(Pointwise):
         float, Slider(-6.0, 6.0, unit="EV", doc="Where shadows end and highlights begin, in stops above middle gray.")
     ] = 0.0
     range: Annotated[
-        float, Slider(0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops the one goes over into the other.")
+        float, Slider(0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops the one changes into the other.")
     ] = 6.0
     amount: Annotated[
         Fraction,

@@ -6,7 +6,7 @@ from .._declare import Doc, Fraction, Image, Pointwise, Position, Slider
 class Vignette(Pointwise):
     """Darken toward the edges, as lenses do.
 
-    Distances are counted in half pictures: 1 is the middle of an edge, 1.41 a corner.
+    Distances are in half pictures: 1 is the middle of an edge, 1.41 a corner.
     """
 
     aliases = ("cc vignette", "darken corners", "lens falloff", "edge darkening", "vignetting")

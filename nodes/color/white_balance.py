@@ -6,7 +6,7 @@ _DAYLIGHT = 6504.0
 
 
 class WhiteBalance(Pointwise):
-    """Make the light of the scene white: say what color it had, and gray things turn gray.
+    """Make the light of the scene white: give its color, and gray objects become gray.
 
     Above 6504 kelvin (the working white, D65) the picture gets warmer, below colder, as in raw converters. The light
     lies on the Planckian locus (Krystek 1985), moved to pass through D65; tint moves it across, 3000 for a distance of

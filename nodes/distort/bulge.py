@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 
 
 class Bulge(Filter):
-    """Blow a part of the picture up, as through a magnifying glass, or pinch it.
+    """Enlarge a part of the picture, as a magnifying glass does, or pinch it.
 
     At the center a strength of 0.5 magnifies two times, -1 shrinks two times; toward the radius it fades without a
     border: the image is read at center + distance * (1 - strength (1 - (distance / radius)^2)^2).
@@ -19,9 +19,9 @@ class Bulge(Filter):
     strength: Annotated[
         float, Slider(-1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches.")
     ] = 0.5
-    radius: Annotated[float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="Where the picture is itself again.")] = (
-        0.4
-    )
+    radius: Annotated[
+        float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="The radius at which the picture is unchanged.")
+    ] = 0.4
     center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

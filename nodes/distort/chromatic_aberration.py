@@ -7,9 +7,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class ChromaticAberration(Filter):
     """Spread light into its colors, as a lens that bends blue more than red.
 
-    The light of a pixel is gathered along a line from its red to its blue end; every step counts for the primaries that
-    its wavelength excites (tents that overlap), each of which sums to 1, so that no light is lost and grays stay gray
-    where the picture is even. Alpha is gathered evenly.
+    The light of a pixel is gathered along a line from its red to its blue end. Each step counts for the primaries that
+    its wavelength excites (overlapping tents), and the weights of each primary sum to 1, so that no light is lost and
+    evenly gray areas stay gray. Alpha is gathered evenly.
     """
 
     aliases = (

@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider
 class Crt(Filter):
     """Show the picture on an old television tube.
 
-    The screen bulges, lines miss their start, color comes late, and the light lies in lines and phosphor stripes. Lines
-    and stripes are cosines, averaged over each pixel so that they never beat with the picture, and keep its light.
+    The screen bulges, lines start unevenly, color is delayed, and light comes in scan lines and phosphor stripes. Lines
+    and stripes are cosines, averaged over each pixel so that they cause no moire, and they keep the light.
     """
 
     aliases = (
@@ -29,10 +29,10 @@ class Crt(Filter):
         ),
     ] = 0.05
     jitter: Annotated[
-        float, Slider(0.0, 0.05, unit="height", minimum=0.0, doc="How far lines start too early or late at most.")
+        float, Slider(0.0, 0.05, unit="height", minimum=0.0, doc="How far lines are shifted at most.")
     ] = 0.002
     chroma_delay: Annotated[
-        float, Slider(-0.05, 0.05, unit="height", doc="How far color lies to the right of its light.")
+        float, Slider(-0.05, 0.05, unit="height", doc="How far color is shifted to the right of its luminance.")
     ] = 0.006
     lines: Annotated[
         float,

@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
 
 
 class Displace(Filter):
-    """Push the picture about with a vector map: every pixel shows what lies `vector * amount` pixels away.
+    """Displace the picture by a vector map: every pixel shows the place `vector * amount` pixels away.
 
     x points right and y down. Positions between pixels are interpolated (bilinear).
     """
@@ -15,7 +15,9 @@ class Displace(Filter):
     )  # fmt: skip
 
     image = Image()
-    vector = Vector(0.0, width=2, doc="Where to look, as a multiple of `amount`. Without a link nothing moves.")
+    vector = Vector(
+        0.0, width=2, doc="The offset at which to read, as a multiple of `amount`. Without a link nothing moves."
+    )
     amount: Annotated[
         tuple[float, float],
         Slider(-200.0, 200.0, unit="px", doc="How far a vector of length 1 reaches, across and down."),

@@ -41,7 +41,7 @@ class Glass(Filter):
         Slider(3, 32, unit="count", minimum=3, maximum=128, doc="Steps from red to blue, where there is dispersion."),
     ] = 9
     size: Annotated[float, Slider(0.005, 0.5, unit="height", minimum=1e-4, doc="Size of random bumps.")] = 0.08
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern of bumps.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern of bumps.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
 
     def identity(self) -> str | None:

@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Slider
 class Glitch(Filter):
     """Break the picture into bands that jump sideways, as damaged video does.
 
-    Wide bands and bands a quarter as high jump on their own, with their colors apart; which and how far is drawn by a
-    hash (pcg3d: Jarzynski and Olano 2020), so that the same frame always looks the same.
+    Wide bands and bands a quarter as high jump separately, with their colors shifted. Which bands jump, and how far, is
+    decided by a hash (pcg3d: Jarzynski and Olano 2020), so that a frame always looks the same.
     """
 
     aliases = (
@@ -24,7 +24,7 @@ class Glitch(Filter):
     ] = 0.03
     band: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Height of the wide bands.")] = 0.12
     hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="How many frames a glitch lasts.")] = 2
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another glitch.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another glitch.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "wrap"
 
     def identity(self) -> str | None:

@@ -20,14 +20,12 @@ class HeatHaze(Filter):
     stretch: Annotated[
         float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below flatter.")
     ] = 1.6
-    rise: Annotated[float, Slider(-2.0, 2.0, unit="height", doc="How far swirls rise in a second.")] = 0.25
-    change: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How many times in a second swirls become others.")] = (
-        1.5
-    )
+    rise: Annotated[float, Slider(-2.0, 2.0, unit="height", doc="How far swirls rise per second.")] = 0.25
+    change: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How many times per second the swirls change.")] = 1.5
     rate: Annotated[float, Slider(12.0, 60.0, unit="ratio", minimum=0.01, doc="Frames per second of the sequence.")] = (
         24.0
     )
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another haze.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another haze.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
 
     def identity(self) -> str | None:

@@ -13,7 +13,7 @@ _MISSED = 1e-3
 
 
 class LensDistortion(Filter):
-    """Bend the picture as a lens does, or straighten one that a lens has bent.
+    """Distort the picture as a lens does, or straighten footage that a lens has distorted.
 
     The model of Brown (1971) and Conrady (1919), with OpenCV's names: seen from the center in focal lengths, a point
     moves to p (1 + k1 r^2 + k2 r^4 + k3 r^6) plus the tangential terms of p1 and p2. Distort applies it, undistort
@@ -30,7 +30,9 @@ class LensDistortion(Filter):
         Literal["distort", "undistort"],
         Doc("Distort gives a render the bend of a lens; undistort straightens footage."),
     ] = "distort"
-    k1: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="Below 0 is a barrel, above 0 a pincushion.")] = -0.15
+    k1: Annotated[
+        float, Slider(-0.5, 0.5, unit="ratio", doc="Below 0 gives barrel distortion, above 0 pincushion distortion.")
+    ] = -0.15
     k2: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, more toward the corners.")] = 0.0
     k3: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, in the very corners.")] = 0.0
     p1: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="A lens tilted up or down.")] = 0.0

@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider, Vec
 
 
 class NoiseWarp(Filter):
-    """Warp the picture by noise that moves: wobbling, flowing, dissolving.
+    """Warp the picture by moving noise: wobbling, flowing, dissolving.
 
     Simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm). Push moves points by two independent
     noises; flow by the curl of one (Bridson, Hourihan and Nordenstam, 2007), which stirs without squeezing anything.
@@ -37,7 +37,7 @@ class NoiseWarp(Filter):
     ] = 0.4
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the waves smoothly.")] = 0.0
     speed: Annotated[float, Slider(-0.2, 0.2, unit="ratio", doc="How much evolution grows with every frame.")] = 0.02
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
 
     def identity(self) -> str | None:

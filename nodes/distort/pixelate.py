@@ -7,7 +7,7 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
 class Pixelate(Filter):
     """Show the picture in coarse squares, each the average of what it covers.
 
-    A square counts the pixels at its border by how much of them it covers.
+    A square weights pixels at its border by the part that it covers.
     """
 
     aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate")

@@ -4,11 +4,11 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 
 
 class Polar(Filter):
-    """Bend the picture into a disc, or unroll a disc into a strip.
+    """Wrap the picture into a disc, or unwrap a disc into a strip.
 
-    Wrap runs the picture's width once around the center, clockwise, with its top at the center and its bottom at the
-    radius; unwrap is the inverse. Effects in between act around and along the radius: blur it sideways and wrap it
-    back for a spin.
+    Wrap maps the picture's width once around the center, clockwise, with its top at the center and its bottom at the
+    radius; unwrap is the inverse. Effects in between work around the center and along the radius: a horizontal blur,
+    wrapped back, is a spin blur.
     """
 
     aliases = (

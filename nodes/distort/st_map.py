@@ -4,10 +4,10 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Vector
 
 
 class StMap(Filter):
-    """Show what a map points to: every pixel of the map holds a position in the picture, from 0 to 1.
+    """Remap the picture: every pixel of the map holds a position in the picture, from 0 to 1.
 
-    Maps come from lens calibration and render passes (UV). A pixel whose neighbors point far apart averages what lies
-    between. Where the map is NaN, nothing is shown.
+    Maps come from lens calibration and render passes (UV). A pixel whose neighbors point far apart averages the area in
+    between. Where the map is NaN, the result is empty.
     """
 
     aliases = (
@@ -16,7 +16,7 @@ class StMap(Filter):
     )  # fmt: skip
 
     image = Image()
-    st = Vector(width=2, doc="Where to look: 0 to 1 across the picture, pixel centers at halves.")
+    st = Vector(width=2, doc="The position to read: 0 to 1 across the picture; pixel centers are at halves.")
     origin: Annotated[
         Literal["bottom left", "top left"],
         Doc("Where 0, 0 lies: bottom left for renders and most compositors, top left for OpenImageIO and textures."),

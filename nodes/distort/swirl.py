@@ -5,10 +5,10 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 
 
 class Swirl(Filter):
-    """Stir the picture around a point.
+    """Rotate the picture around a point, less with the distance.
 
-    The turn fades from the middle as a Gaussian, angle * exp(-(distance / radius)^2), so that nothing shows a border.
-    The opposite angle with the same radius takes it back.
+    The rotation falls off as a Gaussian, angle * exp(-(distance / radius)^2), so that there is no visible border. The
+    opposite angle with the same radius undoes it.
     """
 
     aliases = ("twirl", "vortex", "twist", "whirl", "spin", "spiral")

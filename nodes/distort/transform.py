@@ -8,12 +8,12 @@ _SMALLEST = 1e-3
 
 
 class Transform(Filter):
-    """Move, turn and scale the picture within its frame.
+    """Move, rotate and scale the picture within its frame.
 
-    The picture is scaled, then turned about the pivot, then moved. The filter widens where the picture shrinks, so that
-    nothing aliases. Transforms in a row with the same edge act as one, as in Nuke: pixels are filtered once, by the
-    last one's kernel, and what left the frame in between comes back. Catmull-Rom and Mitchell: Mitchell and Netravali
-    1988.
+    The picture is scaled, then rotated about the pivot, then moved. The filter is wider where the picture shrinks, so
+    that nothing aliases. Transforms in a row with the same edge act as one, as in Nuke: pixels are filtered once, by
+    the kernel of the last one, and parts that left the frame in between come back. Catmull-Rom and Mitchell: Mitchell
+    and Netravali 1988.
     """
 
     aliases = (

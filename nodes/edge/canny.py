@@ -9,10 +9,10 @@ _STEP = 3
 
 
 class Canny(Filter):
-    """Draw edges as clean lines one pixel thin, and leave out those that are faint and short.
+    """Draw edges as clean lines one pixel wide, without faint and short ones.
 
-    Canny 1986 as in OpenCV: blur, Sobel gradient, only its ridges, then hysteresis with two thresholds. It sees the
-    tone (luminance as a display shows it, sRGB), where a step from black to white is 1. Alpha is kept.
+    Canny 1986 as in OpenCV: blur, Sobel gradient, its ridges, then hysteresis with two thresholds. It uses the tone
+    (luminance as a display shows it, sRGB), in which a step from black to white is 1. Alpha is kept.
     """
 
     aliases = ("edge detect", "find edges", "edges", "line art", "contours")
@@ -28,7 +28,7 @@ class Canny(Filter):
             unit="px",
             minimum=0.0,
             maximum=500.0,
-            doc="Sigma of the blur that takes noise and fine detail away.",
+            doc="Sigma of the blur that removes noise and fine detail.",
         ),
     ] = 1.0
     low: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="Weaker edges are never drawn.")] = 0.05
@@ -50,7 +50,7 @@ class Canny(Filter):
             unit="px",
             minimum=0.0,
             maximum=1000.0,
-            doc="How far a weak edge is followed from a strong one: at least so many pixels along the line.",
+            doc="How far a weak edge is followed from a strong one: at least this many pixels along the line.",
         ),
     ] = 60.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -16,9 +16,7 @@ class DifferenceOfGaussians(Filter):
 
     aliases = ("dog", "xdog", "line drawing", "edge detect", "sketch", "ink", "lines", "photocopy", "pencil")
 
-    proxy_notes = (
-        ProxyNote(("out", "value"), "its lines have hard edges, around specks too that a proxy averages away"),
-    )
+    proxy_notes = (ProxyNote(("out", "value"), "its lines have hard edges, and a proxy averages small specks away"),)
 
     image = Image()
     kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the bare difference.")] = "xdog"
@@ -37,12 +35,16 @@ class DifferenceOfGaussians(Filter):
     phi: Annotated[
         float,
         Slider(
-            0.5, 50.0, unit="ratio", minimum=0.0, doc="For XDoG: how hard ink and paper part; low values keep grays."
+            0.5,
+            50.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="For XDoG: how hard the border between ink and paper is; low values keep grays.",
         ),
     ] = 6.0
     guide: Annotated[
         Literal["none", "flow"],
-        Doc("Blur round, or only across the lines of the picture, whose directions the structure tensor tells."),
+        Doc("Blur in all directions, or only across the lines of the picture, found by the structure tensor."),
     ] = "none"
     smoothing: Annotated[
         float,
@@ -63,7 +65,7 @@ class DifferenceOfGaussians(Filter):
             unit="px",
             minimum=0.0,
             maximum=500.0,
-            doc="For flow: sigma over which lines are drawn together along themselves.",
+            doc="For flow: sigma of the blur along the lines.",
         ),
     ] = 3.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

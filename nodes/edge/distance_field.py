@@ -4,7 +4,7 @@ from .._declare import Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Vect
 
 
 class DistanceField(Filter):
-    """Measure how far every pixel is from the edge of a mask: in pixels, below 0 inside the mask.
+    """Measure the distance of every pixel from the edge of a mask: in pixels, below 0 inside the mask.
 
     Exact (Euclidean) for a hard mask: the nearest pixel of the other kind in every column, by jump flooding (Rong and
     Tan 2006), then the nearest of those along the row. Where the border pixels of a mask are soft, the edge lies
@@ -18,7 +18,7 @@ class DistanceField(Filter):
         "edge extend",
     )  # fmt: skip
 
-    proxy_notes = (ProxyNote(("distance",), "its lines have hard edges, around specks too that a proxy averages away"),)
+    proxy_notes = (ProxyNote(("distance",), "its lines have hard edges, and a proxy averages small specks away"),)
 
     mask = Field()
 

@@ -30,7 +30,7 @@ class EdgeDetect(Filter):
     strength: Annotated[float, Slider(0.0, 10.0, unit="ratio", minimum=0.0, doc="Factor on the edges.")] = 1.0
     threshold: Annotated[
         float,
-        Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Taken off every edge first, so that weaker ones vanish."),
+        Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Subtracted from every edge, so that weaker ones vanish."),
     ] = 0.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

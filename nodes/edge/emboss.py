@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, 
 
 
 class Emboss(Filter):
-    """Press the picture into a relief that is lit from one side, or light the picture itself by it.
+    """Turn the picture into a relief that is lit from one side, or shade the picture itself by it.
 
     The tone (luminance as a display shows it) is a height; its slope by Sobel gives a normal, which a distant light
     shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978), 1 where the picture is flat. Alpha is kept.
@@ -12,7 +12,9 @@ class Emboss(Filter):
 
     aliases = ("bump boss", "bump", "relief", "bevel", "color emboss", "create bump map", "texturize", "bevel alpha")
 
-    proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
+    proxy_notes = (
+        ProxyNote(("out",), "it is not linear: its result for an average differs from the average of its results"),
+    )
 
     image = Image()
     kind: Annotated[
@@ -33,7 +35,7 @@ class Emboss(Filter):
         ),
     ] = 30.0
     height: Annotated[
-        float, Slider(-20.0, 20.0, unit="px", doc="How far white stands out above black; below 0 it is pressed in.")
+        float, Slider(-20.0, 20.0, unit="px", doc="How far white rises above black; below 0 it sinks.")
     ] = 6.0
     softness: Annotated[
         float,

@@ -6,7 +6,7 @@ from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, OutputSocke
 
 
 class Outline(Filter):
-    """Draw a line of any width around what a mask, or the picture's own alpha, shows.
+    """Draw a line of any width around a mask, or around the picture's own alpha.
 
     The line follows the exact distance to the contour, where the mask crosses one half (see Distance Field); the cost
     grows slowly with its width. Around the picture's own alpha, an outside line lies behind the picture.
@@ -14,9 +14,7 @@ class Outline(Filter):
 
     aliases = ("stroke", "contour", "cel outline", "ink", "toon lines", "line art", "freestyle", "border")
 
-    proxy_notes = (
-        ProxyNote(("line", "out"), "its lines have hard edges, around specks too that a proxy averages away"),
-    )
+    proxy_notes = (ProxyNote(("line", "out"), "its lines have hard edges, and a proxy averages small specks away"),)
 
     image = Image()
     mask = Field(0.0, doc="What is outlined. Without a link, what the picture's alpha covers.")

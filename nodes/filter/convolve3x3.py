@@ -27,9 +27,10 @@ _KERNELS: Mapping[str, Kernel3x3] = MappingProxyType(
 
 
 class Convolve3x3(Filter):
-    """Weigh each pixel and its eight neighbors: sharpen, emboss, Laplacian, gradients or a kernel of your own.
+    """Weight each pixel and its eight neighbors: sharpen, emboss, Laplacian, gradients or a kernel of your own.
 
-    out = scale * sum(kernel * neighbors) + bias. The kernel is drawn as it is seen (correlation: it is not flipped).
+    out = scale * sum(kernel * neighbors) + bias. The kernel is applied as it is written (correlation: it is not
+    flipped).
     """
 
     aliases = (
@@ -37,7 +38,7 @@ class Convolve3x3(Filter):
         "edge enhance", "soften", "shadow filter", "3x3",
     )  # fmt: skip
 
-    proxy_notes = (ProxyNote(("out",), "it weighs the next pixels, which are farther away in a proxy"),)
+    proxy_notes = (ProxyNote(("out",), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     image = Image()
     preset: Annotated[

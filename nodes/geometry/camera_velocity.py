@@ -4,11 +4,12 @@ from .._declare import CameraModel, CameraSocket, Draw, Drawn, Field, Filter, Ou
 
 
 class CameraVelocity(Filter):
-    """Find how far every pixel moves in the picture because the camera does, from depth and the cameras of two frames.
+    """Compute the motion of every pixel that the camera causes, from depth and the cameras of two frames.
 
-    What stands still is placed in the world and seen by the other camera, as in TU Wien's "Screenspace Effects". What
-    has no depth is sky: only turning moves it. In pixels of the full-size picture, x to the right and y down: x and y
-    are now minus the frame before, z and w the frame after minus now.
+    Each point is placed in the world and projected by the other camera, as in TU Wien's "Screenspace Effects"; objects
+    are assumed to stand still. Pixels without depth are sky: only rotation moves them. In pixels of the full-size
+    picture, x to the right and y down: x and y are this frame minus the one before, z and w the frame after minus this
+    one.
     """
 
     aliases = (

@@ -24,7 +24,7 @@ class Cryptomatte(Reader):
     """Cut out objects, materials or assets by name, with the soft edges and the blur that the render has.
 
     Reads the cryptomatte layers of a render (Friedman and Jones 2015, by Psyop's specification 1.2.0): the matte is the
-    sum of what every id that was picked covers, exactly. Names are looked up in the file's manifest, else hashed.
+    exact sum of the coverage of all chosen ids. Names are looked up in the file's manifest, else hashed.
     """
 
     aliases = (
@@ -33,7 +33,7 @@ class Cryptomatte(Reader):
     )  # fmt: skip
 
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
-    layer: Annotated[Literal["object", "material", "asset"], Doc("What has a matte of its own.")] = "object"
+    layer: Annotated[Literal["object", "material", "asset"], Doc("What the ids name.")] = "object"
     pick: Annotated[
         str,
         Picks("layer"),

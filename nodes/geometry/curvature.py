@@ -5,17 +5,17 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 
 
 class Curvature(Filter):
-    """Find ridges and cavities: how strongly surfaces bend towards the viewer and away.
+    """Find ridges and cavities: how strongly surfaces bend toward the viewer and away.
 
-    The mean curvature, half the trace of the shape operator: how normals turn against how places move from pixel to
-    pixel, never across a gap in depth. Exact on balls, 1 / radius. Places come from position, or from depth and camera;
-    from normals alone, the view is taken for parallel and lengths count picture heights.
+    The mean curvature, half the trace of the shape operator: the change of normals relative to the change of positions
+    from pixel to pixel, never across a gap in depth. It is exact on balls: 1 / radius. Positions come from position, or
+    from depth and camera; with normals alone the view is taken as parallel, and lengths are picture heights.
     """
 
     aliases = ("edge wear", "cavity", "convexity", "dirt mask", "pointiness", "worn edges", "ridges")
 
     proxy_notes = (
-        ProxyNote(("cavity", "mean", "ridge"), "it weighs the next pixels, which are farther away in a proxy"),
+        ProxyNote(("cavity", "mean", "ridge"), "it compares neighboring pixels, which are farther apart in a proxy"),
     )
 
     normal = Vector(width=3, doc="Directions of surfaces.")
@@ -30,8 +30,8 @@ class Curvature(Filter):
         Slider(1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."),
     ] = 1.0
 
-    ridge = OutputSocket(Field(doc="How strongly it bends outwards, 0..1."))
-    cavity = OutputSocket(Field(doc="How strongly it bends inwards, 0..1."))
+    ridge = OutputSocket(Field(doc="Curvature of ridges, 0..1."))
+    cavity = OutputSocket(Field(doc="Curvature of cavities, 0..1."))
     mean = OutputSocket(Field(doc="Mean curvature per unit of length: above 0 on ridges, below 0 in cavities."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:

@@ -2,10 +2,10 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, V
 
 
 class DepthFromPosition(Filter):
-    """Find how deep every pixel lies in the picture, from its place in the world and the camera.
+    """Compute the depth of every pixel from its position in the world and the camera.
 
-    The depth is planar, in world units, along the way the camera looks. It is 1e10 where there is nothing: at 0, 0, 0,
-    which renderers write there, and behind the camera.
+    The depth is planar, in world units, along the camera's axis. It is 1e10 on the background, where renderers write
+    the position 0, 0, 0, and behind the camera.
     """
 
     aliases = ("depth", "z depth", "position to depth", "depth generator", "world to depth")

@@ -4,10 +4,10 @@ from .._declare import Doc, Field, OutputSocket, Pointwise, Slider
 
 
 class DepthSlice(Pointwise):
-    """Cut a slice out of the depth: a mask of what lies between two distances.
+    """Make a mask of the surfaces between two distances.
 
-    It is 1 from near to far and falls to 0 over the softness beyond them, evenly in depth. A far softness as long as
-    the scene makes a ramp of the depth. What has no depth lies farther than everything.
+    It is 1 from near to far and falls to 0 over the softness beyond them, linearly in depth. A far softness as long as
+    the scene makes a ramp of the depth. Pixels without depth are farther than everything.
     """
 
     aliases = (
@@ -16,14 +16,14 @@ class DepthSlice(Pointwise):
     )  # fmt: skip
 
     depth = Field(doc="Distance from the camera.")
-    near: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is nearer is cut away.")] = 6.0
-    far: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is farther is cut away.")] = 9.0
+    near: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Nearer pixels are cut away.")] = 6.0
+    far: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Farther pixels are cut away.")] = 9.0
     near_softness: Annotated[
-        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask rises over so much depth before near.")
+        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask rises over this much depth before `near`.")
     ] = 1.0
     far_softness: Annotated[
-        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask falls over so much depth beyond far.")
+        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask falls over this much depth beyond `far`.")
     ] = 1.0
-    invert: Annotated[bool, Doc("Mask what lies outside of the slice.")] = False
+    invert: Annotated[bool, Doc("Mask everything outside of the slice.")] = False
 
     mask = OutputSocket(Field(doc="How much of each pixel is in the slice, 0..1."))

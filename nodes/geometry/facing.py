@@ -4,13 +4,13 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 class Facing(Filter):
     """Measure how much every surface faces the camera: 1 straight on, 0 where it turns away.
 
-    The cosine of the angle between the normal and the way to the camera; surfaces seen from behind, and the
-    background, are 0. Where antialiasing has mixed several normals, it is the mean of what the pixels around say.
+    The cosine of the angle between the normal and the direction to the camera; 0 for surfaces seen from behind, and for
+    the background. Where antialiasing has mixed several normals, it is the mean of the pixels around.
     """
 
     aliases = ("facing ratio", "fresnel", "incidence", "falloff", "layer weight", "rim", "silhouette")
 
-    proxy_notes = (ProxyNote(("facing",), "it weighs the next pixels, which are farther away in a proxy"),)
+    proxy_notes = (ProxyNote(("facing",), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     normal = Vector(width=3, doc="Directions of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")

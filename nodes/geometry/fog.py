@@ -20,12 +20,12 @@ from .._declare import (
 
 
 class Fog(Filter):
-    """Lay fog over the picture: thicker with the distance, or a layer that lies on the ground.
+    """Add fog to the picture: denser with the distance, or a layer on the ground.
 
-    What shows through is exp(-density * distance) or exp(-(density * distance)^2), or falls evenly from start to end
-    (OpenGL's three kinds of fog). Height fog thins out upwards as exp(-height / thickness), integrated in closed form
-    along the way to every pixel (Wenzel 2006, Quilez 2010). A camera makes the distance that along the ray; without
-    one it is the depth. Distances are in units of the scene.
+    The visible part is exp(-density * distance) or exp(-(density * distance)^2), or falls linearly from start to end
+    (OpenGL's three kinds of fog). Height fog thins out upward as exp(-height / thickness), integrated in closed form
+    along the ray of every pixel (Wenzel 2006, Quilez 2010). With a camera the distance is measured along the ray;
+    without one it is the depth. Distances are in units of the scene.
     """
 
     aliases = (
@@ -35,7 +35,7 @@ class Fog(Filter):
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
-    depth = Field(doc="Distance from the camera; what has none is sky.")
+    depth = Field(doc="Distance from the camera; pixels without depth are sky.")
     position = Vector(0.0, width=3, doc="Places in the world, for the height without a camera.")
     camera = CameraSocket(0.0, doc="For the height, the sun, and true distances.")
     mode: Annotated[
@@ -62,7 +62,7 @@ class Fog(Filter):
             doc="How much fog one unit of distance holds; at the base of height fog.",
         ),
     ] = 0.08
-    start: Annotated[float, Slider(0.0, 50.0, unit="scene", minimum=0.0, doc="What is nearer stays clear.")] = 4.0
+    start: Annotated[float, Slider(0.0, 50.0, unit="scene", minimum=0.0, doc="Nearer surfaces stay clear.")] = 4.0
     end: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Where linear fog hides everything.")] = (
         20.0
     )
@@ -72,14 +72,18 @@ class Fog(Filter):
     thickness: Annotated[
         float,
         Slider(
-            0.1, 20.0, unit="scene", minimum=1e-3, doc="So much higher, height fog is thinner by a factor of e, 2.7."
+            0.1,
+            20.0,
+            unit="scene",
+            minimum=1e-3,
+            doc="The height over which height fog becomes thinner by a factor of e (2.7).",
         ),
     ] = 1.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     eye: Annotated[
         float, Slider(-10.0, 10.0, unit="scene", doc="How high the camera stands, where only positions are linked.")
     ] = 1.6
-    sky: Annotated[Fraction, Doc("How much of the fog lies before what has no depth.")] = 1.0
+    sky: Annotated[Fraction, Doc("How much of the fog is in front of pixels without depth.")] = 1.0
     alpha: Annotated[
         Literal["keep", "fill"],
         Doc(
@@ -88,12 +92,12 @@ class Fog(Filter):
         ),
     ] = "keep"
     sun: Annotated[Fraction, Doc("How much the fog glows towards the sun; it needs a camera.")] = 0.0
-    sun_color: Annotated[RGBA, Doc("Light of the fog right before the sun.")] = (1.6, 1.1, 0.6, 1.0)
+    sun_color: Annotated[RGBA, Doc("Color of the fog in front of the sun.")] = (1.6, 1.1, 0.6, 1.0)
     sun_direction: Annotated[
         tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")
     ] = (0.3, 0.9, 0.3)
     sun_focus: Annotated[
-        float, Slider(1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher draws the glow closer around the sun.")
+        float, Slider(1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher values keep the glow closer to the sun.")
     ] = 8.0
 
     out = OutputSocket()

@@ -11,9 +11,9 @@ _SEAM = 2.0
 class GeometryEdges(Filter):
     """Find where surfaces end, fold and meet, as lines of any width: by depth, normals and ids, whichever are linked.
 
-    Depth: how much 1 / depth bends along a row or column, relative to the nearest of three pixels. It is affine on
-    every plane, so that flat surfaces make no edge however steep they lie; between two surfaces it reads
-    1 - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run along seams between pixels.
+    Depth: the second difference of 1 / depth along a row or column, relative to the nearest of three pixels. 1 / depth
+    is linear on every plane, so flat surfaces make no edge at any angle; between two surfaces it is 1 - near / far.
+    Normals: the angle between neighbors. Ids: any difference. Lines run between pixels.
     """
 
     aliases = (
@@ -22,7 +22,7 @@ class GeometryEdges(Filter):
 
     proxy_notes = (
         ProxyNote(("border", "crease", "gap"), "its lines are one or two pixels wide at any size", "look"),
-        ProxyNote(("edges",), "its lines are narrower than two pixels of the proxy, and fainter for that", "look"),
+        ProxyNote(("edges",), "its lines are narrower than two pixels of the proxy, and therefore fainter", "look"),
     )
 
     depth = Field(0.0, doc="Distance from the camera.")
@@ -35,25 +35,25 @@ class GeometryEdges(Filter):
     depth_amount: Annotated[Fraction, Doc("How strong lines by depth are.")] = 1.0
     depth_threshold: Annotated[
         float,
-        Slider(0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth make no line."),
+        Slider(0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth are no lines."),
     ] = 0.05
     crease_amount: Annotated[Fraction, Doc("How strong lines by normals are.")] = 1.0
     crease_threshold: Annotated[
-        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds by smaller angles make no line.")
+        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds with smaller angles are no lines.")
     ] = 35.0
     id_amount: Annotated[Fraction, Doc("How strong lines between ids are.")] = 1.0
     softness: Annotated[
         Fraction,
         Doc(
-            "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are "
-            "hard."
+            "The range above the threshold over which lines gain strength, as a part of the "
+            "threshold. Lines wider than 2 pixels are hard."
         ),
     ] = 0.5
 
     edges = OutputSocket(Field(doc="How much of each pixel lines cover, 0..1."))
     gap = OutputSocket(Field(doc="Between surfaces, as a part of the depth."))
     crease = OutputSocket(Field(doc="Between neighboring normals, in degrees; 180 at the background."))
-    border = OutputSocket(Field(doc="1 where an id meets another one."))
+    border = OutputSocket(Field(doc="1 where two ids meet."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         field = Field()

@@ -22,9 +22,7 @@ class IdMask(Filter):
         "multimatte", "puzzle matte",
     )  # fmt: skip
 
-    proxy_notes = (
-        ProxyNote(("colors",), "strong colors meet at hard edges, which are those of single pixels in a proxy"),
-    )
+    proxy_notes = (ProxyNote(("colors",), "it has hard edges between strong colors, as wide as a pixel of the proxy"),)
 
     ids = Field(doc="Numbers of objects or materials.")
     pick: Annotated[str, Doc("Numbers and spans of numbers, such as 1, 4, 7-9.")] = "1"

@@ -5,17 +5,19 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 
 
 class NormalFromDepth(Filter):
-    """Find which way every surface faces, from its depth and the camera, for renders without a normal pass.
+    """Compute normals from depth and the camera, for renders without a normal pass.
 
-    1 / depth is affine on planes, so its slopes are those of the tangent plane. They are taken from the side on which
-    they go on straight for two pixels, as in Wu 2021 ("Accurate Normal Reconstruction from Depth Buffer"): edges stay
-    sharp. `curvature` is the mean curvature in 1 / world units: above 0 where a surface bulges (1 / r on a ball), below
-    0 in its hollows. Where there is nothing, both are 0.
+    1 / depth is linear on planes, so its slopes give the tangent plane. They are taken on the side where it stays
+    linear for two pixels, as in Wu 2021 ("Accurate Normal Reconstruction from Depth Buffer"): edges stay sharp.
+    `curvature` is the mean curvature in 1 / world units: above 0 where a surface bulges (1 / r on a ball), below 0 in
+    hollows. On the background both are 0.
     """
 
     aliases = ("normals", "create normals", "depth to normal", "normal map", "surface normal")
 
-    proxy_notes = (ProxyNote(("curvature", "normal"), "it weighs the next pixels, which are farther away in a proxy"),)
+    proxy_notes = (
+        ProxyNote(("curvature", "normal"), "it compares neighboring pixels, which are farther apart in a proxy"),
+    )
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")

@@ -2,9 +2,9 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, V
 
 
 class PositionFromDepth(Filter):
-    """Find where in the world every pixel lies, from its depth and the camera.
+    """Compute the position of every pixel in the world, from its depth and the camera.
 
-    The place is `eye + depth * ray`, in world units: as exact as the depth. Where there is nothing, it is 0, 0, 0, as
+    The position is `eye + depth * ray`, in world units, as exact as the depth. On the background it is 0, 0, 0, as
     renderers write it.
     """
 

@@ -4,11 +4,11 @@ from .._declare import Draw, Drawn, Field, Filter, Image, Number, OutputSocket, 
 
 
 class RebuildBeauty(Filter):
-    """Put the picture together again from its light passes, each of which can be graded before.
+    """Rebuild the picture from its light passes, each of which can be graded before.
 
-    Color * (direct + indirect) for diffuse, glossy and transmission, plus volume, emission, environment and whatever
-    else there is: the sum that Cycles makes. A color that is not linked counts as white, for renderers whose light is
-    colored already. With the render itself as beauty, it says how far the sum is off.
+    Color * (direct + indirect) for diffuse, glossy and transmission, plus volume, emission, environment and everything
+    else: the sum that Cycles makes. A color that is not linked counts as white, for renderers whose light passes
+    contain the color. With the render itself as beauty, it measures the error of the sum.
     """
 
     aliases = (
@@ -34,7 +34,7 @@ class RebuildBeauty(Filter):
 
     out = OutputSocket()
     difference = OutputSocket(
-        Field(doc="How far the sum is from beauty: the largest of the three channels; 0 without it.")
+        Field(doc="The difference between the sum and beauty: the largest of the three channels; 0 without beauty.")
     )
     error = OutputSocket(Number(doc="The largest difference anywhere."))
 

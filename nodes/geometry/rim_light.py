@@ -28,12 +28,12 @@ class RimLight(Filter):
 
     aliases = ("rim", "back light", "edge light", "fresnel light", "light wrap", "kicker")
 
-    proxy_notes = (ProxyNote(("out", "rim"), "it weighs the next pixels, which are farther away in a proxy"),)
+    proxy_notes = (ProxyNote(("out", "rim"), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     image = Image()
     normal = Vector(width=3, doc="Directions of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
-    mask = Field(1.0, doc="Where the light falls: flat ground seen aslant is all rim.")
+    mask = Field(1.0, doc="Where the light falls: use it to exclude flat ground, which is all rim at a grazing angle.")
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.7, 1.0)
     intensity: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="How strong it is.")] = 2.0
     power: Annotated[

@@ -50,14 +50,13 @@ class Bloom(Filter):
         float,
         Slider(0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the glow at its widest."),
     ] = 0.1
-    scatter: Annotated[Fraction, Doc("How much light goes on to wider levels: 0 a tight glow, 1 a wide one.")] = 0.7
+    scatter: Annotated[Fraction, Doc("How much light reaches wider levels: 0 gives a narrow glow, 1 a wide one.")] = 0.7
     levels: Annotated[
         Points,
         Curve(0.0, 2.0, minimum=0.0),
         Doc(
-            "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by "
-            "doublings "
-            "to the whole radius, right. The sum stays."
+            "The weight of each width, in addition to scatter: from a sixteenth of the radius (left),"
+            " in doublings, to the whole radius (right). The sum stays."
         ),
     ] = (0.0, 1.0, 1.0, 1.0)
     tint: Annotated[RGBA, Doc("Color of the glow; white keeps that of the light.")] = _WHITE
@@ -79,11 +78,14 @@ class Bloom(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that glows, to limit suns and noise; 65504 is no limit.",
         ),
     ] = _NO_LIMIT
     firefly: Annotated[
-        bool, Doc("Weigh down single bright pixels, which would flicker (Karis 2013). Loses some of their light.")
+        bool,
+        Doc(
+            "Reduce the weight of single bright pixels, which would flicker (Karis 2013). Some of their light is lost."
+        ),
     ] = False
 
     out = OutputSocket()

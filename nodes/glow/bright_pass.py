@@ -4,7 +4,7 @@ from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider, Trait
 
 
 class BrightPass(Pointwise):
-    """Keep only the light that shall glow: what is bright, or what a mask picks.
+    """Keep only the light that shall glow: bright pixels, or those in a mask.
 
     `L` is how bright a pixel is and `t` the threshold; the color is scaled to the new `L` and keeps its hue. Hard keeps
     `L > t` as it is. Soft takes `t` off and eases in by a quadratic knee (KinoBloom, Takahashi 2015). Clamp
@@ -46,6 +46,6 @@ class BrightPass(Pointwise):
             unit="scene",
             minimum=0.0,
             maximum=65504.0,
-            doc="Nothing counts as brighter than this, for suns and noise; 65504 sets no limit.",
+            doc="The largest light that counts, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 65504.0

@@ -14,7 +14,7 @@ _DATA = Vector(width=4)
 
 
 class EyeGlare(Filter):
-    """Let lights glare as they do in the human eye, with rays and a colored halo.
+    """Add the glare that lights have in the human eye, with rays and a colored halo.
 
     Spencer, Shirley, Zimmerman and Greenberg (1995): at an angle t in degrees the eye scatters per steradian
     `20.91 / (t + 0.02)^3` and `72.37 / (t + 0.02)^2`, and in the dark, for every wavelength, a halo of
@@ -26,13 +26,17 @@ class EyeGlare(Filter):
     aliases = ("glare", "starburst", "veiling glare", "temporal glare", "lens glare", "eyelashes")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
     proxy_notes = (
-        ProxyNote(("glow",), "what scatters within a pixel counts as sharp, and pixels of a proxy are larger", "look"),
+        ProxyNote(
+            ("glow",),
+            "light that is scattered within a pixel counts as sharp, and pixels of a proxy are larger",
+            "look",
+        ),
     )
 
     image = Image()
     vision: Annotated[
         Literal["photopic", "mesopic", "scotopic"],
-        Doc("What the eye is used to: daylight, dusk or night. The wider the pupil, the more halo."),
+        Doc("What the eye is adapted to: daylight, dusk or night. A wider pupil gives more halo."),
     ] = "scotopic"
     field_of_view: Annotated[
         float,
@@ -42,11 +46,11 @@ class EyeGlare(Filter):
             unit="deg",
             minimum=0.1,
             maximum=180.0,
-            doc="How high the picture stands in the eye. Smaller angles make the glare larger.",
+            doc="The visual angle of the picture's height. Smaller angles make the glare larger.",
         ),
     ] = 40.0
     rays: Annotated[Fraction, Doc("How far the glare breaks up into rays, the ciliary corona.")] = 0.5
-    strength: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is what the eye does.")] = 1.0
+    strength: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is that of the eye.")] = 1.0
 
     out = OutputSocket()
     glow = OutputSocket()

@@ -56,7 +56,7 @@ class FilmHalation(Filter):
             doc="How much of the bright light comes back. 0: the backing absorbs all of it; 0.58: there is no backing.",
         ),
     ] = 0.2
-    color: Annotated[RGBA, Doc("How much of it the red, green and blue layers take up.")] = (1.0, 0.15, 0.02, 1.0)
+    color: Annotated[RGBA, Doc("How much of it the red, green and blue layers absorb.")] = (1.0, 0.15, 0.02, 1.0)
     radius: Annotated[
         float,
         Slider(
@@ -93,7 +93,7 @@ class FilmHalation(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The light in a channel that comes back at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest light in a channel that comes back, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 200.0
 

@@ -41,9 +41,7 @@ class Ghosts(Filter):
         "lens reflections",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
-    proxy_notes = (
-        ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),
-    )
+    proxy_notes = (ProxyNote(("glow",), "it interpolates many times, which softens it by pixels of the proxy"),)
 
     image = Image()
     dirt = Image(1.0, doc="A picture of the front lens: the flare is multiplied by it. Unlinked, there are smudges.")
@@ -59,7 +57,8 @@ class Ghosts(Filter):
         float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How bright the halo is, of the light that it moves.")
     ] = 0.015
     veil: Annotated[
-        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light strays over the lens.")
+        float,
+        Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light spreads over the whole lens."),
     ] = 0.04
     radius: Annotated[
         float,
@@ -84,7 +83,7 @@ class Ghosts(Filter):
             doc="How much farther out red lies than green, and green than blue.",
         ),
     ] = 0.03
-    colors: Annotated[Fraction, Doc("How much each ghost has the color of a coating of its own.")] = 0.6
+    colors: Annotated[Fraction, Doc("How strongly each ghost is tinted by its own coating.")] = 0.6
     tint: Annotated[RGBA, Doc("Color of the flare; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
     dirt_amount: Annotated[
         Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much the dirt shows.")
@@ -102,7 +101,7 @@ class Ghosts(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that is reflected at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that is reflected, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 200.0
 

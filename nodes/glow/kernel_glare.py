@@ -35,11 +35,10 @@ _DATA = Vector(width=4)
 class KernelGlare(Filter):
     """Turn every light into a picture: a starburst, a heart, dirt on a lens.
 
-    Convolves with the picture linked to `kernel`: its middle lies on the light, its alpha is not used, and its sum is
-    brought to a luminance of 1, so that color tints but no light is made. Without a link it is the starburst of an
-    iris: Fraunhofer's diffraction at a regular polygon, the sum over all wavelengths of the square of its Fourier
-    transform. It has as many rays as blades, twice as many if their number is odd. `glow` is the glare alone. Alpha is
-    kept.
+    Convolves the light with the picture that is linked to `kernel`. The center of the kernel lies on the light, its
+    alpha is ignored, and its sum is scaled to a luminance of 1, so that color tints but no light is added. Without a
+    link it is the starburst of an iris: Fraunhofer diffraction at a regular polygon, summed over all wavelengths. It
+    has as many rays as blades, twice as many if their number is odd. `glow` is the glare alone. Alpha is kept.
     """
 
     aliases = (
@@ -47,14 +46,14 @@ class KernelGlare(Filter):
         "diffraction",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
-    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
+    proxy_notes = (ProxyNote(("glow",), "the average of several pixels exceeds a threshold less often"),)
 
     image = Image()
     kernel = Image(0.0, own_size=True, doc="What a point of light becomes. Without a link, a starburst.")
     size: Annotated[float, Slider(0.01, 1.5, unit="height", minimum=0.0, maximum=4.0, doc="Height of the kernel.")] = (
         0.8
     )
-    blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=32, doc="Of the iris.")] = 6
+    blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=32, doc="Number of blades of the iris.")] = 6
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the iris counterclockwise.")] = 15.0
     falloff: Annotated[
         float,
@@ -64,7 +63,7 @@ class KernelGlare(Filter):
             unit="ratio",
             minimum=0.1,
             maximum=2.0,
-            doc="How fast the iris' rays fade: 1 is physical, below the light of weak lamps reaches further too.",
+            doc="How fast the rays of the iris fade: 1 is physical; below 1, rays of weak lamps become longer too.",
         ),
     ] = 0.7
     intensity: Annotated[
@@ -85,7 +84,7 @@ class KernelGlare(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that glares at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that glares, to limit suns and noise; 65504 is no limit.",
         ),
     ] = _NO_LIMIT
     quality: Annotated[

@@ -40,7 +40,7 @@ class Star(Filter):
         "simple star", "highlight", "lens flare",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
-    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
+    proxy_notes = (ProxyNote(("glow",), "the average of several pixels exceeds a threshold less often"),)
 
     image = Image()
     length: Annotated[
@@ -63,7 +63,7 @@ class Star(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that glows, to limit suns and noise; 65504 is no limit.",
         ),
     ] = _NO_LIMIT
     edge: Annotated[

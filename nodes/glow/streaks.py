@@ -19,11 +19,11 @@ _WAVELENGTHS = (611.0, 549.0, 464.0)
 class Streaks(Filter):
     """Draw long straight streaks from bright light, as star filters, aperture blades and anamorphic lenses do.
 
-    Along an arm, light fades by the same factor from pixel to pixel, down to a hundredth at `length`. Passes of four
+    Along an arm, light fades by the same factor from pixel to pixel, to a hundredth at `length`. Passes of four
     samples, each four times as far apart (Kawase 2003, "Frame Buffer Postprocessing Effects in DOUBLE-S.T.E.A.L."),
-    give exactly that sum, at a cost that grows with the logarithm of the length only. `glow` is the streaks alone: each
-    arm has its share of the light and keeps the sum. Off the axes and the diagonals, samples between pixels soften
-    an arm by about a pixel. Two arms at 0 degrees are an anamorphic lens. Alpha is kept.
+    give exactly that sum; the cost grows only with the logarithm of the length. `glow` is the streaks alone: each arm
+    has its share of the light and keeps the sum. Off the axes and diagonals, interpolation softens an arm by about a
+    pixel. Two arms at 0 degrees are an anamorphic lens. Alpha is kept.
     """
 
     aliases = (
@@ -31,7 +31,7 @@ class Streaks(Filter):
         "anamorphic streak", "light sweep",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
-    proxy_notes = (ProxyNote(("glow",), "it is what passes a threshold, and an average passes it less"),)
+    proxy_notes = (ProxyNote(("glow",), "the average of several pixels exceeds a threshold less often"),)
 
     image = Image()
     arms: Annotated[
@@ -74,7 +74,7 @@ class Streaks(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that makes streaks at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that makes streaks, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 200.0
     quality: Annotated[

@@ -26,7 +26,7 @@ _LEFT = 0.01
 
 
 class SunBeams(Filter):
-    """Let light shafts fan out from a light: sun through leaves, windows or mist.
+    """Make light shafts that fan out from a light: sun through leaves, windows or mist.
 
     Every pixel gathers the bright light between itself and the source, so that whatever stands before the light throws
     a dark shaft (Mitchell 2007, "Volumetric Light Scattering as a Post-Process", GPU Gems 3). The mean is taken at
@@ -41,9 +41,7 @@ class SunBeams(Filter):
         "crepuscular rays", "shine", "cc light burst", "light burst", "radial rays", "sunbeams",
     )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
-    proxy_notes = (
-        ProxyNote(("glow",), "it is read between pixels many times over, which softens it by pixels of the proxy"),
-    )
+    proxy_notes = (ProxyNote(("glow",), "it interpolates many times, which softens it by pixels of the proxy"),)
 
     image = Image()
     mask = Field(1.0, doc="Where light may come from: the sky, a window.")
@@ -68,15 +66,18 @@ class SunBeams(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="How far a pixel looks, as a part of its way to the source.",
+            doc="How far a pixel gathers light, as a part of the distance to the source.",
         ),
     ] = 0.93
     decay: Annotated[
-        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much light is lost on that way.")
+        Fraction,
+        Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much light is lost over that distance."),
     ] = 0.8
     intensity: Annotated[
         float,
-        Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the beams are, of the light that they gather."),
+        Slider(
+            0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the beams are, relative to the light that they gather."
+        ),
     ] = 0.3
     tint: Annotated[RGBA, Doc("Color of the beams; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
     threshold: Annotated[
@@ -91,7 +92,7 @@ class SunBeams(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The luminance that throws beams at most, for suns and noise; 65504 sets no limit.",
+            doc="The largest luminance that throws beams, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 50.0
     quality: Annotated[

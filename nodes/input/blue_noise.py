@@ -4,18 +4,18 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise, ProxyNote, Sl
 
 
 class BlueNoise(Pointwise):
-    """Random dots that never clump, the noise that is seen least: thresholds for dissolves and stipples.
+    """Random dots that never clump: the least visible noise, for thresholds of dissolves and stipples.
 
-    Void and cluster (Ulichney, 1993): 64 x 64 cells that repeat, with 256 values of which each is as frequent as any
-    other. Next to nothing of it is left in low frequencies.
+    Void and cluster (Ulichney, 1993): 64 x 64 cells that repeat, with 256 values that are equally frequent. It has
+    almost no low frequencies.
     """
 
     aliases = ("white noise", "dither pattern", "random", "noise pattern", "noise")
 
-    proxy_notes = (ProxyNote(("out", "value", "vector"), "every pixel is another number", "look"),)
+    proxy_notes = (ProxyNote(("out", "value", "vector"), "every pixel has its own random number", "look"),)
 
     size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a cell, at least one pixel.")] = 1.0
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
     animate: Annotated[bool, Doc("Another pattern for each frame.")] = False
 
     out = OutputSocket(Image(doc="The value as an opaque gray."))

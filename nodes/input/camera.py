@@ -8,9 +8,9 @@ Place = Annotated[tuple[float, float, float], Slider(-10.0, 10.0, unit="scene")]
 
 
 class Camera(Filter):
-    """A camera by hand, for pictures whose file does not say where they were taken from.
+    """A camera set by hand, for pictures whose file does not contain one.
 
-    The field of view is `2 atan(sensor / (2 focal))` across the picture. Depth grows along the way it looks.
+    The field of view is `2 atan(sensor / (2 focal))` across the picture. Depth is measured along its axis.
     """
 
     aliases = ("camera 3d", "lens", "projection", "view", "camera3d")

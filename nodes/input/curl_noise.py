@@ -4,7 +4,7 @@ from .._declare import Field, OutputSocket, Pointwise, Slider, Vector
 
 
 class CurlNoise(Pointwise):
-    """A random flow with eddies, like smoke or water: it never piles up or thins out. A vector map for Displace.
+    """A random flow with eddies, like smoke or water, without sources or sinks. A vector map for Displace.
 
     Curl noise (Bridson, Hourihan and Nordenstam, 2007) in two dimensions: (d/dy, -d/dx) of a stream function, the slope
     taken exactly. The stream function is simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm).
@@ -27,7 +27,7 @@ class CurlNoise(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=4.0,
-            doc="How far each layer carries compared to the one before; as fast as that one at 1 / lacunarity.",
+            doc="How far each layer moves compared to the one before; its speed is equal at 1 / lacunarity.",
         ),
     ] = 0.4
     strength: Annotated[
@@ -36,7 +36,7 @@ class CurlNoise(Pointwise):
             0.0, 4.0, unit="ratio", doc="Factor on the vectors; at 1 none is longer than 1, and few are half as long."
         ),
     ] = 1.0
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another flow.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another flow.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the flow smoothly.")] = 0.0
 
     vector = OutputSocket(Vector(width=2, doc="The flow: x points right and y down."))

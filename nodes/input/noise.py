@@ -49,7 +49,7 @@ class Noise(Pointwise):
             "cut.",
         ),
     ] = 2.0
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
     evolution: Annotated[
         float,
         Slider(0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."),

@@ -23,9 +23,8 @@ class ReadImage(Reader):
         str,
         OfSpace(),
         Doc(
-            "What the color of `out` is in, by a name or role of the color config, such as ACEScg; empty finds out. "
-            "Data "
-            "is never converted."
+            "The color space of `out`, by a name or role of the color config, such as ACEScg; empty "
+            "recognizes it. Data is never converted."
         ),
     ] = ""
 

@@ -35,12 +35,12 @@ _FOUND = "empty for the one that was found"
 
 
 class ReadRender(Reader):
-    """Read a render: every layer finds its output by itself, whatever the renderer calls it.
+    """Read a render: its layers are recognized, whatever names the renderer uses.
 
-    Names are those of Blender, Arnold, V-Ray, Karma, RenderMan, Redshift, Nuke and others, in files of one part or
-    many; `halation info FILE` says what was found and why. Data is converted to one convention: depth along the
-    camera's axis, normals in the world, motion in pixels since the frame before and until the next, y down. The camera
-    is solved from positions, or named by the header. Where a guess is wrong, name the layer or the convention.
+    Recognizes names of Blender, Arnold, V-Ray, Karma, RenderMan, Redshift, Nuke and others, in files of one part or
+    many; `halation info FILE` prints the result and the reasons. Data is converted to one convention: depth along the
+    camera's axis, normals in the world, motion in pixels from the previous frame and to the next one, y down. The
+    camera is solved from positions, or read from the header. If a guess is wrong, name the layer or the convention.
     """
 
     aliases = (
@@ -62,7 +62,7 @@ class ReadRender(Reader):
     normal_is: Annotated[
         Literal["found", "world", "camera"],
         OfLayer("normal"),
-        Doc("Whose axes normals refer to: x right, y up, z towards the viewer."),
+        Doc("The axes of normals: x right, y up, z toward the viewer."),
     ] = "found"
     position_layer: Annotated[
         str, OfLayer("position"), Doc(f"The layer of places in the world, which the camera is solved from; {_FOUND}.")
@@ -71,7 +71,7 @@ class ReadRender(Reader):
     velocity_is: Annotated[
         Literal["found", "from previous", "to next", "to previous", "from next"],
         OfLayer("velocity"),
-        Doc("Which way the first two channels of the motion layer point, in pixels, y down."),
+        Doc("The direction of the first two channels of the motion layer, in pixels, y down."),
     ] = "found"
     occlusion_layer: Annotated[str, OfLayer("occlusion"), Doc(f"The layer of ambient occlusion; {_FOUND}.")] = ""
     object_id_layer: Annotated[str, OfLayer("object_id"), Doc(f"The layer of object numbers; {_FOUND}.")] = ""
@@ -80,7 +80,10 @@ class ReadRender(Reader):
     color_space: Annotated[
         str,
         OfSpace(),
-        Doc("What its color is in, by a name or role of the color config, such as ACEScg; empty finds out."),
+        Doc(
+            "The color space of the picture, by a name or role of the color config, such as ACEScg; "
+            "empty recognizes it."
+        ),
     ] = ""
 
     color = OutputSocket(Image())

@@ -32,10 +32,11 @@ _JITTERS = 16
 class Scene(Source):
     """Draw meshes into every channel that effects want: albedo, normals, depth, position, velocity, ids and more.
 
-    All in one pass. The camera orbits its target. What can move (all of a file, the red ball of the stage) turns about
-    the world's upright axis and drifts. Positions are in world units, z up; depth is measured along the camera's axis,
-    1e10 where nothing is; velocity is in pixels, y down: since the frame before, and until the next. Pixels are
-    sampled in their middle, so edges are hard and data is exact; with jitter, elsewhere in each frame (Halton 1960).
+    All in one pass. The camera orbits its target. Movable objects (all of a file, the red ball of the stage) rotate
+    about the world's vertical axis and drift. Positions are in world units, z up; depth is measured along the camera's
+    axis, 1e10 on the background; velocity is in pixels, y down: from the previous frame, and to the next one. Pixels
+    are sampled at their centers, so edges are hard and data is exact; with jitter, at other places in each frame
+    (Halton 1960).
     """
 
     aliases = (
@@ -69,16 +70,15 @@ class Scene(Source):
         ),
     ] = 50.0
     orbit: Annotated[float, Slider(-10.0, 10.0, unit="deg", doc="How far the camera goes around, each frame.")] = 0.0
-    turn: Annotated[float, Slider(-30.0, 30.0, unit="deg", doc="How far what can move turns, each frame.")] = 0.0
+    turn: Annotated[float, Slider(-30.0, 30.0, unit="deg", doc="How far movable objects turn in each frame.")] = 0.0
     drift: Annotated[
-        tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far what can move goes, each frame.")
+        tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far movable objects move in each frame.")
     ] = (0.0, 0.0, 0.0)
     jitter: Annotated[
         Fraction,
         Doc(
-            "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and "
-            "velocity "
-            "are those of the middle."
+            "How far from its center a pixel is sampled, for Temporal AA: 1 is anywhere in the pixel."
+            " Cameras and velocity are those of the center."
         ),
     ] = 0.0
 

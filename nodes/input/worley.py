@@ -4,7 +4,7 @@ from .._declare import Doc, Field, Fraction, Image, OutputSocket, Pointwise, Pro
 
 
 class Worley(Pointwise):
-    """Cells, as of stone, scales or foam: how far every pixel is from the nearest of scattered points.
+    """Cells, as in stone, scales or foam: the distance of every pixel from the nearest of scattered points.
 
     Worley 1996, "A Cellular Texture Basis Function", with one point in every cell of a cubic lattice, of which the
     picture shows a slice; the 27 cells around are searched. Distances are counted in cells. Hash: pcg3d (Jarzynski and
@@ -30,7 +30,7 @@ class Worley(Pointwise):
     ] = "euclidean"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of a cell.")] = 48.0
     jitter: Annotated[Fraction, Doc("How far points stray from the middle of their cells; 0 is a regular grid.")] = 1.0
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Moves the slice: changes the cells smoothly.")] = (
         0.0
     )

@@ -35,7 +35,7 @@ _MIDDLE = 0.72
 
 
 class DepthOfField(Filter):
-    """Focus like a lens: what lies nearer or farther spreads into discs of light (bokeh).
+    """Focus like a lens: surfaces that are nearer or farther spread into discs of light (bokeh).
 
     The circle of confusion is `f / N * f / sensor * width * (1 / focus - 1 / depth)` across, as Cycles' cameras project
     (pinhole), times `focus / (focus - f)` for a thin lens. Every pixel gathers what scatters over it: what is in front
@@ -55,11 +55,11 @@ class DepthOfField(Filter):
     mask = Field(1.0, doc="How much of its blur each pixel gets, 0..1.")
     focus: Annotated[
         Literal["point", "distance"],
-        Doc("Point: what lies there in the picture is sharp. Distance: what is so far away."),
+        Doc("Point: the surface at that place in the picture is sharp. Distance: surfaces at that distance are."),
     ] = "point"
-    focus_point: Annotated[Position, Doc("What is sharp, for focus by point.")] = (0.5, 0.5)
+    focus_point: Annotated[Position, Doc("The point that is sharp, for focus by point.")] = (0.5, 0.5)
     focus_distance: Annotated[
-        float, Slider(0.1, 100.0, unit="scene", minimum=1e-3, doc="How far away it is sharp, for focus by distance.")
+        float, Slider(0.1, 100.0, unit="scene", minimum=1e-3, doc="The distance that is sharp, for focus by distance.")
     ] = 8.0
     f_number: Annotated[
         float,
@@ -82,13 +82,13 @@ class DepthOfField(Filter):
         ),
     ] = 36.0
     meters: Annotated[
-        float, Slider(0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="How long a unit of the scene is.")
+        float, Slider(0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="The length of a unit of the scene.")
     ] = 1.0
     convention: Annotated[
         Literal["thin lens", "pinhole"], Doc("Thin lens: focusing near magnifies. Pinhole: it does not, as in Cycles.")
     ] = "thin lens"
     max_blur: Annotated[
-        float, Slider(0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="Larger discs are this large.")
+        float, Slider(0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="The largest diameter of discs.")
     ] = 0.03
     aperture: Annotated[Literal["round", "blades"], Doc("The shape of bokeh.")] = "round"
     blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=64, doc="Corners of bokeh by blades.")] = 6

@@ -5,12 +5,12 @@ from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Reach, Sl
 
 
 class MotionBlur(Filter):
-    """Blur what moves along its path, as far as it gets while the shutter is open.
+    """Blur moving surfaces along their paths while the shutter is open.
 
-    A gather in the manner of McGuire et al. 2012, Jimenez 2014 and Guertin et al. 2014: the fastest motion around says
-    from where things may pass before a pixel, and for how long each of them covers it; the rest of the time shows what
-    lies on the pixel's own path. Paths are parabolas through the places before, now and after. Where the velocity is
-    0 and nothing passes by, pixels stay as they are.
+    A gather filter after McGuire et al. 2012, Jimenez 2014 and Guertin et al. 2014: the fastest motion around tells
+    which surfaces may pass in front of a pixel, and for how long each of them covers it; the rest of the time shows the
+    surfaces on the pixel's own path. Paths are parabolas through the positions before, now and after. Where the
+    velocity is 0 and nothing passes, pixels stay unchanged.
     """
 
     aliases = (
@@ -28,7 +28,7 @@ class MotionBlur(Filter):
             "Where z and w are 0, motion goes on evenly."
         ),
     )
-    depth = Field(0.0, doc="Says what passes before what. Without it, all is equally deep.")
+    depth = Field(0.0, doc="Shows which surfaces are in front. Without it, all are equally deep.")
     shutter: Annotated[
         float,
         Slider(
@@ -44,7 +44,7 @@ class MotionBlur(Filter):
         Literal["centered", "start", "end"],
         Doc("When the shutter is open: around the frame, from it on (start) or until it (end)."),
     ] = "centered"
-    path: Annotated[Literal["curved", "straight"], Doc("Straight ignores where things go after the frame.")] = "curved"
+    path: Annotated[Literal["curved", "straight"], Doc("Straight ignores the motion after the frame.")] = "curved"
     max_length: Annotated[
         float, Slider(0.0, 0.2, unit="height", minimum=0.0, maximum=1.0, doc="Longer paths are shortened to this.")
     ] = 0.06
@@ -56,7 +56,7 @@ class MotionBlur(Filter):
             unit="count",
             minimum=2,
             maximum=1024,
-            doc="Along a path; where it has more pixels, noise takes the place of those left out.",
+            doc="Samples along a path; if it has more pixels, noise replaces those that are left out.",
         ),
     ] = 64
 

@@ -19,7 +19,7 @@ from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_siz
 
 
 class AmbientOcclusion(Filter):
-    """Darken corners, creases and contacts: how much of an even sky every surface sees within a radius.
+    """Darken corners, creases and contacts: how much of a uniform sky every surface sees within a radius.
 
     From depth, better with normals. 1 is open. Multiply ambient or indirect light with it, never lamps or glow. Modes:
     gtao, the cosine-weighted share of the sky between two horizons (Jimenez et al. 2016); hbao, the share of solid
@@ -36,7 +36,7 @@ class AmbientOcclusion(Filter):
     proxy_notes = (
         ProxyNote(
             ("bent_normal", "occlusion"),
-            "what hides what is read from depth, which has fewer steps in a proxy and is never mixed",
+            "occlusion is computed from depth, which is not interpolated in a proxy",
         ),
     )
 
@@ -64,7 +64,7 @@ class AmbientOcclusion(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e9,
-            doc="How far objects go on behind what is seen of them. For bitmask, hemisphere and crytek.",
+            doc="The assumed thickness of objects. For bitmask, hemisphere and crytek.",
         ),
     ] = 0.5
     power: Annotated[
@@ -72,7 +72,7 @@ class AmbientOcclusion(Filter):
         Slider(0.25, 4.0, unit="ratio", minimum=0.01, maximum=16.0, doc="Contrast: 1 is physical, more is darker."),
     ] = 1.0
     multi_bounce: Annotated[
-        bool, Doc("Brighten and tint `out` by the light that walls hand on to each other (Jimenez et al. 2016).")
+        bool, Doc("Brighten and tint `out` by the light that surfaces reflect onto each other (Jimenez et al. 2016).")
     ] = False
     quality: Annotated[
         Literal["preview", "quality", "reference"],
@@ -83,12 +83,14 @@ class AmbientOcclusion(Filter):
         Doc("Half measures every other pixel of every other row: four times as fast, fine detail is lost."),
     ] = "full"
     denoise: Annotated[
-        bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
+        bool, Doc("Average 4 x 4 pixels of the same surface, which compensates for their few samples: edges stay.")
     ] = True
 
     out = OutputSocket(Image(doc="The color that ambient light is multiplied with."))
-    occlusion = OutputSocket(Field(doc="1 where all is open, 0 where nothing is."))
-    bent_normal = OutputSocket(Vector(width=3, doc="Where most light comes from: unit, in the world."))
+    occlusion = OutputSocket(Field(doc="1 where everything is open, 0 where nothing is."))
+    bent_normal = OutputSocket(
+        Vector(width=3, doc="The direction from which most light comes: unit length, in the world.")
+    )
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

@@ -23,21 +23,17 @@ _RAYS = {"preview": 1, "quality": 4, "reference": 32}
 
 
 class ContactShadows(Filter):
-    """Ground things with the short shadows that they throw where they touch, from a sun or a lamp.
+    """Add the short shadows where objects touch, from a sun or a lamp.
 
-    A ray from every pixel towards the light is followed through the picture for a short way, until it meets something
-    that depth says is there (McGuire and Mara 2014). A light with a size gives soft edges, the softer the farther away
-    what throws them is. Surfaces that face away from the light are left as they are: they are dark already. What is not
-    in the picture throws no shadow.
+    A ray from every pixel toward the light is followed through the picture for a short distance, until it meets a
+    surface, according to depth (McGuire and Mara 2014). A light with a size gives soft edges, softer the farther away
+    the shadow caster is. Surfaces that face away from the light stay unchanged: they are dark already. Objects outside
+    of the picture cast no shadow.
     """
 
     aliases = ("screen space shadows", "drop shadow", "shadow", "shadows", "contact shadow", "ray shadows")
 
-    proxy_notes = (
-        ProxyNote(
-            ("shadow",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"
-        ),
-    )
+    proxy_notes = (ProxyNote(("shadow",), "occlusion is computed from depth, which is not interpolated in a proxy"),)
 
     image = Image((1.0, 1.0, 1.0, 1.0), doc="The picture that is shaded. Without a link, white.")
     depth = Field(doc="Planar distance along the way the camera looks.")
@@ -52,7 +48,7 @@ class ContactShadows(Filter):
     ] = (-2.0, -2.0, 3.0)
     length: Annotated[
         float,
-        Slider(0.01, 5.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away what throws a shadow may be."),
+        Slider(0.01, 5.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away a shadow caster may be."),
     ] = 0.5
     softness: Annotated[
         float,
@@ -62,7 +58,7 @@ class ContactShadows(Filter):
             unit="deg",
             minimum=0.0,
             maximum=60.0,
-            doc="How wide the light is, seen from the surface: the sun 0.5.",
+            doc="The angular size of the light seen from the surface: the sun has 0.5.",
         ),
     ] = 4.0
     thickness: Annotated[
@@ -73,10 +69,10 @@ class ContactShadows(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e8,
-            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+            doc="The assumed thickness of objects: rays that are farther behind them pass.",
         ),
     ] = 0.3
-    color: Annotated[RGBA, Doc("What is left of the picture in the shadow; alpha is how dark shadows are.")] = (
+    color: Annotated[RGBA, Doc("The color of the shadow; its alpha is the strength of the shadow.")] = (
         0.0,
         0.0,
         0.0,

@@ -79,14 +79,14 @@ _Place = tuple[float, float, float]
 
 
 class DeferredLighting(Filter):
-    """Light a render anew from its albedo, normals and positions, with up to 1024 lights of your own.
+    """Relight a render from its albedo, normals and positions, with up to 1024 lights of your own.
 
-    Points, spots, suns and balls; those with negative intensity take light away. Surfaces scatter light as Lambert
-    says, and mirror it by GGX facets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe (Lafortune and
-    Willems 1994); balls by the point nearest to the mirrored ray (Karis 2013). Light falls off with the square of the
-    distance, times (1 - (d / reach)^4)^2 where a reach is given: among many lights, those that have one are the fast
-    ones. A swarm adds many small lights at once. Nothing casts shadows. `out` is diffuse and specular light and
-    emission.
+    Points, spots, suns and spheres; a light with negative intensity subtracts light. Diffuse reflection is Lambert's;
+    specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe
+    (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis 2013). Light falls off
+    with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights, those with a
+    reach are fast. A swarm adds many small lights at once. Nothing casts shadows. `out` is diffuse and specular light
+    and emission.
     """
 
     aliases = (
@@ -99,14 +99,14 @@ class DeferredLighting(Filter):
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
     depth = Field(0.0, doc="Planar distance along the way the camera looks, if there is no position.")
     position = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
-    camera = CameraSocket(0.0, doc="Without one, highlights look as if every surface were seen straight on.")
+    camera = CameraSocket(0.0, doc="Without one, highlights look as if every surface faced the camera.")
     material = Vector((0.0, 0.0), width=2, doc="Metal and roughness, 0..1, in place of the two values.")
     emission = Image((0.0, 0.0, 0.0, 0.0), doc="Added as it is.")
-    occlusion = Field(1.0, doc="How open surfaces are, 0..1: the ambient light is multiplied with it, no other.")
+    occlusion = Field(1.0, doc="Ambient occlusion, 0..1: only the ambient light is multiplied with it.")
     model: Annotated[Literal["ggx", "phong"], Doc("The shape of highlights.")] = "ggx"
     roughness: Annotated[Fraction, Doc("How wide highlights are: 0 polished, 1 dull.")] = 0.4
-    metal: Annotated[Fraction, Doc("1 mirrors in the color of the albedo, and scatters nothing.")] = 0.0
-    specular: Annotated[Fraction, Doc("How much other surfaces mirror: 8 percent at 1, seen straight on.")] = 0.5
+    metal: Annotated[Fraction, Doc("1 reflects in the color of the albedo, without diffuse light.")] = 0.0
+    specular: Annotated[Fraction, Doc("The reflectance of non-metals: 8 percent at 1, straight on.")] = 0.5
     lights: Annotated[LightList, Doc("Places are in the world, intensities in W/sr, those of suns in W/m2.")] = (
         numbers_of(_RIG)
     )
@@ -114,18 +114,22 @@ class DeferredLighting(Filter):
     ambient: Annotated[RGBA, Doc("Light from everywhere; its alpha scales it.")] = (0.35, 0.5, 0.8, 1.0)
     ambient_intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", doc="How strong it is.")] = 0.06
     swarm: Annotated[
-        int, Slider(0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="How many point lights are strewn about.")
+        int, Slider(0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="The number of point lights in the swarm.")
     ] = 0
     swarm_place: Annotated[
-        _Place, Slider(-10.0, 10.0, unit="scene"), Doc("The middle of the box that the swarm fills evenly.")
+        _Place, Slider(-10.0, 10.0, unit="scene"), Doc("The center of the box that the swarm fills evenly.")
     ] = (0.0, 0.0, 0.8)
-    swarm_spread: Annotated[_Place, Slider(0.0, 10.0, unit="scene"), Doc("From its middle to its sides.")] = (
+    swarm_spread: Annotated[
+        _Place, Slider(0.0, 10.0, unit="scene"), Doc("The distance from its center to its sides.")
+    ] = (
         5.0,
         4.0,
         0.7,
     )
-    swarm_colors: Annotated[Stops, Doc("What the swarm's colors are taken from, evenly.")] = _NEON
-    swarm_intensity: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="Of each of them, in W/sr.")] = 2.0
+    swarm_colors: Annotated[Stops, Doc("The ramp from which the swarm's colors are taken, evenly.")] = _NEON
+    swarm_intensity: Annotated[
+        float, Slider(-10.0, 10.0, unit="scene", doc="The intensity of each light, in W/sr.")
+    ] = 2.0
     swarm_reach: Annotated[
         float,
         Slider(
@@ -135,8 +139,8 @@ class DeferredLighting(Filter):
     swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number strews them otherwise.")] = 0
 
     out = OutputSocket()
-    diffuse = OutputSocket(Image(doc="The light that surfaces scatter."))
-    specular_light = OutputSocket(Image(doc="The light that they mirror."))
+    diffuse = OutputSocket(Image(doc="The diffuse light."))
+    specular_light = OutputSocket(Image(doc="The specular light."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera, placed = draw.camera(self.camera), draw.is_linked(self.position)

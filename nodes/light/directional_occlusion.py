@@ -23,22 +23,18 @@ _COARSE = (24, 12)
 
 
 class DirectionalOcclusion(Filter):
-    """Light matte surfaces by what surrounds them, with colored shadows and colors that bleed onto neighbors.
+    """Light matte surfaces by their surroundings, with colored shadows and color bleeding between neighbors.
 
-    Directional occlusion (Ritschel et al. 2009): each surface gets the light of the environment, without what is hidden
-    behind what is near, and with one bounce of the light of that instead. Both are taken below the horizons of slices
-    through the view, weighted by the cosine to the normal, as gtao does (Jimenez et al. 2016): an even environment
-    gives the albedo times its light times the occlusion. `light` is what is added, `out` the picture with it. Alpha is
-    kept.
+    Directional occlusion (Ritschel et al. 2009): each surface gets the light of the environment, except where near
+    surfaces hide it; from these it gets one bounce of light instead. Both are computed below the horizons of slices
+    through the view, weighted by the cosine to the normal, as in gtao (Jimenez et al. 2016). A uniform environment
+    gives the albedo times its light times the occlusion. `light` is the added light, `out` the picture with it. Alpha
+    is kept.
     """
 
     aliases = ("ssdo", "bent normal", "color bleeding", "directional ambient occlusion", "indirect light")
 
-    proxy_notes = (
-        ProxyNote(
-            ("light",), "what hides what is read from depth, which has fewer steps in a proxy and is never mixed"
-        ),
-    )
+    proxy_notes = (ProxyNote(("light",), "occlusion is computed from depth, which is not interpolated in a proxy"),)
 
     image = Image(doc="The lit scene, whose light bounces on to neighbors.")
     depth = Field(doc="Planar distance along the way the camera looks.")
@@ -48,7 +44,7 @@ class DirectionalOcclusion(Filter):
     environment = Image(
         0.0,
         own_size=True,
-        doc="All that surrounds the scene, by longitude and latitude. Without a link black: only surfaces give light.",
+        doc="The surroundings, by longitude and latitude. Without a link black: only surfaces give light.",
     )
     radius: Annotated[
         float,
@@ -58,16 +54,16 @@ class DirectionalOcclusion(Filter):
             unit="scene",
             minimum=1e-6,
             maximum=1e6,
-            doc="How far surfaces block and hand on light, in world units.",
+            doc="How far surfaces block and reflect light, in world units.",
         ),
     ] = 1.0
-    falloff: Annotated[Fraction, Doc("The outer part of the radius over which that fades out: 0 is a hard end.")] = 0.5
+    falloff: Annotated[Fraction, Doc("The outer part of the radius over which this fades out: 0 is a hard end.")] = 0.5
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
     bounce: Annotated[
-        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much light bounces on: 1 is physical.")
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="The strength of bounced light: 1 is physical.")
     ] = 1.0
     rotation: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above.")
+        float, Slider(-180.0, 180.0, unit="deg", doc="Rotates the environment counterclockwise, seen from above.")
     ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     quality: Annotated[
@@ -79,7 +75,7 @@ class DirectionalOcclusion(Filter):
         Doc("Half measures every other pixel of every other row: four times as fast, fine detail is lost."),
     ] = "full"
     denoise: Annotated[
-        bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
+        bool, Doc("Average 4 x 4 pixels of the same surface, which compensates for their few samples: edges stay.")
     ] = True
 
     out = OutputSocket()

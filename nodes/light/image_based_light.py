@@ -36,7 +36,7 @@ _HERE: Mapping[str, Overlap] = MappingProxyType(
 
 
 class ImageBasedLight(Filter):
-    """Relight surfaces by a picture of what surrounds them: matte light by normals, reflections by roughness.
+    """Relight surfaces by a picture of their surroundings: matte light by normals, reflections by roughness.
 
     Matte light is the cosine-weighted mean over all directions. Reflections take the picture blurred by the GGX lobe
     of the roughness (Walter et al. 2007), times how much a surface reflects at that angle (Karis 2013, split sum).
@@ -54,22 +54,22 @@ class ImageBasedLight(Filter):
     environment = Image(
         (1.0, 1.0, 1.0, 1.0),
         own_size=True,
-        doc=("All that surrounds the scene, by longitude and latitude. Without a link, an even white."),
+        doc=("The surroundings, by longitude and latitude. Without a link, a uniform white."),
     )
     albedo = Image((0.8, 0.8, 0.8, 1.0), doc="Color of the surfaces. Without a link, a light gray.")
     roughness = Field(0.5, doc="0 is a mirror, 1 is matte. As in Blender, the square root of GGX's alpha.")
     metallic = Field(0.0, doc="1 where surfaces are metal: they only reflect, in their own color.")
-    occlusion = Field(1.0, doc="Of the light, what gets there: 1 is all.")
+    occlusion = Field(1.0, doc="The part of the light that reaches the surface: 1 is all of it.")
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
     rotation: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above.")
+        float, Slider(-180.0, 180.0, unit="deg", doc="Rotates the environment counterclockwise, seen from above.")
     ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     specular: Annotated[
         Fraction, Doc("How much non-metals reflect: 0.5 is 4 percent head on, as for most materials.")
     ] = 0.5
 
-    out = OutputSocket(Image(doc="All of it, opaque where there is a surface."))
+    out = OutputSocket(Image(doc="All of the light, opaque on surfaces."))
     diffuse = OutputSocket(Image(doc="The matte part."))
     reflection = OutputSocket(Image(doc="The reflected part."))
 

@@ -10,12 +10,12 @@ _SAMPLES = {"preview": 4, "quality": 12, "reference": 64}
 
 
 class LightShafts(Filter):
-    """Fill the air with haze that a light shines through: what stands in its way throws shafts of shadow.
+    """Fill the air with haze: objects in front of the light cast shafts of shadow.
 
-    Light that the haze scatters once towards the camera is added up along the way to every pixel. Whether it gets to
-    each place on that way is found by a ray through the picture, by depth: shafts have their place in the world, unlike
-    those of Sun Beams, which smear what is bright. A lamp's light is sampled by equal angles (Kulla and Fajardo 2012),
-    haze scatters forward as in Henyey and Greenstein 1941. The picture is not dimmed: Fog does that.
+    The light that the haze scatters once toward the camera is summed along the ray of every pixel. For each place on
+    the ray, a second ray through the picture, by depth, finds whether the light reaches it. So shafts have a place in
+    the world, unlike those of Sun Beams, which smear bright pixels. Lamps are sampled by equal angles (Kulla and
+    Fajardo 2012); haze scatters forward as in Henyey and Greenstein 1941. The picture is not dimmed: Fog does that.
     """
 
     aliases = (
@@ -60,7 +60,7 @@ class LightShafts(Filter):
     distance: Annotated[
         float,
         Slider(
-            1.0, 100.0, unit="scene", minimum=1e-3, maximum=1e8, doc="How far away haze ends, where nothing else does."
+            1.0, 100.0, unit="scene", minimum=1e-3, maximum=1e8, doc="How far away haze ends, if no surface is nearer."
         ),
     ] = 20.0
     thickness: Annotated[
@@ -71,11 +71,11 @@ class LightShafts(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e8,
-            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+            doc="The assumed thickness of objects: rays that are farther behind them pass.",
         ),
     ] = 1.0
     quality: Annotated[
-        Literal["preview", "quality", "reference"], Doc("4, 12 or 64 places on the way to every pixel.")
+        Literal["preview", "quality", "reference"], Doc("4, 12 or 64 samples along the ray of every pixel.")
     ] = "quality"
 
     out = OutputSocket(Image(doc="The picture with the light of the haze."))

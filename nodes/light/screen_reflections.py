@@ -25,12 +25,12 @@ _FOUND = Vector(width=4)
 
 
 class ScreenReflections(Filter):
-    """Let surfaces mirror what else is in the picture: wet streets, polished floors, glass tables.
+    """Let surfaces reflect the rest of the picture: wet streets, polished floors, glass tables.
 
-    A ray from every pixel is followed through the picture until it meets what depth says is there (McGuire and Mara
-    2014, through a pyramid of nearest depths as in Uludag 2014). Where surfaces are rough, rays scatter as GGX does
-    (Heitz 2018), so reflections are sharp where things touch and streak with the distance. How much is mirrored is
-    Schlick's (1994) Fresnel. What is not in the picture cannot be mirrored: there, the surface stays as it is.
+    A ray from every pixel is followed through the picture until it meets a surface, according to depth (McGuire and
+    Mara 2014, through a pyramid of nearest depths as in Uludag 2014). On rough surfaces rays scatter by GGX (Heitz
+    2018), so reflections are sharp at contacts and blur with the distance. The strength is Schlick's (1994) Fresnel.
+    Objects outside of the picture cannot be reflected: there the surface stays unchanged.
     """
 
     aliases = (
@@ -41,7 +41,7 @@ class ScreenReflections(Filter):
     proxy_notes = (
         ProxyNote(
             ("confidence", "reflection"),
-            "what hides what is read from depth, which has fewer steps in a proxy and is never mixed",
+            "occlusion is computed from depth, which is not interpolated in a proxy",
         ),
     )
 
@@ -51,16 +51,21 @@ class ScreenReflections(Filter):
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     material = Vector(0.0, width=2, doc="Metal and roughness, 0..1. Without a link, no metal, and the roughness below.")
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces: metals tint what they mirror.")
-    mask = Field(1.0, doc="What mirrors, and how much: the floor, puddles.")
+    mask = Field(1.0, doc="Where, and how strongly, surfaces reflect: the floor, puddles.")
     strength: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="1 is physical.")] = 1.0
     reflectance: Annotated[
-        Fraction, Doc("How much is mirrored straight on, F0: 0.02 water, 0.04 plastic and glass, 1 a perfect mirror.")
+        Fraction, Doc("The reflectance straight on, F0: 0.02 water, 0.04 plastic and glass, 1 a perfect mirror.")
     ] = 0.04
-    roughness: Annotated[Fraction, Doc("0 mirrors sharply. As in Blender: GGX's alpha is its square.")] = 0.2
+    roughness: Annotated[Fraction, Doc("0 is a sharp mirror. As in Blender, GGX's alpha is its square.")] = 0.2
     distance: Annotated[
         float,
         Slider(
-            0.1, 100.0, unit="scene", minimum=1e-4, maximum=1e8, doc="How far away things are mirrored, in world units."
+            0.1,
+            100.0,
+            unit="scene",
+            minimum=1e-4,
+            maximum=1e8,
+            doc="The distance up to which objects are reflected, in world units.",
         ),
     ] = 20.0
     fade: Annotated[Fraction, Doc("The last part of that distance, over which reflections fade out.")] = 0.5
@@ -72,7 +77,7 @@ class ScreenReflections(Filter):
             unit="height",
             minimum=0.0,
             maximum=1.0,
-            doc="How wide reflections of what is near the border of the picture fade out.",
+            doc="The width at the border of the picture over which reflections fade out.",
         ),
     ] = 0.08
     thickness: Annotated[
@@ -83,10 +88,10 @@ class ScreenReflections(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e8,
-            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+            doc="The assumed thickness of objects: rays that are farther behind them pass.",
         ),
     ] = 0.3
-    sky: Annotated[bool, Doc("Mirror what shows through where nothing is, as if it were infinitely far.")] = True
+    sky: Annotated[bool, Doc("Reflect the background, as if it were infinitely far.")] = True
     quality: Annotated[
         Literal["preview", "quality", "reference"], Doc("4, 16 or 64 rays to a pixel where surfaces are rough.")
     ] = "quality"
@@ -98,13 +103,13 @@ class ScreenReflections(Filter):
             unit="count",
             minimum=1,
             maximum=8192,
-            doc="The most steps that a ray takes. Too few, and far reflections are lost where the picture is busy.",
+            doc="The most steps of a ray. With too few, distant reflections are lost where the picture is complex.",
         ),
     ] = 256
 
-    out = OutputSocket(Image(doc="The picture with its reflections, instead of the part that is mirrored."))
-    reflection = OutputSocket(Image(doc="What was added to it; its alpha is how much was taken away."))
-    confidence = OutputSocket(Field(doc="How surely what is mirrored was found, 0..1."))
+    out = OutputSocket(Image(doc="The picture with its reflections."))
+    reflection = OutputSocket(Image(doc="The light that was added; its alpha is how much of the picture was replaced."))
+    confidence = OutputSocket(Field(doc="The confidence of the reflection, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

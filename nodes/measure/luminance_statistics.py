@@ -19,7 +19,9 @@ class LuminanceStatistics(Filter):
     image = Image()
     delta: Annotated[
         float,
-        Slider(1e-6, 1e-2, unit="scene", minimum=1e-12, doc="Keeps black pixels from ruling the logarithmic average."),
+        Slider(
+            1e-6, 1e-2, unit="scene", minimum=1e-12, doc="Keeps black pixels from dominating the logarithmic average."
+        ),
     ] = 1e-5
     alpha_weighted: Annotated[
         bool, Doc("Count each pixel by its alpha, with its color unpremultiplied, so that empty areas do not darken.")

@@ -35,7 +35,7 @@ Operation = Literal[
 
 
 class Math(Pointwise):
-    """Arithmetic with Fields and Numbers. What has no result (a division by 0, a root of less than 0) is 0."""
+    """Arithmetic with Fields and Numbers. An undefined result (a division by 0, a root of a negative number) is 0."""
 
     aliases = (
         "multiply", "add", "subtract", "divide", "expression", "calculate", "arithmetic", "calculations", "vector math",

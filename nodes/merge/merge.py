@@ -35,7 +35,7 @@ Mode = Literal[
 
 
 class Merge(Pointwise):
-    """Lay the foreground `a` on the background `b`, whose size the result has.
+    """Combine the foreground `a` with the background `b`. The result has the size of `b`.
 
     Over to plus are the operators of Porter and Duff (1984). The others blend colors where both cover and follow the
     W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a)`. Within
@@ -51,7 +51,7 @@ class Merge(Pointwise):
 
     a = Image(doc="The foreground.")
     b = Image(doc="The background.")
-    mask = Field(1.0, doc="Where the result is seen; elsewhere the background stays.")
+    mask = Field(1.0, doc="Where the result is visible; elsewhere the background stays.")
     mode: Annotated[
         Mode,
         Doc(

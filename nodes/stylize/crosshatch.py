@@ -16,8 +16,10 @@ class Crosshatch(Pointwise):
 
     image = Image()
     size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one stroke to the next.")] = 7.0
-    thickness: Annotated[Fraction, Doc("How thick strokes get, as a part of the space that they have.")] = 0.35
-    layers: Annotated[int, Slider(1, 6, unit="count", minimum=1, maximum=16, doc="How often strokes cross.")] = 4
+    thickness: Annotated[Fraction, Doc("The thickness of strokes, as a part of their spacing.")] = 0.35
+    layers: Annotated[
+        int, Slider(1, 6, unit="count", minimum=1, maximum=16, doc="The number of layers of strokes.")
+    ] = 4
     angle: Annotated[
         float, Slider(-90.0, 90.0, unit="deg", doc="Direction of the first layer: 0 is level, 45 rises to the right.")
     ] = 45.0

@@ -4,7 +4,7 @@ from .._declare import Doc, Fraction, Image, Pointwise, ProxyNote, Slider, Trait
 
 
 class FilmGrain(Pointwise):
-    """The grain of photographic film: gone in black and white, strongest in the tones between, new in every frame.
+    """The grain of photographic film: none in black and white, strongest in the tones between, new in every frame.
 
     Of the silver grains that light L meets, a share u = L / (L + 0.18) is developed (a logistic characteristic curve);
     each is or is not, so density varies as sqrt(u (1 - u)), as in the Boolean model of film (Newson, Delon and Galerne,
@@ -28,7 +28,7 @@ class FilmGrain(Pointwise):
             unit="EV",
             minimum=0.0,
             maximum=8.0,
-            doc="How far middle gray strays, as a standard deviation; clumps finer than pixels stray less.",
+            doc="The standard deviation of middle gray, in stops; clumps finer than pixels vary less.",
         ),
     ] = 0.2
     size: Annotated[float, Slider(0.5, 8.0, unit="px", minimum=0.01, doc="Size of a clump of grains.")] = 1.5

@@ -4,10 +4,10 @@ from .._declare import Doc, Image, Pointwise, ProxyNote, Slider
 
 
 class Halftone(Pointwise):
-    """Print the picture: dots or lines of ink on white paper, which make tones by the area that they cover.
+    """Print the picture: dots or lines of ink on white paper, whose areas make the tones.
 
-    Every screen covers exactly the share of the paper that the tone needs, in linear light, so that from afar the
-    colors are right up to white (Demichel's equation; full gray component replacement). Four inks lie at the
+    Every screen covers exactly the part of the paper that the tone needs, in linear light, so that from a distance the
+    colors are correct up to white (Demichel's equation; full gray component replacement). The four inks have the
     printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
     """
 
@@ -23,5 +23,5 @@ class Halftone(Pointwise):
     pattern: Annotated[Literal["dot", "line", "cross"], Doc("Round dots, parallel lines, or a grid of lines.")] = "dot"
     size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one dot or line to the next.")] = 6.0
     angle: Annotated[
-        float, Slider(-90.0, 90.0, unit="deg", doc="Turns all screens, on top of each ink's own angle.")
+        float, Slider(-90.0, 90.0, unit="deg", doc="Rotates all screens, in addition to each ink's own angle.")
     ] = 0.0

@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
 
 
 class Kuwahara(Filter):
-    """Paint over fine detail and keep the edges: every pixel takes the mean of the calmest part of its surroundings.
+    """Paint over fine detail and keep edges: every pixel becomes the mean of the calmest part around it.
 
     Classic: the quadrant with the least variance (Kuwahara et al. 1976). Generalized: eight soft sectors of a disc,
     each counting less the more it varies (Papari et al. 2007). Anisotropic: the disc is drawn out along the strokes of
@@ -37,7 +37,7 @@ class Kuwahara(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=12.0,
-            doc="How strictly the calmest sectors win; without effect on classic.",
+            doc="How strongly the most uniform sectors dominate; without effect on classic.",
         ),
     ] = 8.0
     smoothing: Annotated[

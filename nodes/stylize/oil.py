@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, ProxyNote, Slider,
 
 
 class Oil(Filter):
-    """Paint in dabs of oil: every pixel takes the color of the brightness that is most frequent around it.
+    """Paint in dabs of oil: every pixel gets the color of the most frequent brightness around it.
 
     Within a disc, pixels are sorted into steps of tone (the luminance as a display shows it, sRGB, up to 1); the mean
     color of the fullest step is shown, of equally full ones that of the darkest (Holzmann 1988, "Beyond Photography").

@@ -4,7 +4,7 @@ from .._declare import Image, Pointwise, Slider
 
 
 class Toon(Pointwise):
-    """Paint in few flat tones, as cartoons are: brightness in steps, hues and saturation as they are.
+    """Paint in few flat tones, as in cartoons: brightness in steps, hue and saturation unchanged.
 
     Soft quantization (Winnemöller et al. 2006) of the tone, which is the luminance as a display shows it (sRGB):
     between two steps it follows tanh, made continuous, so that without sharpness nothing changes. Black and white are

@@ -4,7 +4,7 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider
 
 
 class TvSnow(Pointwise):
-    """Snow over the picture, as of a television set whose aerial hangs loose.
+    """Add snow to the picture, as on a television set without a signal.
 
     Every scan line is white noise through the three taps 1/4, 1/2, 1/4, for a channel's band is limited along lines and
     never across; hash: pcg3d (Jarzynski and Olano, 2020). Snow comes with the signal, so it is mixed with sRGB codes
@@ -35,13 +35,13 @@ class TvSnow(Pointwise):
             doc="1 keeps the noise's own range; above, snow is harsher and what passes black and white is cut.",
         ),
     ] = 1.6
-    lines: Annotated[Fraction, Doc("How much whole lines differ in brightness.")] = 0.3
+    lines: Annotated[Fraction, Doc("How much the brightness of whole lines varies.")] = 0.3
     color: Annotated[Fraction, Doc("0 is gray, as sets with a color killer show it; 1 is as colorful as can be.")] = 0.0
     interlaced: Annotated[
         bool, Doc("Only every second line is new in a frame, even and odd ones in turn: for frames that are fields.")
     ] = False
-    hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="How many frames snow stays.")] = 1
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another snow.")] = 0
+    hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="For how many frames snow stays the same.")] = 1
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another snow.")] = 0
 
     def identity(self) -> str | None:
         return "image" if self.amount == 0.0 else None

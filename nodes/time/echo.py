@@ -5,7 +5,7 @@ from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider, Vector
 
 
 class Echo(Filter):
-    """Repeat what moves, ever fainter: earlier frames beside this one, as in a multiple exposure.
+    """Repeat moving objects, ever fainter: earlier frames beside this one, as in a multiple exposure.
 
     Echo k is the frame `k spacing` frames before, times `decay^k`. Behind and in front lay them over each other by
     alpha (Porter and Duff 1984), so they need a picture that is not opaque all over; the others also work with light on
@@ -18,7 +18,9 @@ class Echo(Filter):
     )  # fmt: skip
 
     image = Image()
-    echoes: Annotated[int, Slider(0, 12, unit="count", minimum=0, maximum=127, doc="How many frames besides this.")] = 4
+    echoes: Annotated[
+        int, Slider(0, 12, unit="count", minimum=0, maximum=127, doc="How many frames are added to this one.")
+    ] = 4
     spacing: Annotated[
         int,
         Slider(-8, 8, unit="count", doc="How many frames lie between two echoes; below 0 they come from the future."),

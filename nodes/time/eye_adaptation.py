@@ -5,23 +5,21 @@ from .._declare import Doc, Draw, Drawn, Image, Number, OutputSocket, ProxyNote,
 
 
 class EyeAdaptation(Temporal):
-    """Get used to light and dark as eyes do: blinded out of a tunnel, blind in a dark room, until the eye has followed.
+    """Adapt to light and dark as eyes do: blinded after a tunnel, blind in the dark, until they adapt.
 
-    The luminance that the eye is adapted to follows that of the picture (its logarithmic average, Reinhard et al. 2002)
-    by `A += (L - A) (1 - exp(-dt / T))`, the same at any frame rate, and becomes the key. Natural: T goes from 0.1 s of
-    cones to 0.4 s of rods, by `s = 0.04 / (0.04 + L)` of L in cd/m2, and the key is `1.03 - 2 / (2 + log10(L + 1))`
-    (Krawczyk et al. 2005). Before the first frame, the eye was used to that.
+    The adapted luminance follows that of the picture (its logarithmic average, Reinhard et al. 2002) by `A += (L - A)
+    (1 - exp(-dt / T))`, the same at any frame rate, and becomes the key. Natural: T goes from 0.1 s of cones to 0.4 s
+    of rods, by `s = 0.04 / (0.04 + L)` with L in cd/m2, and the key is `1.03 - 2 / (2 + log10(L + 1))` (Krawczyk et al.
+    2005). At the first frame, the eye is adapted to it.
     """
 
     aliases = ("auto exposure", "adaptation", "auto gain", "hdr adaptation", "eye adaption")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
-    proxy_notes = (ProxyNote(("out",), "it measures the logarithm of light, which of averages is more"),)
+    proxy_notes = (ProxyNote(("out",), "the logarithm of an average is larger than the average of the logarithms"),)
 
     image = Image()
-    luminance = Number(0.0, doc="What the eye follows instead: a spot, a histogram's middle. See Auto Exposure.")
-    model: Annotated[Literal["custom", "natural"], Doc("How fast the eye is, and what it makes of what it knows.")] = (
-        "custom"
-    )
+    luminance = Number(0.0, doc="The luminance that the eye follows instead, such as that of Auto Exposure.")
+    model: Annotated[Literal["custom", "natural"], Doc("How fast the eye adapts, and to which key.")] = "custom"
     to_bright: Annotated[
         float,
         Slider(0.05, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="Custom: how long the eye needs in more light."),
@@ -33,8 +31,8 @@ class EyeAdaptation(Temporal):
     scale: Annotated[
         Literal["stops", "light"],
         Doc(
-            "What follows evenly: stops, as things look, or light itself, as published, which is quick towards the "
-            "bright."
+            "What changes evenly: stops, as perceived, or light itself, as published, which adapts "
+            "faster to brightness."
         ),
     ] = "stops"
     key: Annotated[
@@ -55,11 +53,11 @@ class EyeAdaptation(Temporal):
             0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
         ),
     ] = 8.0
-    compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than the eye makes it.")] = 0.0
+    compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than adapted.")] = 0.0
 
     out = OutputSocket()
     exposure = OutputSocket(Number(doc="In stops."))
-    adapted = OutputSocket(Number(doc="The luminance that the eye is used to."))
+    adapted = OutputSocket(Number(doc="The luminance to which the eye is adapted."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         number, natural = Number(), self.model == "natural"

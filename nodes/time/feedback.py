@@ -8,12 +8,12 @@ _SMALLEST = 1e-3
 
 
 class Feedback(Temporal):
-    """Film the screen that shows what is filmed: tunnels, spirals and trails that drift, turn, grow and change color.
+    """Feed the picture back into itself: tunnels, spirals and trails that drift, rotate and change color.
 
-    What the frame before became is scaled and turned about the pivot, moved, its hue turned, faded, and the picture
-    joins it. It is read by Catmull-Rom (Mitchell and Netravali 1988), held within the four pixels around, so that it
-    stays sharp and never rings. Nothing gets brighter than the ceiling; the history is kept in 32 bits. Before the
-    first frame, the screen showed that.
+    The previous result is scaled and rotated about the pivot, moved, its hue rotated, faded, and combined with the
+    picture. It is read by Catmull-Rom interpolation (Mitchell and Netravali 1988), limited to the four pixels around,
+    so that it stays sharp and never rings. Nothing gets brighter than the ceiling; the history is kept in 32 bits. The
+    first frame is its own past.
     """
 
     aliases = (
@@ -31,19 +31,17 @@ class Feedback(Temporal):
     ] = 1.06
     pivot: Annotated[Position, Doc("The point about which the past turns and grows.")] = (0.5, 0.5)
     hue: Annotated[float, Slider(-60.0, 60.0, unit="deg", doc="How far colors go around the wheel each frame.")] = 10.0
-    decay: Annotated[Fraction, Doc("What is left after one frame.")] = 0.9
+    decay: Annotated[Fraction, Doc("The part that is left after one frame.")] = 0.9
     mode: Annotated[
         Literal["brightest", "add", "screen", "over", "mix"],
         Doc(
-            "How the picture joins its past. Over covers it by alpha; mix keeps the exposure: 1 - decay of it, and "
-            "decay of the past."
+            "How the picture is combined with the past. Over covers the past by alpha; mix keeps the "
+            "exposure: 1 - decay of the picture, and decay of the past."
         ),
     ] = "brightest"
     ceiling: Annotated[
         float,
-        Slider(
-            1.0, 100.0, unit="scene", minimum=0.0, maximum=65504.0, doc="Nothing that comes back is brighter than this."
-        ),
+        Slider(1.0, 100.0, unit="scene", minimum=0.0, maximum=65504.0, doc="The largest light that is fed back."),
     ] = 50.0
     edge: Annotated[Edge, Doc("What lies outside the screen.")] = "black"
 

@@ -5,10 +5,10 @@ from .._declare import Doc, Draw, Drawn, Fraction, Image, Slider, Temporal, Vect
 
 
 class FrameBlend(Temporal):
-    """Blend every frame with all before it, ever fainter: afterimages, ghosts, slow film, calm noise.
+    """Blend every frame with all earlier ones, ever fainter: afterimages, ghosts, slow film, calm noise.
 
-    `y = (1 - a) x + a y'`, y' what the frame before became. By time, `a = exp(-dt / time)`: the picture is the same at
-    any frame rate. The history is kept in 32 bits: in 16, what changes by less than half a step of a half float is
+    `y = (1 - a) x + a y'`, where y' is the result of the previous frame. By time, `a = exp(-dt / time)`: the picture is
+    the same at any frame rate. The history is kept in 32 bits: in 16, a change below half a step of a half float is
     lost, and trails never fade out.
     """
 
@@ -18,12 +18,19 @@ class FrameBlend(Temporal):
     )  # fmt: skip
 
     image = Image()
-    mode: Annotated[Literal["time", "persistence"], Doc("What says how fast the past fades.")] = "time"
+    mode: Annotated[Literal["time", "persistence"], Doc("How the decay of the past is given.")] = "time"
     time: Annotated[
         float,
-        Slider(0.0, 1.0, unit="s", minimum=0.0, maximum=1e4, doc="By time: after so long, 1 / e (37 percent) is left."),
+        Slider(
+            0.0,
+            1.0,
+            unit="s",
+            minimum=0.0,
+            maximum=1e4,
+            doc="By time: the time after which 1 / e (37 percent) is left.",
+        ),
     ] = 0.1
-    persistence: Annotated[Fraction, Doc("By persistence: what is left after one frame, a.")] = 0.7
+    persistence: Annotated[Fraction, Doc("By persistence: the part that is left after one frame, a.")] = 0.7
 
     def passes(self, draw: Draw) -> Drawn:
         decay = self.persistence if self.mode == "persistence" else 0.0

@@ -5,9 +5,9 @@ from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, 
 
 
 class Freeze(Filter):
-    """Hold one frame, or every so many: animation on twos, the stutter of a slow camera.
+    """Hold one frame, or each of every n frames: animation on twos, the stutter of a slow camera.
 
-    All that changes over time upstream stands still.
+    Everything upstream that changes over time stands still.
     """
 
     aliases = (

@@ -6,10 +6,10 @@ from .._declare import Doc, Draw, Drawn, Fraction, Image, OutputSocket, Slider, 
 
 
 class LightTrails(Temporal):
-    """Draw with light: what is bright leaves a trail where it went, as in a long exposure.
+    """Draw with light: bright pixels leave a trail, as in a long exposure.
 
-    `trail = max(bright, a trail')`, trail' what it was in the frame before; by time, `a = exp(-dt / time)`, the same at
-    any frame rate. The picture is seen wherever it is brighter. The trail is kept in 32 bits.
+    `trail = max(bright, a trail')`, where trail' is that of the previous frame; by time, `a = exp(-dt / time)`, the
+    same at any frame rate. The picture is visible wherever it is brighter. The trail is kept in 32 bits.
     """
 
     aliases = (
@@ -24,14 +24,17 @@ class LightTrails(Temporal):
     time: Annotated[
         float,
         Slider(
-            0.02, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="After so long, 1 / e (37 percent) of the light is left."
+            0.02,
+            5.0,
+            unit="s",
+            minimum=0.0,
+            maximum=1e4,
+            doc="The time after which 1 / e (37 percent) of the light is left.",
         ),
     ] = 0.5
     threshold: Annotated[
         float,
-        Slider(
-            0.0, 5.0, unit="scene", minimum=0.0, doc="Only what is brighter than this leaves a trail; 0 is everything."
-        ),
+        Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="Only light above this leaves a trail; at 0, all light does."),
     ] = 1.0
     knee: Annotated[Fraction, Doc("The part of the threshold over which light fades in.")] = 0.5
     intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright the trails are.")] = 1.0

@@ -7,7 +7,7 @@ from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, 
 class TimeOffset(Filter):
     """Show another frame: later ones above zero, earlier ones below.
 
-    All that changes over time upstream is seen then: sequences, keys, expressions, noise, what moves in a scene.
+    Everything upstream is computed at that time: sequences, keys, expressions, noise, motion in a scene.
     """
 
     aliases = (

@@ -6,7 +6,7 @@ from .._declare import Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Sli
 
 
 class TimeSpeed(Filter):
-    """Play faster, slower or backward, or at any pace: by a speed, or by keys that say which frame is shown when.
+    """Play faster, slower or backward: by a speed, or by keys that say which frame is shown when.
 
     By speed, the frame shown is `pivot + speed (frame - pivot)`. A speed that changes would have to be summed up over
     all frames before; key `source` instead, as in a time remap: the steeper its curve, the faster.
@@ -22,7 +22,7 @@ class TimeSpeed(Filter):
     image = Image((0.0, 0.0, 0.0, 0.0))
     field = Field(0.0)
     vector = Vector(0.0, width=4)
-    mode: Annotated[Literal["speed", "source"], Doc("What says which frame is shown.")] = "speed"
+    mode: Annotated[Literal["speed", "source"], Doc("How the frame is chosen.")] = "speed"
     speed: Annotated[
         float,
         Slider(

@@ -27,7 +27,7 @@ _LONGEST = 8192
 
 
 class AutoExposure(Filter):
-    """Meter the picture and expose it, as a camera's automatic does: what is metered becomes middle gray.
+    """Meter the picture and expose it, as automatic cameras do: the metered light becomes middle gray.
 
     Histogram meters the geometric mean of the luminances between two percentiles, from 128 bins of a quarter stop
     between 2^-16 and 2^16 (a pixel counts for its two nearest bins by distance, so that their mean is exact). Average

@@ -11,11 +11,11 @@ _SIGMA = 0.25
 
 
 class LocalToneMap(Filter):
-    """Compress scene light area by area, as one dodges and burns a print: detail stays in lights and in shadows.
+    """Compress scene light locally, as dodging and burning do for a print: detail stays in lights and shadows.
 
-    Every pixel is held against the largest area around it that is even in brightness (Reinhard et al. 2002, with the
-    paper's eight scales), `Ld = L (1 + L / white^2) / (1 + V)`. Out comes display-linear light, 0..1: encode it as
-    plain sRGB (view `none`), not through another view transform. Works on the color without its alpha.
+    Every pixel is compared with the largest area around it that is uniform in brightness (Reinhard et al. 2002, with
+    the paper's eight scales), `Ld = L (1 + L / white^2) / (1 + V)`. The result is display-linear light, 0..1: encode it
+    as plain sRGB (view `none`), not by another view transform. Works on the color without its alpha.
     """
 
     aliases = (
@@ -23,7 +23,9 @@ class LocalToneMap(Filter):
         "dodge and burn", "hdr compander", "local adaptation", "dynamic range compression", "detail",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
-    proxy_notes = (ProxyNote(("out",), "it is steep: what it makes of an average is not the average of what it makes"),)
+    proxy_notes = (
+        ProxyNote(("out",), "it is not linear: its result for an average differs from the average of its results"),
+    )
 
     image = Image()
     average = Number(0.0, doc="Log-average luminance of the scene; without a link it is measured.")

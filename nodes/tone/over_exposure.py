@@ -4,7 +4,7 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
 
 
 class OverExposure(Pointwise):
-    """Expose too long: the picture brightens, highlights roll off into white and lose their color.
+    """Overexpose: the picture brightens, highlights roll off into white and lose their color.
 
     Light is doubled for every stop. The brightest channel p of a pixel passes a shoulder that starts at a share of
     white, `start + (white - start) (1 - exp(-(p - start) / (white - start)))`, the others keep their ratio to it. What
@@ -16,7 +16,7 @@ class OverExposure(Pointwise):
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
-    stops: Annotated[float, Slider(0.0, 6.0, unit="EV", doc="How much too long: +1 doubles the light.")] = 2.0
+    stops: Annotated[float, Slider(0.0, 6.0, unit="EV", doc="Overexposure in stops: +1 doubles the light.")] = 2.0
     white: Annotated[
         float,
         Slider(
@@ -28,7 +28,9 @@ class OverExposure(Pointwise):
             doc="The most light that film or sensor hold: 1 for a plain sRGB display, 16 for the view AgX.",
         ),
     ] = 16.0
-    shoulder: Annotated[Fraction, Doc("How soon highlights are held back: 0 clips hard, 1 bends from black on.")] = 0.7
+    shoulder: Annotated[
+        Fraction, Doc("Where highlights begin to be compressed: 0 clips, 1 compresses from black on.")
+    ] = 0.7
     bleach: Annotated[
         float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much highlights lose their color: 0 keeps it.")
     ] = 1.0

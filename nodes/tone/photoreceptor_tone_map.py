@@ -4,16 +4,16 @@ from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, ProxyNo
 
 
 class PhotoreceptorToneMap(Filter):
-    """Compress scene light as the cells of the eye do: each answers to its own light, to the whole scene, or between.
+    """Compress scene light as the eye's cells do: adapted to their own light or to the whole scene.
 
-    `V = C / (C + (f Ia)^m)`, where Ia is the light that a cell has adapted to (Reinhard and Devlin 2005). The scene's
-    averages and contrast are measured, weighted by alpha. Out comes display-linear light, 0..1: encode it as plain
-    sRGB (view `none`), not through another view transform. Works on the color without its alpha.
+    `V = C / (C + (f Ia)^m)`, where Ia is the light to which a cell has adapted (Reinhard and Devlin 2005). The averages
+    and the contrast of the scene are measured, weighted by alpha. The result is display-linear light, 0..1: encode it
+    as plain sRGB (view `none`), not by another view transform. Works on the color without its alpha.
     """
 
     aliases = ("reinhard", "tone map", "tonemap", "rd photoreceptor", "hdr", "photoreceptor")
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
-    proxy_notes = (ProxyNote(("out",), "it measures the darkest and the brightest pixel, which a proxy averages away"),)
+    proxy_notes = (ProxyNote(("out",), "it measures the darkest and the brightest pixel, which a proxy averages"),)
 
     image = Image()
     brightness: Annotated[

@@ -11,7 +11,7 @@ _FINEST, _STEP = 0.5, sqrt(2.0)
 
 
 class ScotopicVision(Filter):
-    """See as eyes do at night: dark places lose their color and sharpness, reds go dark, and what is left is bluish.
+    """See as eyes do at night: dark places lose color and sharpness, reds darken, the rest turns bluish.
 
     Rods replace cones by `0.04 / (0.04 + Y)` for a luminance of Y cd/m2; they see `V = Y (1.33 (1 + (Y + Z) / X) -
     1.68)` of CIE XYZ, here scaled so that white keeps its luminance (Ward Larson et al. 1997, Krawczyk et al. 2005).
@@ -23,7 +23,7 @@ class ScotopicVision(Filter):
     traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
-    adaptation = Number(0.0, doc="Luminance that the eye is used to; without a link it is every pixel's own.")
+    adaptation = Number(0.0, doc="The luminance to which the eye is adapted; without a link it is that of each pixel.")
     nits: Annotated[
         float,
         Slider(
@@ -42,7 +42,10 @@ class ScotopicVision(Filter):
         ),
     ] = 1.0
     brightness: Annotated[
-        float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright rods see: 1 keeps the luminance of white.")
+        float,
+        Slider(
+            0.0, 2.0, unit="ratio", minimum=0.0, doc="Brightness of the rods' response: 1 keeps the luminance of white."
+        ),
     ] = 1.0
     blur: Annotated[
         float,
@@ -51,7 +54,12 @@ class ScotopicVision(Filter):
     field_of_view: Annotated[
         float,
         Slider(
-            10.0, 120.0, unit="deg", minimum=0.1, maximum=360.0, doc="Of the width of the picture, for the sharpness."
+            10.0,
+            120.0,
+            unit="deg",
+            minimum=0.1,
+            maximum=360.0,
+            doc="The visual angle of the picture's width, for the sharpness.",
         ),
     ] = 50.0
 

@@ -8,10 +8,11 @@ from .._declare import Doc, Image, Pointwise, Slider, Trait
 class ToneMap(Pointwise):
     """Compress scene light to what a display can show.
 
-    Out comes display-linear light, 0..1: encode it as plain sRGB (view `none`), not through another view transform.
+    The result is display-linear light, 0..1: encode it as plain sRGB (view `none`), not by another view transform.
     Works on the color without its alpha. The Reinhard operators, exponential, logarithmic and Drago map luminance and
-    keep the color's channel ratios; they need the scene's luminances: link `average` and `maximum` to Luminance
-    Statistics, or leave the defaults for a scene whose middle gray is 0.18. The others map channels for that gray.
+    keep the ratios of the color channels. They need the scene's luminances: link `average` and `maximum` to Luminance
+    Statistics, or leave the defaults for a scene with a middle gray of 0.18. The others map each channel, for that
+    gray.
 
     Sources: Reinhard et al. 2002; Drago et al. 2003; Krawczyk et al. 2005 (auto key); John Hable 2010 (Uncharted 2);
     ACES fits by Stephen Hill 2015 and Krzysztof Narkowicz 2015; Timothy Lottes 2016; Hajime Uchimura 2017 (Gran
