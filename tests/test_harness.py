@@ -21,7 +21,7 @@ Suite = Callable[..., subprocess.CompletedProcess[str]]
 def suite(tmp_path: Path) -> Suite:
     """`suite(code, *words)` runs the tests in `code` with the plugins of this suite."""
     (tmp_path / "pytest.ini").write_text(
-        "[pytest]\naddopts = -p children -p costs -p failures -p time_limits\ntimeout_grace = 1\n"
+        "[pytest]\naddopts = -p children -p costs -p failures -p skips -p time_limits\ntimeout_grace = 1\n"
     )
 
     def run_tests(code: str, *words: str) -> subprocess.CompletedProcess[str]:
@@ -159,6 +159,21 @@ def test_interrupt():
     finally:
         signal.signal(signal.SIGINT, before)
     assert "1 passed" in ended.stdout, ended.stdout
+
+
+@pytest.mark.parametrize(("ci", "ended"), [("", "1 skipped, 1 error"), ("true", "1 failed, 1 error")])
+def test_skips_have_listed_reasons(suite: Suite, monkeypatch: pytest.MonkeyPatch, ci: str, ended: str) -> None:
+    code = """
+import pytest
+def test_tool():
+    pytest.skip("git is not installed")
+@pytest.mark.skipif(True, reason="nobody likes it")
+def test_unlisted():
+    assert False
+"""
+    monkeypatch.setenv("CI", ci)
+    said = suite(code).stdout
+    assert ended in said and "is skipped (nobody likes it): list the reason in tests/skips.py" in said, said
 
 
 def test_costs_are_written(suite: Suite, tmp_path: Path) -> None:

@@ -156,6 +156,7 @@ def test_a_watcher_waits_for_nothing(tmp_path):
     make_fifo(tmp_path / "graph.json")
     watcher = FileWatcher(UNRESTRICTED)
     watcher.watch(tmp_path / "graph.json", code=[tmp_path / "graph.json"])
+    assert watcher.poll() == ()
     watcher.close()
 
 

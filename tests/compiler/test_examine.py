@@ -36,7 +36,7 @@ def said(work, graph: Graph, request: Request, lost: bool) -> tuple[str, str]:
     return "", ""
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32), st.randoms(use_true_random=False), st.booleans())
 def test_both_refuse_the_same(seed, rng, lost) -> None:
     graph = random_graph(seed, 5)

@@ -69,7 +69,7 @@ def check(*some: dict) -> None:
     assert len(everything) == len({*everything})
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 10**6), st.sampled_from(FORMS))
 def test_marks_are_equal_where_programs_and_numbers_are(seed, target):
     graph, rng = random_graph(seed), Random(seed)
@@ -80,7 +80,7 @@ def test_marks_are_equal_where_programs_and_numbers_are(seed, target):
     check(told(graph, target), told(graph, target, frame=7), told(graph, target, scale=0.5))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 10**6))
 def test_marks_know_nothing_of_other_graphs(seed):
     check(told(random_graph(seed)), told(random_graph(seed + 1)), told(random_graph(seed, 3)))

@@ -32,7 +32,7 @@ def check_lives(plan: Plan) -> None:
             assert end < start
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SEEDS, st.booleans(), st.sampled_from(["compute", "fragment"]))
 def test_slots_never_overlap_in_life(plan, seed, fusion, form):
     from msgspec.structs import replace
@@ -40,7 +40,7 @@ def test_slots_never_overlap_in_life(plan, seed, fusion, form):
     check_lives(plan(random_graph(seed), fusion=fusion, target=replace(NULL, form=form)))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_slots_hold_what_lies_in_them_and_no_more(plan, seed):
     made = plan(random_graph(seed))
@@ -49,7 +49,7 @@ def test_slots_hold_what_lies_in_them_and_no_more(plan, seed):
     assert made.peak_bytes == sum(made.slots)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_fusion_saves_passes_and_keeps_the_outputs(plan, seed):
     graph = random_graph(seed)
@@ -59,13 +59,13 @@ def test_fusion_saves_passes_and_keeps_the_outputs(plan, seed):
         assert fused.surfaces[fused.outputs[name]].size == plain.surfaces[number].size
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_the_same_graph_gives_the_same_plan(plan, seed):
     assert plan(random_graph(seed)) == plan(random_graph(seed))
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_keys_tell_different_pixels_apart(plan, seed):
     for fusion in (False, True):

@@ -81,7 +81,7 @@ def turned(rng: Random, graph: Graph) -> Graph:
     return graph.put(Port(id, value.name), plain)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 2**20))
 def test_it_is_the_plan_that_is_made_from_the_start(seed):
     """Of the whole picture, and of a region."""
@@ -99,7 +99,7 @@ def test_it_is_the_plan_that_is_made_from_the_start(seed):
             graph = turned(rng, graph) if rng.random() < 0.8 else edit_randomly(rng, graph)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**20))
 def test_numbers_decide_nothing_about_passes(seed):
     graph = random_graph(seed, 12)

@@ -56,10 +56,10 @@ TOO_LARGE = {
 
 @pytest.mark.parametrize("case", TOO_LARGE)
 def test_what_is_too_large_is_refused_with_its_line(case: str) -> None:
-    began = time.monotonic()
+    began = time.process_time()
     with pytest.raises(CodeFault) as caught:
         node_type(Code("glsl", effect(TOO_LARGE[case])))
-    assert caught.value.line == 2 and time.monotonic() - began < 2.0
+    assert caught.value.line == 2 and time.process_time() - began < 2.0
 
 
 GROWING = {

@@ -173,7 +173,7 @@ STATEMENTS = st.recursive(
 )
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(STATEMENTS, min_size=1, max_size=2))
 def test_random_loops_make_what_python_makes(renderer: Renderer, parts: list[tuple[str, str]]) -> None:
     made: dict[str, int] = {"n": 1}

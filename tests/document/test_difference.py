@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 NODES = catalogue()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32))
 def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
     """To the letter, if the layout is looked at; else all but the layout."""
@@ -37,14 +37,14 @@ def test_applying_a_difference_makes_the_other_graph(seed: int) -> None:
     assert (describe_graph(before) == describe_graph(after)) == (not logic)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32))
 def test_a_graph_does_not_differ_from_itself(seed: int) -> None:
     graph = make_graph(seed)
     assert not compare_graphs(graph, parse_graph(dumps(graph)), layout=True)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 2**32))
 def test_renaming_is_told_from_removing_and_adding(seed: int) -> None:
     """Whatever else is in the graph, unless a twin stands beside the node."""

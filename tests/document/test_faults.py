@@ -157,7 +157,7 @@ def test_json_paths(body: str, path: str, says: str) -> None:
         loads(text, catalogue=TOYS, sandbox=UNRESTRICTED)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.recursive(
         st.none()
@@ -186,7 +186,7 @@ def test_no_tree_is_a_traceback(tree: object) -> None:
         assert "\n" not in str(error)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.integers(0, 2**32))
 def test_damaged_text_is_a_graph_or_one_sentence(seed: int) -> None:
     """Cut, drop or swap a few characters of a real file."""

@@ -88,7 +88,7 @@ def test_ends_of_every_type() -> None:
     assert read('{"halation": 1, "inputs": {"v": {"type": "Vector3"}}}').inputs["v"] == Input(Kind.VECTOR, 3)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.integers(0, 2**32))
 def test_what_is_written_comes_back(seed: int) -> None:
     graph = random_graph(Random(seed), 40)
@@ -112,7 +112,7 @@ def sprinkle(rng: Random, tree: Any, path: tuple[str, ...] = ()) -> None:
         tree[rng.choice(["later", "x.y", "ä"])] = rng.choice([None, 1, 1.5, [], {"a": {}}, "text", [True, {"b": [1]}]])
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.integers(0, 2**32))
 def test_unknown_nodes_and_keys_are_kept_to_the_byte(seed: int) -> None:
     rng = Random(seed)

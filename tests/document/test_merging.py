@@ -42,7 +42,7 @@ def versions(seed: int, edits: int = 3) -> tuple[Graph, Graph, Graph]:
     return base, *(parse_graph(dumps(side)) for side in sides)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SEEDS)
 def test_the_laws_of_merging(seed: int) -> None:
     base, ours, theirs = versions(seed)
@@ -63,7 +63,7 @@ def test_the_laws_of_merging(seed: int) -> None:
         assert {**first, "ui": 0} == {**second, "ui": 0}
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(SEEDS)
 def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
     """Every change is in the result, or in a conflict; and ours is always in place."""
@@ -89,7 +89,7 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
         ] == [True] * 3
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS)
 def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> None:
     """One turns values of some nodes, mutes and moves them; the other does so with the others, and adds one."""
@@ -113,7 +113,7 @@ def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> 
     assert merge_graphs(base, ours, theirs) == merge_graphs(base, theirs, ours) == MergedGraph(dumps(both), ())
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(SEEDS, st.sampled_from(["ours", "theirs", "base"]))
 def test_a_side_can_be_chosen(seed: int, side: Side) -> None:
     """And then nothing is open; what theirs changed is as theirs has it."""
@@ -289,7 +289,7 @@ def test_code_goes_together_line_by_line() -> None:
     assert [conflict.path for conflict in found.conflicts] == ["nodes.wave.code"]
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(*[st.lists(st.sampled_from("abcd"), max_size=8)] * 3)
 def test_the_laws_of_lines(base: list[str], ours: list[str], theirs: list[str]) -> None:
     """Laws of diff3: what is the same on two sides is taken from the third, and the sides are alike."""

@@ -58,7 +58,7 @@ class Writer:
         self.text += "}" if isinstance(item, dict) else "]"
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.data(), TREES, st.booleans())
 def test_every_part_is_where_it_was_written(data, tree, escape) -> None:
     writer = Writer(data.draw, escape)
@@ -70,7 +70,7 @@ def test_every_part_is_where_it_was_written(data, tree, escape) -> None:
     assert {path: found.line(path) for path in writer.lines} == writer.lines
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.text(alphabet='{}[],:"\\ab1 \n', max_size=40), st.text(alphabet="ab.[]0", max_size=6))
 def test_damaged_text_has_lines_too(text, path) -> None:
     assert 1 <= Positions(text, [path]).line(path) <= text.count("\n") + 1

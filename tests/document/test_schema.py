@@ -67,7 +67,7 @@ def test_it_takes_every_preset(path) -> None:
     assert [error.message for error in VALIDATOR.iter_errors(json.loads(path.read_text()))] == []
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32))
 def test_it_takes_what_is_saved(seed) -> None:
     graph = random_graph(seed, 6)
@@ -86,7 +86,7 @@ def test_it_takes_what_is_saved(seed) -> None:
 WRONG = st.sampled_from([None, True, "x", 7.25, [], {}, [1, 2], ["a"], {"a": 1}, -3, [[]]])
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120)
 @given(st.integers(0, 2**16), st.randoms(use_true_random=False), WRONG)
 def test_it_refuses_what_reading_refuses(seed, rng: Random, wrong) -> None:
     """Any part of a saved graph becomes something of another type."""

@@ -35,7 +35,7 @@ def check_invariants(graph: Graph) -> None:
         assert not name or name.removesuffix(".values") in getattr(graph, section)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, 2**32))
 def test_edits_keep_a_graph_sound(seed: int) -> None:
     rng = Random(seed)
@@ -369,7 +369,7 @@ def test_mute_and_what_passes_through() -> None:
         graph.mute("nobody")
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.integers(0, 2**32))
 def test_equal_graphs_have_one_order(seed: int) -> None:
     graph = random_graph(Random(seed))

@@ -118,7 +118,7 @@ def test_frames_are_written_as_people_write_them(frames, text):
     assert format_frames(frames) == text
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.lists(NUMBERS, min_size=1, max_size=30, unique=True) | LISTS.filter(bool) | LISTS.filter(bool).map(sorted))
 def test_what_is_written_is_read_back(frames):
     assert parse_frames(format_frames(frames)) == tuple(frames)
@@ -144,14 +144,14 @@ def shortest(frames: tuple[int, ...]) -> int:
     return min(lengths)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.lists(st.integers(-3, 14) | st.integers(-999, 1999), min_size=1, max_size=9, unique=True))
 def test_no_other_text_is_shorter(frames):
     assert len(format_frames(frames)) == shortest(tuple(frames))
 
 
 @given(st.lists(st.sampled_from([1, 2, 10, 99, 1000]), min_size=2, max_size=8), st.integers(-1100, 5))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_no_other_text_is_shorter_for_runs(steps, first):
     frames = [first + sum(sorted(steps)[:count]) for count in range(len(steps) + 1)]
     assert len(format_frames(frames)) == shortest(tuple(frames))

@@ -29,7 +29,7 @@ def eased(x1: float, y1: float, x2: float, y2: float) -> Keys:
     return Keys((Key(0.0, 0.0, "bezier", right=(x1, y1)), Key(1.0, 1.0, "bezier", left=(x2 - 1.0, y2 - 1.0))))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.data())
 def test_smooth_is_pchip_with_flat_ends(data: st.DataObject) -> None:
     values = data.draw(HEIGHTS)
@@ -44,7 +44,7 @@ def test_smooth_is_pchip_with_flat_ends(data: st.DataObject) -> None:
         assert keys.slopes(frame)[0] == pytest.approx(slope, rel=1e-6, abs=1e-9)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(HEIGHTS, st.floats(0, 1))
 def test_smooth_stays_between_its_keys(values: list[float], u: float) -> None:
     keys = keyed(range(0, 10 * len(values), 10), values)
@@ -63,7 +63,7 @@ def test_vectors_go_channel_by_channel() -> None:
             assert keys.evaluate(frame) == tuple(part.evaluate(frame) for part in parts)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.floats(0, 1), st.floats(-3, 4), st.floats(0, 1), st.floats(-3, 4), st.floats(0.001, 0.999))
 def test_bezier_against_a_root_finder(x1: float, y1: float, x2: float, y2: float, x: float) -> None:
     def place(t: float) -> float:
@@ -233,7 +233,7 @@ def some_edit(rng: Random, keys: Keys) -> Keys:
     )()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.integers(0, 2**32))
 def test_any_edits_leave_keys_that_have_values(seed: int) -> None:
     rng = Random(seed)

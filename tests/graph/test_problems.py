@@ -192,7 +192,7 @@ def test_names_that_a_file_could_not_hold() -> None:
     }
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.integers(0, 2**32))
 def test_every_sentence_is_one_line_and_names_its_place(seed: int) -> None:
     for problem in problems(random_graph(Random(seed)), TOYS):

@@ -17,7 +17,7 @@ NODES = catalogue()
 STEPS = st.lists(st.sampled_from([TURN, MOVE, DIM, HALF, SOFT, TONE, ("bloom", {})]), min_size=2, max_size=5)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(STEPS, st.randoms(use_true_random=False))
 def test_nothing_is_forgotten_while_values_change(steps, rng: Random) -> None:
     graph = chain(*steps)
@@ -44,7 +44,7 @@ def test_hints_come_after_problems_and_not_in_a_graph_with_errors() -> None:
     assert find_remarks(meant, NODES) == ()
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 2**32))
 def test_any_graph_can_be_looked_at(seed) -> None:
     graph = random_graph(seed, 14)

@@ -63,7 +63,7 @@ def looked_at(text: str) -> None:
     json.dumps(sarif([report], RULES, Path.cwd(), "1"))
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.integers(0, len(TEXTS) - 1), st.randoms(use_true_random=False))
 def test_a_part_is_something_else(index, rng: Random) -> None:
     tree = json.loads(TEXTS[index])
@@ -79,7 +79,7 @@ def test_a_part_is_something_else(index, rng: Random) -> None:
     looked_at(json.dumps(tree, indent=rng.choice((None, 2))))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(st.integers(0, len(TEXTS) - 1), st.randoms(use_true_random=False))
 def test_text_is_cut_or_spoiled(index, rng: Random) -> None:
     text = TEXTS[index]

@@ -219,7 +219,7 @@ PICTURES = st.tuples(st.integers(1, 14), st.integers(1, 14), st.integers(1, 5)).
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(PICTURES)
 def test_measures_stay_within_their_bounds(pair: tuple[Array, Array]) -> None:
     """Nothing warns (the tests make that an error), whatever the numbers; both ways round are the same."""

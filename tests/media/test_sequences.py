@@ -145,7 +145,7 @@ def test_what_stands_for_a_missing_frame(fill, missing, frame, there, black):
         assert (found.path, found.black) == (f"{folder}/shot.{there:04d}.exr", black)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(frames=st.sets(st.integers(-20, 60), min_size=1, max_size=12), frame=st.integers(-25, 70))
 def test_hold_and_nearest_by_their_definitions(tmp_path_factory, frames, frame):
     folder = tmp_path_factory.mktemp("frames")

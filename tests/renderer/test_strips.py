@@ -68,7 +68,7 @@ def test_what_is_not_finished_leaves_nothing_behind(tmp_path, picture, monkeypat
 
 def test_a_disk_that_is_full_says_so(tmp_path, picture):
     """The encoder says only that it failed, and names a file that nobody knows."""
-    resource = pytest.importorskip("resource")
+    resource = pytest.importorskip("resource", reason="this system has no resource limits")
     before, limits = set(tmp_path.iterdir()), resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
     try:

@@ -7,8 +7,10 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from concurrent.futures import Future
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -58,32 +60,45 @@ def tried(trial_process: TrialProcess) -> Iterator[Renderer]:
     renderer.close()
 
 
+@pytest.fixture
+def submitted(trial_process: TrialProcess, monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The nodes whose programs were tried, in turn."""
+    nodes_tried: list[str] = []
+    submit = trial_process.submit
+
+    def record(program: Mapping[str, Any], nodes: str, *, may_yield: bool) -> Future[DeviceError | None]:
+        nodes_tried.append(nodes)
+        return submit(program, nodes, may_yield=may_yield)
+
+    monkeypatch.setattr(trial_process, "submit", record)
+    return nodes_tried
+
+
 def list_children() -> set[int]:
     """The numbers of all processes that a thread of this one has started."""
     tasks = Path("/proc/self/task").glob("*/children")
     return {int(number) for task in tasks for number in task.read_text().split()}
 
 
-def test_code_is_tried_once(tried: Renderer) -> None:
+def test_code_is_tried_once(tried: Renderer, submitted: list[str]) -> None:
     program = effect(0.5)
     assert (tried.render(program, REQUEST)["out"] == 0.25).all()
-    began = time.monotonic()
     again = tried.render(program, RenderRequest({"image": PICTURE[:4]}))
-    assert (again["out"] == 0.25).all() and time.monotonic() - began < 1.0
+    assert (again["out"] == 0.25).all() and len(submitted) == 1
 
 
-def test_code_that_takes_too_long_to_compile(tried: Renderer) -> None:
-    began = time.monotonic()
+def test_code_that_takes_too_long_to_compile(tried: Renderer, submitted: list[str]) -> None:
     for _ in range(2):  # what is known is not tried again
         with pytest.raises(DeviceError, match="node 'user': its code has not been compiled and run after 2 seconds"):
             tried.render(graph(SLOW), REQUEST)
-    assert time.monotonic() - began < 10.0
+    assert len(submitted) == 1
     assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
-def test_code_that_ends_the_process(tried: Renderer) -> None:
-    others = list_children()
+def test_code_that_ends_the_process() -> None:
+    """Long before it would take too long."""
+    tried, others = Renderer(trial_process=TrialProcess(timeout=0.0), sandbox=UNRESTRICTED), list_children()
     tried.render(effect(0.25), REQUEST)
     (number,) = list_children() - others
     with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
@@ -92,6 +107,7 @@ def test_code_that_ends_the_process(tried: Renderer) -> None:
         with pytest.raises(DeviceError, match=r"node 'user': its code has ended the process \(SIGSEGV\)"):
             next(run)
     assert (tried.render(effect(2.0), REQUEST)["out"] == 1.0).all()
+    tried.close()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="it lists the processes of another one")
@@ -120,24 +136,20 @@ def test_a_run_says_when_it_would_wait(tried: Renderer) -> None:
     with tried.runner.start_run(tried.compile(graph(SLOW), REQUEST), tried.runner.create_lease()) as run:
         waits = 0
         while not run.is_ready:
-            began = time.monotonic()
             time.sleep(0.01)
-            assert time.monotonic() - began < 0.2
             waits += 1
-        assert waits > 50
+        assert waits > 3, "to ask takes no part of the two seconds"
         with pytest.raises(DeviceError, match="after 2 seconds"):
             next(run)
 
 
 def test_a_slow_program_makes_way_once() -> None:
-    """Whoever has written a better text does not wait for the old one to time out."""
-    renderer = Renderer(trial_process=TrialProcess(timeout=30.0), sandbox=UNRESTRICTED)
+    """Whoever has written a better text does not wait for the old one, which takes minutes and has no limit here."""
+    renderer = Renderer(trial_process=TrialProcess(timeout=0.0), sandbox=UNRESTRICTED)
     slow = renderer.runner.start_run(renderer.compile(graph(SLOW), REQUEST), renderer.runner.create_lease())
     assert not slow.is_ready
     slow.close()
-    began = time.monotonic()
     assert (renderer.render(effect(2.0), REQUEST)["out"] == 1.0).all()
-    assert time.monotonic() - began < 20.0
     renderer.close()
 
 

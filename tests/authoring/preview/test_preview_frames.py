@@ -63,7 +63,7 @@ def test_frames_that_are_ready_need_no_pass_and_no_plan(preview, engine):
     assert engine.runner.counters.passes == before
     engine.compile = compiled
     preview.skims = False
-    assert preview.work(0.0) or True
+    preview.work(0.0)
     settle(preview)
     assert engine.runner.counters.passes == before, "what was only shown is looked at when there is time"
 
