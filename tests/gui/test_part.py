@@ -169,7 +169,7 @@ def test_numbers_of_the_whole_picture_wait_for_it(gui, tmp_path, resting):
         ui.settled()
         numbers = ui.ask(lambda: ui.editor.probe.read_pixel(preview.find_whole_image("A").texture, *pixel))
         assert [float(part) for part in copied.split(": ")[1].split()] == pytest.approx(numbers, abs=0.0)
-        # How data is shown depends on all of it.
+        # How to show data depends on all of it.
         ui.editor.viewer.meaning = "field"
         ui.session.apply(SetValue(STOPS, 2.5))
         while ui.editor.preview.busy:

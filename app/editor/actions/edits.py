@@ -85,7 +85,7 @@ EDITS: tuple[Action[EditContext], ...] = (
         "graph",
         _some,
         contexts=frozenset({"node", "frame"}),
-        doc="Remove what is selected; what fed it is linked to what it fed.",
+        doc="Delete the selection, and link the nodes before and after it.",
     ),
     Action(
         "edit.delete_break",
@@ -132,7 +132,7 @@ EDITS: tuple[Action[EditContext], ...] = (
         "graph",
         _some,
         contexts=frozenset({"node"}),
-        doc="Everything that feeds what is selected.",
+        doc="Select everything that the selection depends on.",
     ),
     Action(
         "select.downstream",
@@ -145,7 +145,7 @@ EDITS: tuple[Action[EditContext], ...] = (
         "graph",
         _some,
         contexts=frozenset({"node"}),
-        doc="Everything that what is selected feeds.",
+        doc="Select everything that depends on the selection.",
     ),
     Action(
         "select.linked",

@@ -80,7 +80,7 @@ class FileBrowser:
     def _draw_path_bar(self, browsing: Browsing) -> None:
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted(browsing.browse.title)
-        if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
+        if quiet_button(self._context, icons.ICON_FA_ARROW_UP, "folder up", "Parent folder (Backspace)"):
             self._go_to(browsing, browsing.folder.parent)
         imgui.same_line()
         button_icons = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
@@ -102,7 +102,9 @@ class FileBrowser:
             browsing.hidden = not browsing.hidden
         imgui.same_line()
         view_icon = icons.ICON_FA_LIST if self._as_grid else icons.ICON_FA_TABLE_CELLS_LARGE
-        if quiet_button(self._context, view_icon, "list or grid", "As a list" if self._as_grid else "As pictures"):
+        if quiet_button(
+            self._context, view_icon, "list or grid", "Show as a list" if self._as_grid else "Show thumbnails"
+        ):
             self._as_grid = not self._as_grid
 
     def _open_typed_path(self, browsing: Browsing) -> None:
@@ -137,7 +139,7 @@ class FileBrowser:
             return
         items = browsing.items
         if not items:
-            nothing = "Nothing here is called that." if browsing.query else "Nothing here to choose."
+            nothing = "No file in this folder matches." if browsing.query else "This folder has no matching files."
             draw_dim(self._context, "Reading..." if browsing.listing.busy else nothing)
             return
         shape = self._grid if self._as_grid and browsing.browse.purpose == "image" else self._table
@@ -237,7 +239,7 @@ class FileBrowser:
             return
         self._context.dialogs.question = Question(
             "Replace the file?",
-            f"{target.name} is already in {target.parent.name or target.parent}.",
+            f"{target.name} already exists in {target.parent.name or target.parent}.",
             (("Replace", answer), ("Cancel", lambda: None)),
         )
 

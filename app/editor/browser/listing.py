@@ -134,7 +134,7 @@ def make_folder(parent: Path, name: str) -> Path:
     """A new folder. Raises InputError."""
     name = name.strip()
     if not name or name in (".", "..") or set(name) & set('/\\:*?"<>|'):
-        raise InputError(f"'{name}' cannot be the name of a folder")
+        raise InputError(f"'{name}' is not a valid name for a folder: use letters, digits and spaces")
     try:
         (parent / name).mkdir()
     except OSError as error:
@@ -165,10 +165,10 @@ def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
 
 def _reason(error: OSError) -> str:
     sentences = {
-        PermissionError: "it may not be read or written; ask its owner, or choose another folder",
+        PermissionError: "permission denied: ask its owner, or choose another folder",
         FileNotFoundError: "there is no such folder",
         NotADirectoryError: "this is a file, not a folder",
-        FileExistsError: "there is something of that name already",
+        FileExistsError: "a file or folder of this name already exists: choose another name",
     }
     return next(
         (sentence for kind, sentence in sentences.items() if isinstance(error, kind)), error.strerror or str(error)

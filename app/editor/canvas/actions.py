@@ -34,10 +34,10 @@ _ALIGNMENTS = (
     ("right", "Right"),
     ("top", "Top"),
     ("bottom", "Bottom"),
-    ("center x", "Centers in a Column"),
-    ("center y", "Centers in a Row"),
-    ("distribute x", "Spread Across"),
-    ("distribute y", "Spread Down"),
+    ("center x", "Horizontal Centers"),
+    ("center y", "Vertical Centers"),
+    ("distribute x", "Distribute Horizontally"),
+    ("distribute y", "Distribute Vertically"),
 )
 
 
@@ -124,7 +124,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "graph",
         _has_selection,
         contexts=frozenset({"node"}),
-        doc="The node passes its first input through.",
+        doc="A muted node passes its first input through.",
         separated=True,
     ),
     Action(
@@ -146,7 +146,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "graph",
         _is_node,
         contexts=frozenset({"node"}),
-        doc="Show this node in the viewer; again shows its next output.",
+        doc="Show this node in the viewer. Again: its next output.",
     ),
     Action(
         "node.view_b",
@@ -157,7 +157,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "graph",
         _is_node,
         contexts=frozenset({"node"}),
-        doc="Compare with this node.",
+        doc="Show this node on side B, to compare with it.",
     ),
     Action(
         "node.extract",
@@ -216,7 +216,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         scope="graph",
         contexts=frozenset({"canvas"}),
-        doc="Drag a line across links; Ctrl and the right button do it at any time.",
+        doc="Drag a line across links to cut them, or Ctrl+right drag at any time.",
         separated=True,
     ),
     Action(
@@ -226,7 +226,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         scope="graph",
         contexts=frozenset({"canvas"}),
-        doc="Drag a line across links; Shift and the right button do it at any time.",
+        doc="Drag a line across links to put dots on them, or Shift+right drag at any time.",
     ),
     Action(
         "group.make",
@@ -276,7 +276,7 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         enabled=_is_group,
         contexts=frozenset({"group"}),
-        doc="Save the group in a file of its own, for use in other graphs, and link it to that file.",
+        doc="Save the group to its own file, for use in other graphs, and link it to that file.",
     ),
     Action(
         "group.local",
@@ -285,11 +285,11 @@ GRAPH: tuple[Action[CanvasContext], ...] = (
         "Graph",
         enabled=_is_borrowed_group,
         contexts=frozenset({"group"}),
-        doc="Keep the group in this graph, so that it can be changed here.",
+        doc="Copy the group into this graph, so that it can be edited here.",
     ),
     Action(
         "group.open",
-        "Open Group's File",
+        "Open Group File",
         _open_group,
         "Graph",
         enabled=_is_borrowed_group,

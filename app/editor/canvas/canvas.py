@@ -312,7 +312,7 @@ class Canvas:
             paint_note(brush, *frame.screen, self._context.canvas.refusal, brush.ink.error)
         elif self._context.canvas.tool and frame.hovered:
             action = "cut them" if self._context.canvas.tool == "cut" else "put dots on them"
-            paint_note(brush, *frame.screen, f"Drag across links to {action}; Escape ends", brush.ink.text)
+            paint_note(brush, *frame.screen, f"Drag across links to {action}. Escape cancels.", brush.ink.text)
             if imgui.is_key_pressed(imgui.Key.escape):
                 self._context.canvas.tool = ""
 

@@ -45,7 +45,7 @@ def draw_crumbs(context: CanvasContext, brush: DrawContext, panel: Rect) -> None
         imgui.same_line(0.0, 16.0 * scale)
         imgui.align_text_to_frame_padding()
         imgui.text_colored(
-            vec4(palette.warning), f"{icons.ICON_FA_LOCK}  from {session.borrowed}: make it local to change it here"
+            vec4(palette.warning), f"{icons.ICON_FA_LOCK}  from {session.borrowed}: make it local to edit it here"
         )
     imgui.pop_style_var()
     imgui.pop_style_color()

@@ -23,7 +23,7 @@ _MOUSE = (
     ("Wheel", "zoom"),
     ("Middle drag, Space + drag", "pan"),
     ("Drag from a socket", "link"),
-    ("Drop a link on nothing", "add what fits"),
+    ("Drop a link on empty canvas", "add a node that fits"),
     ("Drop a node on a link", "insert it"),
     ("Ctrl + right drag", "cut links"),
     ("Shift + right drag", "put dots on links"),

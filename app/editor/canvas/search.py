@@ -214,14 +214,14 @@ class NodeSearch:
                     draw.add_text((right, corner.y), u32(palette.dim, 0.8), entry.category)
                 index += 1
         if not index:
-            imgui.text_colored(vec4(palette.dim), "No entry has this name.")
+            imgui.text_colored(vec4(palette.dim), "No node or preset matches.")
         return chosen
 
     def _draw_footer(self, lines: list[CatalogEntry]) -> None:
         imgui.separator()
         doc = lines[self._marked].doc if lines else ""
         imgui.push_style_color(imgui.Col_.text, vec4(self.context.palette.dim))
-        keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} choose, Enter adds, Escape leaves"
+        keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} choose, Enter adds, Escape closes"
         imgui.text_wrapped(doc or keys)
         imgui.pop_style_color()
 

@@ -25,28 +25,28 @@ _POPUP = "help for code"
 
 NAMES = (
     ("vec4 f(vec4 image)", "the last function is the node: pictures in, a picture out"),
-    ("vec4 vec3 vec2 float", "a parameter without a default is a picture: color, vector or field"),
+    ("vec4 vec3 vec2 float", "a parameter without a default is an input: color, vector or field"),
     ("out vec4 a, out float b", "several outputs, in a function that returns void; they come last"),
-    ("ivec2 pixel, extent", "where the pixel is, from the top left corner, and the size of the picture"),
+    ("ivec2 pixel, extent", "the position of the pixel, from the top left corner, and the size of the picture"),
     ("image_at(ivec2 p)", "exactly that pixel of the input 'image'"),
-    ("image_near(vec2 p)", "filtered, at a place in pixels; pixel centers are at .5"),
+    ("image_near(vec2 p)", "filtered, at a position in pixels; pixel centers are at .5"),
     ("ivec2 image_size", "the size of the input 'image'"),
     ("int frame", "the frame that is rendered"),
     ("float proxy", "the scale of the picture: multiply sizes in pixels by it"),
-    ("MODE_ADD", "the choice 'add' of the value 'mode', for comparing"),
+    ("MODE_ADD", "the choice 'add' of the value 'mode', to compare with"),
 )
 NOTES = (
     ("= 0.5", "makes a parameter a value, with that default"),
     ("0..1", "the range of its slider"),
-    (">= 0, <= 10", "limits that no number may leave"),
-    ('"Amount"', "what it is called"),
+    (">= 0, <= 10", "hard limits"),
+    ('"Amount"', "the name of the value"),
     (" ".join(UNITS), "its unit: px shrinks with a proxy, deg arrives in radians"),
-    ("color", "a swatch, for vec3 and vec4"),
-    ("handle", "a point that is dragged in the viewer, for vec2"),
+    ("color", "a color, for vec3 and vec4"),
+    ("handle", "a point with a handle in the viewer, for vec2"),
     ("= add, one of add | max", "choices, for an int"),
-    ("optional 0", "a picture that need not be linked, and what it is then"),
-    (" ".join(EDGES), "how pictures go on beyond their edges"),
-    (": a sentence", "what it does; it comes last"),
+    ("optional 0", "an optional input, and its value if it is not linked"),
+    (" ".join(EDGES), "how a picture continues beyond its edges"),
+    (": a sentence", "a description; it comes last"),
 )
 
 

@@ -62,10 +62,12 @@ def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
     if context.actions.is_enabled(action):
         return ""
     if action.id == "edit.undo":
-        return "nothing was done yet"
+        return "nothing to undo"
     if action.id == "edit.redo":
-        return "nothing was undone"
-    return "select something first" if action.scope == "graph" and not context.session.selection else "not possible now"
+        return "nothing to redo"
+    return (
+        "select something first" if action.scope == "graph" and not context.session.selection else "not available now"
+    )
 
 
 def _all(context: PaletteContext) -> Iterator[Command]:

@@ -66,7 +66,7 @@ class CommandPalette:
         keep_typing()
         imgui.set_next_item_width(-1)
         with font(self._context, "text", 18.0):
-            hint = "Do anything: type a command, a node, a preset"
+            hint = "Type a command, a node or a preset"
             changed, self._query = imgui.input_text_with_hint("##command", hint, self._query)
         record(self._context, "palette field")
         if changed:
@@ -80,7 +80,7 @@ class CommandPalette:
 
     def _draw_list(self, matches: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
         if not matches:
-            draw_dim(self._context, "Nothing is called that.")
+            draw_dim(self._context, "No command, node or preset matches.")
             return None
         height = imgui.get_text_line_height() + 8 * ui_scale()
         chosen: Command | None = None

@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 _KEYS = frozenset({"keys"})
 _INTERPOLATIONS: tuple[tuple[Interpolation, str], ...] = (
-    ("constant", "Hold the value up to the next key."),
-    ("linear", "Go straight to the next key."),
-    ("smooth", "Go smoothly through the keys, never beyond them."),
+    ("constant", "Hold the value until the next key."),
+    ("linear", "Change linearly to the next key."),
+    ("smooth", "Change smoothly, without overshooting the keys."),
     ("bezier", "Follow the handles."),
 )
 _EXTRAPOLATIONS: tuple[tuple[Extrapolation, str, str], ...] = (
     ("hold", "Hold", "Before the first and after the last key the value stays."),
-    ("linear", "Go On Straight", "Before the first and after the last key the value continues along its slope."),
+    ("linear", "Linear", "Before the first and after the last key the value continues along its slope."),
     ("loop", "Repeat", "The part between the first and the last key repeats."),
-    ("mirror", "To and Fro", "The part between the first and the last key repeats, every second time backwards."),
+    ("mirror", "Ping-Pong", "The part between the first and the last key repeats, forwards and backwards in turn."),
 )
 
 
@@ -61,12 +61,12 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
     Action("keys.mode", "Dope Sheet or Curves", commands.swap_mode, shortcut="Tab", scope="animation"),
     Action(
         "keys.here",
-        "Key Rows at This Frame",
+        "Set Keys at This Frame",
         commands.key_here,
         shortcut="K",
         scope="animation",
         enabled=lambda context: bool(context.session.graph.animation),
-        doc="A key on the curve of every selected row, or of all rows.",
+        doc="Set a key on the curve of every selected row, or of all rows.",
     ),
     Action(
         "keys.cut",
@@ -93,7 +93,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         shortcut="Ctrl+V",
         scope="animation",
         contexts=_KEYS,
-        doc="From the current frame on; keys of one value go into the selected rows.",
+        doc="Paste at the current frame. Keys of one value go into the selected rows.",
     ),
     Action(
         "keys.duplicate",
@@ -113,13 +113,13 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=_KEYS,
-        doc="A value without keys stays as it is now.",
+        doc="A value that loses its last key keeps its current value.",
     ),
     Action("keys.all", "Select All Keys", commands.choose_all, shortcut="Ctrl+A", scope="animation"),
     Action("keys.none", "Select No Keys", commands.choose_none, shortcut="Ctrl+Shift+A", scope="animation"),
     Action(
         "keys.earlier",
-        "Keys One Frame Earlier",
+        "Move Keys One Frame Earlier",
         commands.nudge(-1.0),
         shortcut="Alt+LeftArrow",
         scope="animation",
@@ -128,7 +128,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
     ),
     Action(
         "keys.later",
-        "Keys One Frame Later",
+        "Move Keys One Frame Later",
         commands.nudge(1.0),
         shortcut="Alt+RightArrow",
         scope="animation",
@@ -144,7 +144,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
-        doc="Arrive gently: the handle before the key lies flat.",
+        doc="Slow down before the key: its left handle is horizontal.",
     ),
     Action(
         "keys.ease_out",
@@ -154,7 +154,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
-        doc="Leave gently: the handle after the key lies flat.",
+        doc="Start slowly after the key: its right handle is horizontal.",
     ),
     Action(
         "keys.ease",
@@ -164,7 +164,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys ease"}),
-        doc="Arrive and leave gently.",
+        doc="Slow down before the key and start slowly after it.",
     ),
     Action(
         "keys.automatic",
@@ -173,7 +173,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
-        doc="Handles follow the smooth curve, also when keys move.",
+        doc="Handles follow the smooth curve, even when keys move.",
     ),
     Action(
         "keys.aligned",
@@ -182,7 +182,7 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
-        doc="Both handles of a key lie on one line, and turn together.",
+        doc="Both handles of a key stay on one line and turn together.",
     ),
     Action(
         "keys.free",
@@ -191,17 +191,17 @@ ANIMATION: tuple[Action[CurvesContext], ...] = (
         scope="animation",
         enabled=has_chosen_keys,
         contexts=frozenset({"keys handles"}),
-        doc="Each handle turns alone, as with Alt while it is dragged.",
+        doc="Each handle turns independently, as with Alt+drag.",
     ),
     *(_make_outside_action(*entry) for entry in _EXTRAPOLATIONS),
     Action(
         "keys.snap",
-        "Whole Frames",
+        "Snap to Frames",
         _toggle_snap,
         shortcut="Shift+S",
         scope="animation",
         checked=lambda context: context.curves.snap,
-        doc="Keys that are moved land on whole frames.",
+        doc="Keys that you move snap to whole frames.",
     ),
     Action("keys.fit_all", "Show All Keys", lambda context: context.curves.fit(), shortcut="A", scope="animation"),
     Action(

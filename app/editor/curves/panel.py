@@ -221,11 +221,11 @@ class AnimationPanel:
         draw_empty_panel(
             self._context,
             icons.ICON_FA_BEZIER_CURVE,
-            "Nothing moves yet",
+            "No value is animated yet",
             "A value that has keys changes over time. Click the diamond beside a value in the Inspector, go to another "
             "frame and change the value: the second key is set automatically.",
         )
-        label = f"{icons.ICON_FA_PLUS}  Key a value"
+        label = f"{icons.ICON_FA_PLUS}  Animate a value"
         width = imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
         imgui.set_cursor_pos_x(max((imgui.get_window_width() - width) * 0.5, 0.0))
         dropdown(
@@ -243,4 +243,10 @@ def _describe_count(frame: CurvesFrame) -> str:
     if frame.state.spots:
         return f"{commands.describe_keys(frame.state.spots).replace('a key', '1 key')} selected"
     values = sum(row.port is not None for row in frame.rows)
-    return "1 value" if values == 1 else f"{values} values" if values else "Folded, or of nodes not selected"
+    return (
+        "1 value"
+        if values == 1
+        else f"{values} values"
+        if values
+        else "Hidden: collapsed, or of nodes that are not selected"
+    )

@@ -25,20 +25,20 @@ if TYPE_CHECKING:
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
 _GAP, _GROUP_GAP = 2.0, 10.0
 _MEANING = {
-    "constant": "holds the value up to the next key",
-    "linear": "goes straight to the next key",
-    "smooth": "goes smoothly, never beyond a key",
+    "constant": "holds the value until the next key",
+    "linear": "changes linearly to the next key",
+    "smooth": "changes smoothly, without overshooting",
     "bezier": "follows the handles",
 }
 _MOUSE = (
-    ("Drag keys", "move them; Shift between frames"),
+    ("Drag keys", "move them; Shift: between frames"),
     ("Alt + drag, ends of the bar", "scale the keys in time"),
-    ("Drag on nothing", "select with a box; Shift adds, Ctrl toggles"),
-    ("Double click", "a key on the curve"),
-    ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"),
+    ("Drag on empty space", "select with a box; Shift adds, Ctrl toggles"),
+    ("Double click", "add a key on the curve"),
+    ("Wheel", "zoom; in curves, Ctrl: time only, Shift: values only"),
     ("Middle drag", "pan"),
-    ("Curves: Ctrl, Shift + drag", "along values alone, along time alone"),
-    ("Alt + drag a handle", "turn it alone; Shift keeps it level"),
+    ("Curves: Ctrl, Shift + drag", "values only, time only"),
+    ("Alt + drag a handle", "turn only this handle; Shift keeps it horizontal"),
 )
 
 
@@ -100,7 +100,7 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 f"{icons.ICON_FA_FILTER}  {rows}",
                 "button keys filter",
-                "Which values have a row",
+                "Which values are listed",
                 lambda: _draw_filters(context),
                 lit=state.only_selected,
                 width=width,
@@ -130,12 +130,15 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
         make_menu_tool(
             f"Handles  {icons.ICON_FA_CARET_DOWN}",
             "handles",
-            "How handles of selected keys turn",
+            "The handles of the selected keys",
             "keys handles",
             starts_group=True,
         ),
         make_menu_tool(
-            f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key", "keys outside"
+            f"Outside  {icons.ICON_FA_CARET_DOWN}",
+            "outside",
+            "Before the first and after the last key",
+            "keys outside",
         ),
         _CurveTool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
         _CurveTool(square, lambda: tool(context, icons.ICON_FA_EXPAND, "keys.fit_all")),
@@ -145,7 +148,7 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
                 context,
                 icons.ICON_FA_CIRCLE_QUESTION,
                 "button keys legend",
-                "Shapes of keys, and mouse controls",
+                "Key shapes and mouse controls",
                 lambda: draw_legend(context),
             ),
         ),
@@ -199,7 +202,7 @@ def draw_animatable(context: CurvesContext) -> None:
     """Draw the list of values of the selected nodes that can be animated."""
     ports = commands.list_animatable(context)
     if not ports:
-        imgui.text_colored(vec4(context.palette.dim), "Select a node whose values can be keyed")
+        imgui.text_colored(vec4(context.palette.dim), "Select a node with values that can be animated")
     node = ""
     for port in ports:
         if port.node != node:

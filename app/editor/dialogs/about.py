@@ -48,7 +48,7 @@ class AboutDialog:
                     imgui.text_wrapped(version)
                 imgui.end_table()
             imgui.dummy((0, 6 * ui_scale()))
-            if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
+            if quiet_button(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a bug report"):
                 self._context.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
             close = close_button(self._context, "close about") or close or escape_pressed()

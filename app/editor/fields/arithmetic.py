@@ -36,11 +36,11 @@ _UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType(
 _WORDS: Mapping[str, str] = MappingProxyType(
     {
         "px": "pixels (px)",
-        "height": "parts of the height (h)",
+        "height": "fractions of the picture's height (h)",
         "deg": "degrees (deg)",
         "EV": "stops (EV)",
         "ratio": "a plain factor",
-        "count": "whole things",
+        "count": "whole numbers",
         "s": "seconds (s)",
         "scene": "scene units",
     }
@@ -81,7 +81,7 @@ def _read_tokens(text: str, unit: Unit | None) -> list[float | str]:
     for match in _TOKEN.finditer(text.rstrip()):
         number, word, operator, unknown_sign = match.groups()
         if unknown_sign is not None:
-            raise UsageError(f"'{unknown_sign}' is no part of a number: use digits, + - * / ** and ( )")
+            raise UsageError(f"'{unknown_sign}' is not valid in a number: use digits, + - * / ** and ( )")
         tokens.append(operator if operator else float(number) * find_factor(word or "", unit))
     return tokens
 
@@ -93,12 +93,12 @@ def find_factor(word: str, unit: Unit | None) -> float:
     if word == "%":
         if unit in (None, "ratio", "height"):
             return 0.01
-        raise UsageError(f"percent do not fit: this counts {_WORDS[unit]}")
+        raise UsageError(f"% does not fit this value: its unit is {_WORDS[unit]}")
     if word.casefold() not in _UNITS:
-        raise UsageError(f"'{word}' is no unit known here")
+        raise UsageError(f"'{word}' is not a known unit")
     counted_unit, factor = _UNITS[word.casefold()]
     if counted_unit != unit:
-        raise UsageError(f"'{word}' does not fit: this counts {_WORDS[unit] if unit else 'plain numbers'}")
+        raise UsageError(f"'{word}' does not fit this value: its unit is {_WORDS[unit] if unit else 'a plain number'}")
     return factor
 
 
@@ -142,7 +142,7 @@ class _ExpressionReader:
         try:
             return math.pow(base, exponent)
         except ValueError:
-            raise UsageError(f"{base:g} ** {exponent:g} is no number") from None
+            raise UsageError(f"{base:g} ** {exponent:g} is not a number") from None
 
     def _read_atom(self) -> float:
         token = self.next

@@ -65,7 +65,7 @@ PARTS = (
             low=-10.0,
             high=10.0,
             unit="scene",
-            doc="Where it is in the world.",
+            doc="Its position in the scene.",
         ),
         (_POINT, _SPOT, _SPHERE),
     ),
@@ -78,11 +78,11 @@ PARTS = (
             3,
             low=-1.0,
             high=1.0,
-            doc="Where it shines to in the world; any length will do.",
+            doc="The direction in which it shines, in the scene. The length does not matter.",
         ),
         (_SPOT, _SUN),
     ),
-    LightProperty("color", Value("color", "color", (), 4, doc="Scene-linear; it is multiplied with the intensity.")),
+    LightProperty("color", Value("color", "color", (), 4, doc="Scene-linear. It is multiplied by the intensity.")),
     LightProperty(
         "intensity",
         Value(
@@ -100,7 +100,7 @@ PARTS = (
         structs.replace(
             _LENGTH,
             name="reach",
-            doc="The distance at which it has faded to nothing; 0 is no end.",
+            doc="The distance at which it has faded to nothing. 0: no limit.",
         ),
         (_POINT, _SPOT, _SPHERE),
     ),
@@ -109,7 +109,7 @@ PARTS = (
         structs.replace(
             _ANGLE,
             name="inner angle",
-            doc="Half the angle of the cone in which it shines fully.",
+            doc="Half the angle of the cone of full intensity.",
         ),
         (_SPOT,),
     ),
@@ -118,7 +118,7 @@ PARTS = (
         structs.replace(
             _ANGLE,
             name="outer angle",
-            doc="Half the angle of the cone in which it shines at all.",
+            doc="Half the angle of the whole cone.",
         ),
         (_SPOT,),
     ),
@@ -128,7 +128,7 @@ PARTS = (
             _LENGTH,
             name="size",
             high=2.0,
-            doc="The radius of the sphere: a larger one has wider reflections.",
+            doc="The radius of the sphere. A larger one has wider reflections.",
         ),
         (_SPHERE,),
     ),

@@ -120,7 +120,7 @@ def _draw_row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool)
     switched = imgui.invisible_button(f"##eye {index}", (rect[2] - eye, rect[3] - rect[1]))
     fields.places[f"eye {id} {index}"] = item_rect()
     over_eye = imgui.is_item_hovered()
-    tip("It shines: click to switch it off" if light.on else "It is off: click to switch it on")
+    tip("On. Click to switch it off" if light.on else "Off. Click to switch it on")
     lines = imgui.get_window_draw_list()
     if chosen or hovered or over_eye:
         color = mix(palette.field, palette.accent, 0.3) if chosen else mix(palette.field, palette.hover, 0.35)
@@ -218,7 +218,7 @@ def _draw_buttons(fields: Fields, id: str, value: Numbers, width: float, words: 
                 edit = _select_and_edit(fields, id, insert_light(value, index, make_light(kind)))
             fields.places[f"menu {KINDS[kind]}"] = item_rect()
 
-    dropdown(fields, icons.ICON_FA_PLUS, f"button add {id}", "Add a light behind the selected one", draw_kinds)
+    dropdown(fields, icons.ICON_FA_PLUS, f"button add {id}", "Add a light after the selected one", draw_kinds)
     for act in _list_actions(value, index):
         imgui.same_line(0.0, 0.0)
         doc = f"{act.label}: the selected light"

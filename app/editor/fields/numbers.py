@@ -143,11 +143,11 @@ def parse_number(text: str, old: float, declaration: Value) -> float | int:
     number = evaluate(text, old, declaration.unit)
     if declaration.type == "int":
         if abs(number - round(number)) > 1e-9:
-            raise UsageError(f"a whole number is wanted, not {number:g}")
+            raise UsageError(f"{number:g} is not a whole number: type one without decimals")
         number = round(number)
     if not declaration.minimum <= number <= declaration.maximum:
         size = "small" if number < declaration.minimum else "large"
-        raise UsageError(f"{number:g} is too {size}: {_limits(declaration)}")
+        raise UsageError(f"{number:g} is too {size}: type a number {_limits(declaration)}")
     return number
 
 
@@ -176,7 +176,7 @@ def describe_value(declaration: Value, default: str) -> str:
         meaning, limits = MEANING[declaration.unit], _limits(declaration)
         low, high = declaration.low, declaration.high
         soft = f"usually {low:g} to {high:g}" if math.isfinite(low) and math.isfinite(high) else ""
-        facts = "; ".join(part for part in (meaning, soft, limits if "takes" in limits else "") if part)
+        facts = "; ".join(part for part in (meaning, soft, limits) if part)
         lines += [facts[0].upper() + facts[1:]] if facts else []
     return "\n".join([*lines, f"Default: {default}"] if default else lines)
 
@@ -202,7 +202,7 @@ def describe_default(declaration: Value) -> str:
 def _limits(declaration: Value) -> str:
     low, high = declaration.minimum, declaration.maximum
     if math.isinf(low) and math.isinf(high):
-        return "any number will do"
+        return ""
     if math.isinf(high):
-        return f"it takes {low:g} and more"
-    return f"it takes {high:g} and less" if math.isinf(low) else f"it takes {low:g} to {high:g}"
+        return f"at least {low:g}"
+    return f"at most {high:g}" if math.isinf(low) else f"from {low:g} to {high:g}"

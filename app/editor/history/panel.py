@@ -28,9 +28,9 @@ class HistoryPanel:
         history = self._context.session.history
         if not history.steps:
             icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
-            draw_empty_panel(self._context, icon, "Nothing was changed yet", "Every step can be gone back to.")
+            draw_empty_panel(self._context, icon, "No changes yet", "Changes appear here. Click one to go back to it.")
             return
-        labels = ("The beginning", *history.steps)
+        labels = ("As opened", *history.steps)
         moved, self._seen = self._seen != (len(labels), history.position), (len(labels), history.position)
         clipper = imgui.ListClipper()
         clipper.begin(len(labels), imgui.get_text_line_height_with_spacing())

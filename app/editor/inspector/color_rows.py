@@ -18,7 +18,7 @@ from ..shared.coloring import find_color_manager
 from ..shared.dialogs import Browse
 from .rows import Rows
 
-FOUND = "found out"
+FOUND = "detected"
 """The choice that leaves the color space to the file."""
 
 _PATH = Value("config", "path", "")
@@ -52,8 +52,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     rows.name(
         "color config",
         "color config",
-        doc="Where color spaces, displays, views and looks come from "
-        "(OpenColorIO): a file, or a config that comes with it",
+        doc="The OpenColorIO config that defines color spaces, displays, views and looks: a built-in one, or a file",
         changed=bool(color.config),
     )
     choices = (_ENVIRONMENT, _FROM_FILE, *list_builtin_configs())
@@ -63,7 +62,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         if edit:
             rows.act(lambda: session.apply(SetColorSettings(config=str(edit.value))))
         imgui.same_line(0.0, 0.0)
-        if rows.icon(icons.ICON_FA_XMARK, "no color config", "What $OCIO names, else the built-in one"):
+        if rows.icon(icons.ICON_FA_XMARK, "no color config", "Use the config that $OCIO names, or the built-in one"):
             rows.act(lambda: session.apply(SetColorSettings(config="")))
     else:
         index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
@@ -85,7 +84,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     rows.name(
         "working space",
         "works in",
-        doc="The linear color space that pictures are in between nodes",
+        doc="The linear color space of pictures between nodes",
         changed=bool(color.working),
     )
     spaces = (_REC709, *_linear(usable))

@@ -75,11 +75,15 @@ class EndView:
         session = context.session
         bound = describe_binding(session, name)
         if bound:
-            rows.name(f"{key} bound", "bound to", doc="A file that was given for this window only; it is not saved")
-            doc = f"{bound}\nClick to use the file below"
+            rows.name(
+                f"{key} bound",
+                "bound to",
+                doc="A file that is bound in this window only. It is not saved",
+            )
+            doc = f"{bound}\nClick to use the file below instead"
             if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, doc):
                 rows.act(lambda: session.bind(name, None))
-        rows.name(f"{key} file", "file", doc="What comes in unless something else is linked or bound")
+        rows.name(f"{key} file", "file", doc="The file to read unless another one is linked or bound")
         edit = self._files.path(
             rows, f"{key} file", end.file, PICTURE, rows.field(), lambda path: session.apply(SetInput(name, file=path))
         )
@@ -92,7 +96,7 @@ class EndView:
         if layer:
             rows.act(lambda: session.apply(SetInput(name, layer=str(layer.value))))
         if end.kind in (Kind.IMAGE, Kind.COLOR):
-            rows.name(f"{key} space", "color space", doc="What the color of the file is in")
+            rows.name(f"{key} space", "color space", doc="The color space of the file")
             space = space_field(rows, self._fields, f"{key} space", end.color_space, rows.field())
             rows.record(f"{key} space")
             if space:
@@ -100,12 +104,12 @@ class EndView:
             if not bound:
                 self._files.space(rows, end.file, end.layer, end.color_space)
         if Pattern.parse(end.file):
-            rows.name(f"{key} missing", "missing", doc="What a frame shows that has no file")
+            rows.name(f"{key} missing", "missing", doc="What to show at a frame that has no file")
             index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
             rows.record(f"{key} missing")
             if index is not None:
                 rows.act(lambda: session.apply(SetInput(name, missing=MISSING[index])))
-        rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
+        rows.name(f"{key} default", "default", doc="The value if nothing is linked, bound or read")
         edit_of_default = self._default(rows, name, end, rows.field())
         if edit_of_default:
             rows.act(lambda: session.apply(SetInput(name, default=edit_of_default.value, merge=edit_of_default.merge)))
@@ -115,7 +119,7 @@ class EndView:
             "description",
             end.doc,
             lambda doc: session.apply(SetInput(name, doc=doc)),
-            "What it is for",
+            "A description of it",
         )
 
     def _default(self, rows: Rows, name: str, end: Input, width: float) -> Edit | None:
@@ -126,7 +130,7 @@ class EndView:
             if imgui.button(f"None##{key}", (width, 0.0)):
                 start: Plain = 0.0 if channels == 1 else (0.0,) * channels
                 rows.act(lambda: session.apply(SetInput(name, default=start)))
-            tip("Without a default something must be linked, bound or read; click to set one")
+            tip("No default: link something, bind or choose a file. Click to set a default")
             return None
         side = imgui.get_frame_height()
         color = end.kind in (Kind.IMAGE, Kind.COLOR)
@@ -147,7 +151,7 @@ class EndView:
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
         context, name, key = rows.context, port.socket, str(port)
         session = context.session
-        rows.name(key, "from", doc="What leaves the graph here", color=rows.palette.kinds[end.kind])
+        rows.name(key, "from", doc="What is linked to this output", color=rows.palette.kinds[end.kind])
         source, width = session.graph.links.get(port), rows.field()
         if source is not None:
             link_chip(rows, port, source, width)
@@ -160,11 +164,11 @@ class EndView:
             "layer",
             end.layer,
             lambda layer: session.apply(SetOutput(name, layer=layer)),
-            "What it is called in a file of several layers",
+            "The name of the layer in a file with several layers",
             hint=name,
         )
         if end.kind is Kind.IMAGE:
-            rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
+            rows.name(f"{key} view", "view", doc="The view that shows it, unless you choose another one in the viewer")
             views = ("", *list_views(manager=find_color_manager(context)))
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *views[1:]), rows.field()

@@ -125,7 +125,11 @@ class GraphView:
     def _size(self, rows: Rows) -> None:
         session = rows.context.session
         size = session.graph.settings.size
-        rows.name("size", "canvas", doc="The size of what is made from nothing; automatic is that of the first picture")
+        rows.name(
+            "size",
+            "canvas",
+            doc="The size of generated pictures. Automatic: that of the first picture",
+        )
         width, side = rows.field(), imgui.get_frame_height()
         if size is None:
             if imgui.button("Automatic##size", (width, 0.0)):
@@ -166,10 +170,14 @@ class GraphView:
         imgui.end_group()
         rows.record("frames")
         if not stated:
-            tip("As what the graph reads, or its keys, say; a number here states it")
+            tip("Automatic: from the sequences that the graph reads, or from its keys. Type a number to set it")
         else:
             imgui.same_line(0.0, 0.0)
-            if rows.icon(icons.ICON_FA_XMARK, "automatic frames", "Automatic: as what it reads, or its keys, say"):
+            if rows.icon(
+                icons.ICON_FA_XMARK,
+                "automatic frames",
+                "Automatic: from sequences or keys",
+            ):
                 rows.act(lambda: session.apply(SetFrameRange(None)))
         if edit and isinstance(edit.value, tuple):
             low, high = (int(part) for part in edit.value)
@@ -247,7 +255,7 @@ class GraphView:
         rows.draw_heading("Controls")
         rows.fit(session.graph.controls)
         if not session.graph.controls:
-            rows.note("Values that this graph shows under names of its own, to the command line and as a group.")
+            rows.note("Values that this graph offers on the command line, and when it is used as a group.")
         for name, control in session.graph.controls.items():
             key, target = f"controls.{name}", control.target
             item = session.graph.nodes.get(target.node)
@@ -258,7 +266,7 @@ class GraphView:
             else:
                 rows.name(key, name)
                 rows.field()
-                rows.note("its value is gone", rows.palette.error)
+                rows.note("its value no longer exists", rows.palette.error)
             imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
             opened = imgui.tree_node(f"{target}##{key}")
             imgui.pop_style_color()
@@ -324,7 +332,7 @@ class GraphView:
                     rows.act(lambda port=port: session.apply(ExposeValue(port)))
             imgui.end_menu()
         if not has_candidates:
-            imgui.text_disabled("No value is left to expose")
+            imgui.text_disabled("There is no other value to expose")
 
 
 def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
@@ -339,4 +347,8 @@ def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
     if end.default is not None:
         parts = end.default if isinstance(end.default, tuple) else (end.default,)
         return f"default {' '.join(f'{part:g}' for part in parts)}", palette.dim
-    return ("linked where the group is used", palette.dim) if session.place else ("nothing comes in", palette.warning)
+    return (
+        ("linked where the group is used", palette.dim)
+        if session.place
+        else ("no file and no default", palette.warning)
+    )

@@ -57,7 +57,7 @@ class Inspector:
         session = rows.context.session
         graph, active = session.graph, session.active
         if session.borrowed:
-            sentence = f"This group comes from {session.borrowed}: make it local to change it here."
+            sentence = f"This group comes from {session.borrowed}: make it local to edit it here."
             rows.note(sentence, rows.palette.warning)
         nodes = tuple(sorted(session.selection & graph.nodes.keys(), key=lambda id: (id != active, id)))
         if len(nodes) > 1:
@@ -72,7 +72,7 @@ class Inspector:
             self._graph.comment(rows, active)
         elif active.kind == "dot":
             draw_heading(rows, "Dot", rows.palette.dim)
-            rows.note("Links pass it on their way; pixels do not notice.")
+            rows.note("A dot only routes links. It does not change the picture.")
         else:
             self._graph.draw(rows)
         imgui.dummy((1.0, imgui.get_font_size()))

@@ -34,10 +34,10 @@ WIDTH = 16.0
 """Of a diamond with the room around it, at UI scale 1."""
 
 _DOCS: dict[Look, str] = {
-    "still": "Click: a key at this frame",
-    "keys": "It has keys; click: one at this frame too",
-    "key": "A key at this frame; click: remove it",
-    "expression": "It follows an expression",
+    "still": "Not animated. Click to set a key at this frame",
+    "keys": "Animated. Click to set a key at this frame",
+    "key": "Key at this frame. Click to remove it",
+    "expression": "Driven by an expression",
 }
 
 
@@ -196,7 +196,7 @@ class Keying:
             context.places[f"menu {label}"] = item_rect()
 
         def all_still() -> None:
-            session.apply(AnimateValues(dict.fromkeys(ports), f"Still {ports[0].socket}"))
+            session.apply(AnimateValues(dict.fromkeys(ports), f"Remove animation of {ports[0].socket}"))
 
         def jump(frame: int | None) -> None:
             if frame is not None:

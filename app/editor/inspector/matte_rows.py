@@ -47,12 +47,12 @@ class MatteRows:
                 rows.field_note(matte, rows.palette.warning)
             return
         if not matte.ids:
-            rows.field_note("The file has no manifest: names are typed, and hashed as the renderer did.")
+            rows.field_note("The file has no manifest. Type the names; they are hashed as the renderer does.")
             return
         session = rows.context.session
         pick = str(session.graph.value(port))
         picked = self._of(pick, matte)
-        rows.field_note(f"{len(picked)} of {len(matte.ids)} picked. A click in the viewer picks, too.")
+        rows.field_note(f"{len(picked)} of {len(matte.ids)} selected. You can also click in the viewer.")
         if session.graph.links.get(port) is not None:
             return
         names = self._find_names(rows, key, matte)
@@ -101,7 +101,7 @@ class MatteRows:
         self._seek = ""
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         if not names:
-            write(place(rows.field_width, height), "no such name", rows.palette.dim, align=0.5)
+            write(place(rows.field_width, height), "no name matches", rows.palette.dim, align=0.5)
         clipper = imgui.ListClipper()
         clipper.begin(len(names), height)
         while clipper.step():

@@ -46,7 +46,12 @@ class NodeView:
             rows, title_of(item), rows.palette.category(_category(item)), lambda: self._draw_buttons(rows, id, item), 3
         )
         draw_name_field(
-            rows, self._fields, id, id, lambda new: session.apply(RenameNode(id, new)), "What links and files call it"
+            rows,
+            self._fields,
+            id,
+            id,
+            lambda new: session.apply(RenameNode(id, new)),
+            "The name of the node",
         )
         self._explained = draw_explanation(rows, doc_of(item), self._explained)
         draw_faults(rows, ElementId(id))
@@ -57,7 +62,7 @@ class NodeView:
             if isinstance(item, Unknown):
                 return
         if isinstance(item, Unknown):
-            rows.note("This type of node is not installed. It does nothing, and is saved back as it was.")
+            rows.note("This node type is not installed. The node does nothing and is saved unchanged.")
             return
         if face.values:
             rows.draw_heading("Controls" if isinstance(item, Group) else "Values")
@@ -110,7 +115,7 @@ class NodeView:
     def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:
         session = rows.context.session
         muted = session.graph.muted.issuperset(ids)
-        doc = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
+        doc = "Muted: passes its first input through. Click to unmute" if muted else "Mute"
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
         if rows.icon(glyph, f"mute {ids[0]}", doc, lit=muted):
             rows.act(lambda: session.apply(ToggleMute()))
@@ -118,7 +123,7 @@ class NodeView:
     def _code(self, rows: Rows, id: str, code: Code) -> None:
         context = rows.context
         if code.file:
-            rows.name(f"{id} file", "file", doc="The file that the code of this node is in")
+            rows.name(f"{id} file", "file", doc="The file with the code of this node")
             file = paths.resolve_path(code.file, context.session.graph.folder)
             draft = " *" if file in context.session.code_files.drafts else ""
             rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
@@ -143,7 +148,7 @@ class NodeView:
                 imgui.same_line(0.0, rows.gap)
             if imgui.button(f"{local}##{id}", (width, 0.0)):
                 rows.act(lambda: context.session.apply(MakeGroupLocal(id)))
-            tip("Make it part of this document, so that it can be changed here")
+            tip("Copy it into this document, so that it can be edited here")
             context.places[f"button local {id}"] = item_rect()
 
 

@@ -103,7 +103,7 @@ class RenderRows:
                 rows.field_note(rule_words(use.rule, kind_shown=False))
         elif use.rule:
             chosen = item.setting(value.name) != FOUND
-            words = f"chosen by hand; found: {use.rule.words}" if chosen else rule_words(use.rule, kind_shown=True)
+            words = f"chosen by hand; detected: {use.rule.words}" if chosen else rule_words(use.rule, kind_shown=True)
             unsure = not use.rule.kind and not chosen
             rows.field_note(words, rows.palette.warning if unsure else None)
 
@@ -148,7 +148,7 @@ class RenderRows:
         """What cryptomattes there are, and a button for a node that cuts out."""
         rows.draw_heading("Cryptomatte")
         words = [
-            f"{matte.kind or 'nameless'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
+            f"{matte.kind or 'unnamed'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
             for matte in overview.mattes
         ]
         rows.note(", ".join(words))
@@ -160,7 +160,7 @@ class RenderRows:
 def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
     """What the file is, below its path."""
     if overview is None:
-        rows.field_note("looking at it…")
+        rows.field_note("reading the file…")
     elif isinstance(overview, RenderOverview):
         rows.field_note(f"{overview.size}\n{overview.maker}")
         if overview.fault:
@@ -200,7 +200,9 @@ def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
             rows,
             [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in overview.metadata],
         )
-    if overview.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
+    if overview.report and rows.wide_button(
+        f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "Copy all of it as text"
+    ):
         rows.context.clipboard.put(overview.report)
 
 

@@ -239,7 +239,7 @@ def _crosshair(rows: Rows, key: str) -> None:
     viewer = rows.context.viewer
     imgui.same_line(0.0, 0.0)
     lit = viewer.picking == key
-    if rows.icon(icons.ICON_FA_CROSSHAIRS, f"place {key}", "Click on the picture to put it there", lit=lit):
+    if rows.icon(icons.ICON_FA_CROSSHAIRS, f"place {key}", "Click on the picture to place it there", lit=lit):
         viewer.picking = "" if lit else key
 
 

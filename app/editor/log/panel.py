@@ -35,9 +35,9 @@ class LogPanel:
         ]
         self._draw_toolbar(entries)
         if not entries:
-            predicate = "was said yet" if self._least == "info" else "of this kind happened"
+            kind = {"info": "messages", "warning": "warnings or errors", "error": "errors"}[self._least]
             sentence = "Messages stay here until they are cleared."
-            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {predicate}", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILE_LINES, f"No {kind} yet", sentence)
             return
         if imgui.begin_child("entries"):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
@@ -61,11 +61,11 @@ class LogPanel:
             record(self._context, f"log {level}")
             imgui.same_line(0, 2 * ui_scale())
         align_right(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
-        if quiet_button(self._context, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
+        if quiet_button(self._context, icons.ICON_FA_COPY, "copy log", "Copy listed messages", enabled=bool(entries)):
             self._context.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
         has_entries = bool(self._context.log.entries)
-        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=has_entries):
+        if quiet_button(self._context, icons.ICON_FA_TRASH, "clear log", "Clear all messages", enabled=has_entries):
             self._context.log.entries.clear()
 
 
@@ -83,7 +83,7 @@ def _draw_row(context: LogContext, index: int, entry: LogEntry) -> None:
         if imgui.menu_item(f"{icons.ICON_FA_COPY} Copy", "", False)[0]:
             context.clipboard.put(_text(entry))
         imgui.end_popup()
-    if entry.detail and imgui.tree_node("Details for a report"):
+    if entry.detail and imgui.tree_node("Details for a bug report"):
         with font(context, "mono", 13.0):
             draw_wrapped(context.palette.dim, entry.detail.rstrip())
         imgui.tree_pop()

@@ -93,26 +93,26 @@ class PreferencesDialog:
         _draw_switch(self._context, "timings", "Time and memory of each node")
         _draw_switch(self._context, "minimap", "Overview in the corner")
         _draw_heading(self._context, "Viewer")
-        _draw_switch(self._context, "proxy_while_dragging", "Coarser pictures while a value is dragged")
+        _draw_switch(self._context, "proxy_while_dragging", "Lower resolution while a value is dragged")
 
     def _draw_system(self) -> None:
         _draw_heading(self._context, "Recovery")
         label("Autosave every", _LABELS)
         self._draw_number("autosave", "%.1f s", 0.5, 10.0)
         draw_wrapped(
-            self._context.palette.dim, "Unsaved work is kept apart from your files and offered again after a crash."
+            self._context.palette.dim, "Unsaved work is saved apart from your files, and offered after a crash."
         )
         _draw_heading(self._context, "Memory")
         label("For pictures", _LABELS)
         self._draw_number("memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         draw_wrapped(
-            self._context.palette.dim, "On the graphics card. More keeps more results; it holds from the next start on."
+            self._context.palette.dim, "Memory on the graphics card that keeps results. Takes effect at the next start."
         )
         _draw_heading(self._context, "Shaders")
         self._draw_folders()
         _draw_heading(self._context, "Files")
         folder = str(self._context.store.file.parent)
-        draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are kept in {folder}")
+        draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are in {folder}")
         if imgui.button("Copy the path"):
             self._context.clipboard.put(folder)
         imgui.same_line()
@@ -127,17 +127,17 @@ class PreferencesDialog:
         folders = self._context.store.current.isf_folders
         draw_wrapped(
             self._context.palette.dim,
-            "Folders with .fs files in the Interactive Shader Format; what is in them can be "
-            f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.",
+            "Folders with .fs files in the Interactive Shader Format; their shaders can be "
+            f"added to the graph. {', '.join(CUSTOMARY)} are always searched too.",
         )
         for index, folder in enumerate(folders):
-            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
+            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "Remove this folder"):
                 _change(
                     self._context, isf_folders=tuple(kept_folder for kept_folder in folders if kept_folder != folder)
                 )
             imgui.same_line()
             imgui.align_text_to_frame_padding()
-            note = "" if os.path.isdir(folder) else "  (there is no such folder)"  # noqa: PTH112
+            note = "" if os.path.isdir(folder) else "  (folder not found)"  # noqa: PTH112
             imgui.text_unformatted(f"{folder}{note}")
         imgui.set_next_item_width(320 * ui_scale())
         entered, self._folder = imgui.input_text_with_hint(
@@ -193,4 +193,4 @@ def _draw_switch(context: PreferencesContext, name: str, title: str) -> None:
 
 
 def _scale(scale: float) -> str:
-    return f"{scale:.0%}" if scale else "As the system"
+    return f"{scale:.0%}" if scale else "Same as the system"

@@ -44,7 +44,7 @@ class ShortcutEditor:
         record(self._context, "shortcut search")
         align_right(label)
         own, icon = bool(self._context.store.current.shortcuts), icons.ICON_FA_ROTATE_LEFT
-        if quiet_button(self._context, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
+        if quiet_button(self._context, f"{icon}  Reset all", "reset shortcuts", "Reset to the default", enabled=own):
             self._context.log.attempt(lambda: self._context.store.change(shortcuts={}))
         self._listen()
         self._ask()
@@ -83,7 +83,7 @@ class ShortcutEditor:
         record(self._context, f"shortcut {action.id}")
         if changed:
             imgui.same_line(0, 4 * scale)
-            if quiet_button(self._context, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
+            if quiet_button(self._context, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "Reset to the default"):
                 self._context.log.attempt(lambda: reset_shortcut(self._context, action.id))
 
     def _listen(self) -> None:
@@ -106,9 +106,7 @@ class ShortcutEditor:
     def _ask(self) -> None:
         """Say who has a shortcut already, and offer to take it over."""
         if self._waiting:
-            draw_dim(
-                self._context, "Press the keys; Escape keeps what was, Delete leaves the action without a shortcut."
-            )
+            draw_dim(self._context, "Press the new keys. Escape cancels, Delete removes the shortcut.")
             return
         if self._offered is None:
             draw_dim(self._context, "Click a shortcut to change it.")
@@ -116,11 +114,11 @@ class ShortcutEditor:
         id, keys = self._offered
         labels = " and ".join(f"'{conflict.label}'" for conflict in self._context.actions.conflicts(id, keys))
         draw_wrapped(self._context.palette.warning, f"{display_shortcut(keys)} is the shortcut of {labels}.")
-        if imgui.button("Take it over"):
+        if imgui.button("Reassign"):
             self._offered = None
             self._context.log.attempt(lambda: take_shortcut(self._context, id, keys))
         record(self._context, "take over")
         imgui.same_line()
-        if imgui.button("Leave it"):
+        if imgui.button("Cancel"):
             self._offered = None
         record(self._context, "leave it")

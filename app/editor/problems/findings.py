@@ -46,7 +46,7 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
     for sentence in service_faults(context):
         yield ListedProblem("warning", "", sentence)
     for name, detail in context.faults.items():
-        yield ListedProblem("error", "", f"the panel {name} failed; the document is safe", detail)
+        yield ListedProblem("error", "", f"the panel '{name}' failed; the document is safe", detail)
 
 
 def service_faults(context: ProblemsContext) -> Iterable[str]:

@@ -30,7 +30,10 @@ class ProblemsPanel:
         problems = list_problems(self._context)
         if not problems:
             draw_empty_panel(
-                self._context, icons.ICON_FA_CIRCLE_CHECK, "Nothing is wrong", "What stops a picture appears here."
+                self._context,
+                icons.ICON_FA_CIRCLE_CHECK,
+                "No problems",
+                "Errors and warnings appear here.",
             )
             return
         imgui.align_text_to_frame_padding()
@@ -82,7 +85,7 @@ class ProblemsPanel:
 
 def _draw_detail(context: ProblemsContext, detail: str, name: str) -> None:
     """A traceback, for whoever reports it."""
-    opened = imgui.tree_node("Details for a report")
+    opened = imgui.tree_node("Details for a bug report")
     record(context, name)
     if not opened:
         return

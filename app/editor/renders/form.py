@@ -30,12 +30,12 @@ from ...resources.sandbox import Sandbox
 if TYPE_CHECKING:
     from .context import RendersContext
 
-Sizing = Literal["as it is", "scale", "size"]
-Extent = Literal["this frame", "all frames", "what is played", "some frames"]
+Sizing = Literal["full size", "scale", "size"]
+Extent = Literal["this frame", "all frames", "playback range", "listed frames"]
 Depth = Literal["", "half", "float"]
 
 DEPTHS: tuple[tuple[Depth, str], ...] = (
-    ("", "as the format has it"),
+    ("", "default of the format"),
     ("half", "16 bit"),
     ("float", "32 bit (16 in PNG and TIFF)"),
 )
@@ -67,7 +67,7 @@ class RenderForm:
     chosen: dict[str, bool] = field(default_factory=dict[str, bool])
     files: dict[str, str] = field(default_factory=dict[str, str])
     format: str = ".exr"
-    sizing: Sizing = "as it is"
+    sizing: Sizing = "full size"
     scale: float = 0.5
     size: tuple[int, int] = (1920, 1080)
     precision: Depth = ""
@@ -91,8 +91,8 @@ class RenderForm:
             extents["all frames"] = tuple(range(first, last + 1))
             low, high = self.context.timeline.span(session)
             if (low, high) != (first, last):
-                extents["what is played"] = tuple(range(low, high + 1))
-        extents["some frames"] = _parse_listed(self.listed)[0]
+                extents["playback range"] = tuple(range(low, high + 1))
+        extents["listed frames"] = _parse_listed(self.listed)[0]
         return extents
 
     def extent_of(self) -> Extent:
@@ -107,7 +107,7 @@ class RenderForm:
 
     def extend(self, extent: Extent) -> None:
         """Render other frames. Names that were typed get a place for the number, where they need one."""
-        if extent == "some frames" and not self.listed:
+        if extent == "listed frames" and not self.listed:
             self.listed = format_frames(self.frames())
         self.extent = extent
         if extent != "this frame":

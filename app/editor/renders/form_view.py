@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .context import RendersContext
 
 _LABELS = 80.0
-_SIZINGS: tuple[Sizing, ...] = ("as it is", "scale", "size")
+_SIZINGS: tuple[Sizing, ...] = ("full size", "scale", "size")
 _LONGEST = 24
 
 
@@ -66,7 +66,7 @@ def _draw_files(context: RendersContext, form: RenderForm) -> None:
         tip(path)
         record(context, f"render file {name}")
         imgui.same_line(0, 4 * ui_scale())
-        if quiet_button(context, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
+        if quiet_button(context, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose the file to write"):
             chosen = partial(_take_file, context, form, name)
             file = form.file(name)
             context.dialogs.browse = Browse(f"Render {name} to", "export", chosen, saving=True, name=file.name)
@@ -84,7 +84,7 @@ def _draw_frames(context: RendersContext, form: RenderForm) -> None:
     labels: dict[str, Extent] = {_extent_text(extent, frames): extent for extent, frames in offered.items()}
     if chosen := choose(context, "Frames", _extent_text(extent, offered[extent]), tuple(labels)):
         form.extend(labels[chosen])
-    if extent == "some frames":
+    if extent == "listed frames":
         _draw_frame_list(context, form)
     if extent != "this frame":
         label("Processes", _LABELS)
@@ -93,13 +93,13 @@ def _draw_frames(context: RendersContext, form: RenderForm) -> None:
         form.jobs = min(max(imgui.slider_int("##jobs", form.jobs, 1, most)[1], 1), 256)
         record(context, "render jobs")
         tip(
-            "So many processes share the frames, each with pictures of its own on the device. "
-            "Where nodes make a frame of the one before, one process renders all."
+            "How many processes share the frames. Each needs its own memory on the device. "
+            "A graph with temporal nodes is rendered by one process."
         )
 
 
 def _extent_text(extent: Extent, frames: tuple[int, ...]) -> str:
-    if extent == "some frames" or not frames:
+    if extent == "listed frames" or not frames:
         return extent
     return f"{extent}: {_short(frames)}"
 
@@ -123,7 +123,7 @@ def _draw_frame_list(context: RendersContext, form: RenderForm) -> None:
     if wrong:
         imgui.pop_style_color()
     record(context, "render frames")
-    tip("1-24, 1-24x2 for every second one, 10-1 backwards; several of them with commas between.")
+    tip("1-24; 1-24x2 for every second frame; 10-1 for backwards. Separate several with commas.")
     if wrong:
         imgui.indent(_LABELS * ui_scale())
         with font(context, "text", SMALL):
@@ -152,15 +152,15 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
     if chosen := choose(context, "Precision", depth[form.precision], tuple(depth.values())):
         form.precision = next(name for name, text in DEPTHS if text == chosen)
     if format in VIEWED or format == "mixed":
-        own = "as the output says"
+        own = "as the output states"
         if chosen := choose(context, "View", form.view or own, (own, *list_views(manager=find_color_manager(context)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]
     record(context, "render resume")
     tip(
-        "Keep frames whose files are there and would come out the same: after a render that was stopped, or a change "
-        "that only some frames see."
+        "Skip frames whose files are up to date: after a render that was stopped, or a change "
+        "that affects only some frames."
     )
 
 
@@ -172,7 +172,7 @@ def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTar
             draw_wrapped(palette.error, aim.fault)
             record(context, "render fault")
         if len(form.frames()) > 1 and quiet_button(
-            context, f"{icons.ICON_FA_HASHTAG}  Add a place for the frame number", "render number", "shot.####.exr"
+            context, f"{icons.ICON_FA_HASHTAG}  Add a frame number to the name", "render number", "shot.####.exr"
         ):
             form.number()
         return
@@ -188,7 +188,7 @@ def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTar
             imgui.same_line()
             if imgui.get_content_region_avail().x < width_of_buttons("Resume instead"):
                 imgui.new_line()
-            doc = "Keep those that would come out the same"
+            doc = "Skip the files that are up to date"
             if quiet_button(context, "Resume instead", "render resume instead", doc):
                 form.resume = True
 

@@ -38,7 +38,7 @@ class RendersPanel:
         """Draw into the current window."""
         if not self._context.session.root.outputs and not self._context.exports.all:
             sentence = "Add a graph output and link a node to it."
-            draw_empty_panel(self._context, icons.ICON_FA_FILM, "There is nothing to render", sentence)
+            draw_empty_panel(self._context, icons.ICON_FA_FILM, "Nothing to render", sentence)
             return
         form = self._forms.setdefault(self._context.session.path, RenderForm(self._context))
         room, scale = imgui.get_content_region_avail(), ui_scale()

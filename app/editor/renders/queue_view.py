@@ -76,7 +76,7 @@ class RenderQueueView:
         """Draw into the current window."""
         exports = self._context.exports
         if not exports.all:
-            sentence = "They appear here; you can go on working meanwhile."
+            sentence = "Renders appear here. You can keep working while they run."
             draw_empty_panel(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
             return
         running, waiting = exports.running, exports.waiting
@@ -86,7 +86,7 @@ class RenderQueueView:
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
         draw_dim(self._context, ", ".join(f"{count} {state}" for count, state in counts if count))
         align_right(f"{icons.ICON_FA_TRASH} Clear")
-        doc = "Forget what has ended"
+        doc = "Remove renders that have ended from the list"
         if quiet_button(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
             exports.clear()
         self._forget(exports.all)
@@ -159,16 +159,16 @@ class RenderQueueView:
             )
         if export.state == "waiting" and turn > len(self._context.exports.running):
             sooner = partial(self._context.exports.move, export, -1)
-            buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Earlier", sooner))
+            buttons.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Move up", sooner))
         if export.state in ("failed", "cancelled"):
-            doc = "Go on: frames that are there, and would come out the same, are kept" if export.done else "Try again"
+            doc = "Continue: frames that are up to date are skipped" if export.done else "Try again"
             buttons.append(
                 _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.resume, export))
             )
         if export.notes:
             lit = export in self._open
             buttons.append(
-                _Button(icons.ICON_FA_LIST_UL, "notes", "What it says", partial(self._toggle_notes, export), lit)
+                _Button(icons.ICON_FA_LIST_UL, "notes", "Show messages", partial(self._toggle_notes, export), lit)
             )
         if over:
             copy = partial(self._context.clipboard.put, str(first))
@@ -176,7 +176,7 @@ class RenderQueueView:
         show = partial(_open, self._context, folder)
         buttons.append(_Button(icons.ICON_FA_FOLDER_OPEN, "open folder", f"Show {folder}", show))
         if not over:
-            doc = "Take it out of the queue" if export.state == "waiting" else "Stop it. Finished frames stay."
+            doc = "Remove it from the queue" if export.state == "waiting" else "Stop it. Finished frames are kept."
             buttons.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
         return buttons
 
@@ -282,4 +282,4 @@ def _choose(context: RendersContext, export: QueuedRender) -> None:
 def _open(context: RendersContext, folder: Path) -> None:
     if not show_folder(folder):
         context.clipboard.put(str(folder))
-        context.log.add(f"no program here shows folders; the path is on the clipboard: {folder}")
+        context.log.add(f"{folder}: no program on this machine shows folders; the path is on the clipboard")

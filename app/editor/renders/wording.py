@@ -41,15 +41,15 @@ def under_way(export: QueuedRender) -> str:
 def state_text(export: QueuedRender, turn: int = 0) -> str:
     """How a render ended, or the turn that it waits for."""
     if export.state == "waiting":
-        return "next" if turn == 0 else f"{turn} before it"
+        return "next" if turn == 0 else f"{turn} before this one"
     many = export.total > 1
     count = f"{export.done} of {export.total} frames" if export.done < export.total else f"{export.total} frames"
     if export.state == "done":
         took = time_text(export.seconds)
         if not many:
-            return f"{'kept as it was' if export.reused else 'done'} in {took}"
+            return f"{'up to date, checked' if export.reused else 'done'} in {took}"
         number = "all" if export.reused == export.total else f"{export.reused}"
-        return f"{count} in {took}, {number} kept as they were" if export.reused else f"{count} in {took}"
+        return f"{count} in {took}, {number} already up to date" if export.reused else f"{count} in {took}"
     return f"{export.state} after {count}" if many and export.done else export.state
 
 
@@ -73,8 +73,7 @@ def aim_text(aim: RenderTargets) -> str:
 
 def exist_text(aim: RenderTargets, resume: bool) -> str:
     """What happens to files that are there already."""
-    which = "It is" if aim.files == 1 else "All of them are" if aim.exist == aim.files else f"{aim.exist:,} of them are"
-    they = "It is kept where it" if aim.files == 1 else "They are kept where they"
-    if resume:
-        return f"{which} there. {they} would come out the same."
-    return f"{which} there, and will be replaced."
+    if aim.files == 1:
+        return "It exists. It is kept if it is up to date." if resume else "It exists and will be replaced."
+    which = "All of them" if aim.exist == aim.files else f"{aim.exist:,} of them"
+    return f"{which} exist. Those up to date are kept." if resume else f"{which} exist and will be replaced."

@@ -133,12 +133,15 @@ def graph_entries() -> tuple[CatalogEntry, ...]:
     """What is no node."""
     ends = [
         CatalogEntry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
-        for side, doc in (("input", "Where it enters the graph."), ("output", "Where it leaves the graph."))
+        for side, doc in (
+            ("input", "What comes into the graph from outside."),
+            ("output", "What the graph gives to the outside."),
+        )
         for kind in Kind
     ]
     return (
         *ends,
-        CatalogEntry("frame", "frame", GRAPH, "A titled area; what lies on it moves with it."),
+        CatalogEntry("frame", "frame", GRAPH, "A titled area; the nodes on it move with it."),
         CatalogEntry("comment", "comment", GRAPH, "A note on the canvas."),
     )
 

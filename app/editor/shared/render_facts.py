@@ -72,7 +72,7 @@ def first_words(use: RoleUse | None) -> str:
     """What a field says that leaves the layer to what the file shows."""
     if use is None:
         return FOUND
-    return f"{FOUND}: {use.found_layer}" if use.found_layer else "choose a layer" if use.is_open else "none found"
+    return f"{FOUND}: {use.found_layer}" if use.found_layer else "choose a layer" if use.is_open else "not found"
 
 
 def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]:
@@ -100,7 +100,7 @@ def matte_at(context: RenderContext, id: str) -> Matte | str | None:
     matte = matte_of(overview.mattes, kind)
     if matte is not None:
         return matte
-    kinds = [matte.kind or "nameless" for matte in overview.mattes]
+    kinds = [matte.kind or "unnamed" for matte in overview.mattes]
     return f"no cryptomatte of kind {kind} in this file; it has {', '.join(kinds) or 'none'}"
 
 

@@ -16,9 +16,9 @@ _SCOPES = {
 MOUSE: tuple[tuple[str, str], ...] = (
     ("Middle drag, Alt+drag", "Move the view"),
     ("Wheel", "Zoom"),
-    ("Right click", "Menu of what is there"),
+    ("Right click", "Context menu"),
     ("Shift+click", "Select more"),
-    ("Drag on nothing", "Select with a frame"),
+    ("Drag on empty space", "Select with a box"),
     ("Ctrl+Right drag", "Cut links"),
 )
 

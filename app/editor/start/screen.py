@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 _CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
 HINTS = (
-    "Tab adds a node; drag from a pin into the open to add one that fits.",
-    "Double-click a node to see its result; Ctrl+1 keeps it on a key, 1 brings it back.",
+    "Tab adds a node. Drag from a socket to empty canvas to add one that fits.",
+    "Double-click a node to view it. Ctrl+1 assigns it to the key 1, which shows it again.",
     "Drop pictures and graphs on the window.",
-    "Ctrl+P finds everything that can be done, F1 shows all shortcuts.",
+    "Ctrl+P finds every command, F1 shows all shortcuts.",
     "Unsaved work comes back after a crash.",
 )
 
@@ -105,7 +105,7 @@ class StartScreen:
             imgui.text_unformatted("First time here?")
         for line in HINTS:
             draw_wrapped(self._context.palette.dim, line)
-        if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
+        if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Do not show this again"):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
 
     def _draw_recent(self) -> None:
@@ -127,7 +127,7 @@ class StartScreen:
         imgui.set_next_item_allow_overlap()
         clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 4 * scale))
         record(self._context, f"recent {index}")
-        tip(str(path) if there else f"{path}\nThis file is not there any more.")
+        tip(str(path) if there else f"{path}\nThis file no longer exists.")
         over = imgui.is_mouse_hovering_rect(imgui.get_item_rect_min(), imgui.get_item_rect_max())
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
@@ -137,7 +137,7 @@ class StartScreen:
         imgui.text_colored(vec4(self._context.palette.dim if there else faint), cut_middle(str(path.parent), room))
         if over:
             imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
-            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
+            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Remove it from this list"):
                 self._context.store.forget(recent.path)
                 clicked = False
         imgui.set_cursor_pos(after)
@@ -145,7 +145,9 @@ class StartScreen:
         if clicked and there:
             self._context.documents.open_graph(path)
         elif clicked:
-            self._context.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
+            self._context.log.add(
+                f"{path}: this file no longer exists; restore it, or remove it from the list", "warning"
+            )
 
     def _draw_recoveries(self, recovered: tuple[RecoveredWork, ...]) -> None:
         if not recovered:

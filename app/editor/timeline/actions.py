@@ -103,9 +103,9 @@ def _loop(loop: Loop, label: str, doc: str) -> Action[TimelineContext]:
 
 _KEYED = frozenset({"timeline"})
 _LABELS = {
-    "loop": ("Loop", "After the last frame comes the first one."),
+    "loop": ("Loop", "After the last frame, start again at the first one."),
     "once": ("Once", "Stop at the last frame."),
-    "ping-pong": ("To and Fro", "From the last frame back to the first one, and so on."),
+    "ping-pong": ("Ping-Pong", "Play forwards and backwards in turn."),
 }
 
 PLAYBACK: tuple[Action[TimelineContext], ...] = (
@@ -116,7 +116,7 @@ PLAYBACK: tuple[Action[TimelineContext], ...] = (
         "Time",
         "Space",
         checked=lambda context: context.timeline.playback.playing,
-        doc="At the graph's rate; frames that are not ready in time are left out, and counted.",
+        doc="Play at the graph's frame rate. Frames that are not ready in time are dropped and counted.",
     ),
     Action("time.next", "Next Frame", _step(1), "Time", "RightArrow", repeats=True, separated=True),
     Action("time.previous", "Previous Frame", _step(-1), "Time", "LeftArrow", repeats=True),
@@ -129,7 +129,7 @@ PLAYBACK: tuple[Action[TimelineContext], ...] = (
         "Time",
         "UpArrow",
         repeats=True,
-        doc="Of the selected nodes, else of all.",
+        doc="Go to a key of the selected nodes, or of all nodes.",
     ),
     Action(
         "time.previous_key",
@@ -138,30 +138,30 @@ PLAYBACK: tuple[Action[TimelineContext], ...] = (
         "Time",
         "DownArrow",
         repeats=True,
-        doc="Of the selected nodes, else of all.",
+        doc="Go to a key of the selected nodes, or of all nodes.",
     ),
     Action(
         "time.in",
-        "Play from Here",
+        "Set In Point",
         _in,
         "Time",
         "Alt+I",
         contexts=_KEYED,
         separated=True,
-        doc="What is played begins at this frame. The range of the graph stays.",
+        doc="Start playback at this frame. The frame range of the graph does not change.",
     ),
     Action(
         "time.out",
-        "Play to Here",
+        "Set Out Point",
         _out,
         "Time",
         "Alt+O",
         contexts=_KEYED,
-        doc="What is played ends at this frame. The range of the graph stays.",
+        doc="End playback at this frame. The frame range of the graph does not change.",
     ),
     Action(
         "time.whole",
-        "Play and See All Frames",
+        "Clear In and Out Points",
         _whole,
         "Time",
         "Alt+P",
@@ -169,17 +169,22 @@ PLAYBACK: tuple[Action[TimelineContext], ...] = (
         enabled=lambda context: context.timeline.part is not None or context.timeline.view is not None,
     ),
     Action(
-        "time.range", "Make This Part the Graph's Range", _range_from_part, "Time", enabled=_has_part, contexts=_KEYED
+        "time.range",
+        "Set Frame Range to In and Out Points",
+        _range_from_part,
+        "Time",
+        enabled=_has_part,
+        contexts=_KEYED,
     ),
     *(_loop(loop, *_LABELS[loop]) for loop in LOOPS),
     Action(
         "time.every",
-        "Every Frame",
+        "Play Every Frame",
         _every,
         "Time",
         checked=lambda context: context.timeline.every,
         contexts=_KEYED,
         separated=True,
-        doc="Leave none out, however slow that makes it.",
+        doc="Drop no frames, even if playback is slower.",
     ),
 )

@@ -96,12 +96,12 @@ class Timeline:
         tool(self._context, icons.ICON_FA_FORWARD_FAST, "time.last")
         imgui.same_line()
         action = self._context.actions[f"time.{timeline.loop.replace('-', '_')}"]
-        doc = f"{tip_of(self._context, action)}\nClick for another way"
+        doc = f"{tip_of(self._context, action)}\nClick to change it"
         if quiet_button(self._context, _LOOPS[timeline.loop], "button time.loops", doc):
             timeline.next_loop()
 
     def _frame(self, width: float) -> None:
-        edit = self._number("timeline frame", self._context.session.time.frame, width, "The frame that is looked at")
+        edit = self._number("timeline frame", self._context.session.time.frame, width, "The current frame")
         if edit and isinstance(edit.value, int | float):
             self._context.timeline.stop()
             self._context.session.time.seek(edit.value)
@@ -111,7 +111,8 @@ class Timeline:
         session = self._context.session
         first, last = session.time.frames
         stated = session.root.settings.frames is not None
-        doc = "frame of the graph" + ("" if stated else ": as what it reads, or its keys, say; a number here states it")
+        automatic = ": from the sequences that it reads, or from its keys. Type a number to set it"
+        doc = "frame of the graph" + ("" if stated else automatic)
         for name, value, gap in (("first", first, 3.0), ("last", last, 8.0)):
             edit = self._number(f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
             imgui.same_line(0.0, gap * scale)
@@ -156,4 +157,4 @@ class Timeline:
         self._context.places["timeline words"] = rect
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.dummy((max(rect[2] - rect[0], 1.0), rect[3] - rect[1]))
-        tip("Frames that are ready are shown at once. They keep to a half of the memory budget.")
+        tip("Cached frames play at once. They use up to half of the memory budget.")

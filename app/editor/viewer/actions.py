@@ -107,7 +107,7 @@ def _proxy(scale: float) -> Action[ViewerContext]:
         _set(proxy=scale),
         "Viewer/Proxy",
         checked=_is("proxy", scale),
-        doc="Compute fewer pixels, each standing for several.",
+        doc="Compute at a lower resolution.",
     )
 
 
@@ -128,7 +128,7 @@ def _make_bookmark_actions(number: int) -> tuple[Action[ViewerContext], Action[V
         "Viewer/Bookmarks",
         str(number),
         enabled=lambda context: number in context.session.views.numbered_ports,
-        doc="Show what this key was given to.",
+        doc="Show the node that is assigned to this key.",
     )
     assign: Action[ViewerContext] = Action(
         f"viewer.assign.{number}",
@@ -137,7 +137,7 @@ def _make_bookmark_actions(number: int) -> tuple[Action[ViewerContext], Action[V
         "Viewer/Bookmarks",
         f"Ctrl+{number}",
         enabled=_views_picture,
-        doc="Let this key show the active node, or else what is viewed now.",
+        doc="Assign the active node to this key, or what is viewed now.",
     )
     return recall, assign
 
@@ -154,7 +154,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "viewer",
         contexts=_SHOWN,
         checked=lambda context: context.viewer.zoom == 0.0,
-        doc="The whole picture, whatever the size of the panel.",
+        doc="Fit the whole picture into the panel.",
     ),
     Action(
         "viewer.actual",
@@ -165,7 +165,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "viewer",
         contexts=_SHOWN,
         checked=_is("zoom", 1.0),
-        doc="One pixel of the picture on one of the screen.",
+        doc="Show one pixel of the picture as one pixel of the screen.",
     ),
     Action("viewer.nearer", "Zoom In", _zoom(2.0), "Viewer", "Equal", "viewer"),
     Action("viewer.farther", "Zoom Out", _zoom(0.5), "Viewer", "Minus", "viewer"),
@@ -194,7 +194,13 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         for name, label, key in _COMPARES
     ),
     Action(
-        "viewer.other", "Show the Other", _toggle, "Viewer/Compare", "Q", "viewer", doc="B in place of A, and back."
+        "viewer.other",
+        "Toggle A and B",
+        _toggle,
+        "Viewer/Compare",
+        "Q",
+        "viewer",
+        doc="Show B in place of A, and back.",
     ),
     Action(
         "viewer.swap",
@@ -213,7 +219,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "RightBracket",
         "viewer",
         repeats=True,
-        doc="Half a stop up, in the viewer only.",
+        doc="Half a stop brighter, in the viewer only.",
     ),
     Action(
         "viewer.darker",
@@ -223,7 +229,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "LeftBracket",
         "viewer",
         repeats=True,
-        doc="Half a stop down, in the viewer only.",
+        doc="Half a stop darker, in the viewer only.",
     ),
     Action(
         "viewer.neutral",
@@ -245,7 +251,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "viewer",
         checked=_is("paused"),
         separated=True,
-        doc="Compute nothing until it is let go again.",
+        doc="Stop computing pictures until you switch this off.",
     ),
     Action(
         "viewer.clipping",
@@ -255,7 +261,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "Z",
         "viewer",
         checked=_is("warn_clipping"),
-        doc="Stripes where the display cannot show how bright or dark it is.",
+        doc="Stripes where values are outside of the display's range.",
     ),
     Action(
         "viewer.nonfinite",
@@ -263,15 +269,15 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         _flip("warn_nonfinite"),
         "Viewer/Warnings",
         checked=_is("warn_nonfinite"),
-        doc="Magenta where numbers are none.",
+        doc="Magenta where values are NaN or infinite.",
     ),
     Action(
         "viewer.find_nonfinite",
-        "Find the First Node That Makes Them",
+        "Find Source of NaN and Infinity",
         _set(finding=True),
         "Viewer/Warnings",
         enabled=_views_picture,
-        doc="Looks at one node after the other, from the inputs on.",
+        doc="Check one node after another, starting at the inputs.",
     ),
     Action(
         "viewer.region",
@@ -283,7 +289,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         _views_picture,
         lambda context: context.viewer.drawing_region or context.viewer.region is not None,
         contexts=_SHOWN,
-        doc="Drag a rectangle: scopes and the pixel table measure only that, and the rest is dimmed.",
+        doc="Drag a rectangle: scopes and pixel values measure only what is in it.",
     ),
     Action(
         "viewer.table",
@@ -294,7 +300,7 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "viewer",
         checked=_is("table"),
         contexts=_SHOWN,
-        doc="The values of every input, and of rectangles (Ctrl+drag) and markers (Ctrl+click).",
+        doc="A table of the values of every input, at rectangles (Ctrl+drag) and markers (Ctrl+click).",
     ),
     Action(
         "viewer.clear_markers",
@@ -315,16 +321,16 @@ VIEWER: tuple[Action[ViewerContext], ...] = (
         "viewer",
         _views_picture,
         contexts=_SHOWN,
-        doc="The numbers under the pointer.",
+        doc="Copy the numbers under the pointer.",
     ),
     Action(
         "viewer.save",
-        "Save What Is Seen...",
+        "Save Viewer Picture...",
         _set(saving=True),
         "Viewer",
         enabled=_views_picture,
         contexts=_SHOWN,
-        doc="The picture as the viewer shows it, at its own size.",
+        doc="Save the picture as the viewer shows it, at full size.",
     ),
     *(_scope(name) for name in SCOPES),
     *(recall for recall, _ in _BOOKMARKS),

@@ -52,7 +52,7 @@ class InvalidPixelSearch:
             if bad_pixel is not None or time.perf_counter() - started > BUDGET:
                 break
         else:
-            self._context.log.add("every number is finite up to here")
+            self._context.log.add("no NaN or infinity up to here")
             self._context.viewer.finding = False
         if bad_pixel is not None:
             self._context.viewer.finding = False
@@ -76,7 +76,7 @@ def _show(context: ViewerContext, bad_pixel: NonfinitePixel) -> None:
     """Go to the node that was found, and mark the pixel."""
     x, y = bad_pixel.pixel
     context.log.add(
-        f"{bad_pixel.path} is the first node that makes {bad_pixel.value} (pixel {x}, {y} of its output)", "warning"
+        f"{bad_pixel.path} is the first node with {bad_pixel.value} (pixel {x}, {y} of its output)", "warning"
     )
     *place, name = bad_pixel.path.split("/")
     context.log.attempt(lambda: context.session.go(tuple(place)))

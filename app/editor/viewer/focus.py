@@ -54,4 +54,4 @@ def pick_focus(context: ViewerContext) -> None:
 
 def distance_in_words(depth: float | None) -> str:
     """As a label says it."""
-    return "depth unknown" if depth is None else "nothing there" if depth >= 1e9 else f"depth {depth:.4g}"
+    return "depth unknown" if depth is None else "nothing here" if depth >= 1e9 else f"depth {depth:.4g}"

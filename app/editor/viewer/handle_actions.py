@@ -29,7 +29,7 @@ def _picks(context: ViewerContext) -> bool:
 HANDLES: tuple[Action[ViewerContext], ...] = (
     Action(
         "viewer.orbit",
-        "Orbit the Scene",
+        "Orbit Scene",
         _orbit,
         "Viewer/Handles",
         "O",
@@ -37,40 +37,40 @@ HANDLES: tuple[Action[ViewerContext], ...] = (
         _has_scene,
         lambda context: context.viewer.orbits,
         contexts=frozenset({"viewer"}),
-        doc="Drag to go around the scene that is seen, Shift or the middle button to move it, the wheel to go nearer. "
-        "Space and drag pans the picture as before. Alt does the same while it is held.",
+        doc="Drag to orbit the camera of the viewed scene; Shift or the middle button pans, the wheel moves nearer. "
+        "Space and drag pans the picture. Hold Alt to orbit without this mode.",
     ),
     Action(
         "viewer.frame_scene",
-        "Frame the Scene",
+        "Frame Scene",
         frame_scene,
         "Viewer/Handles",
         "Home",
         "viewer",
         _has_scene,
         contexts=frozenset({"viewer"}),
-        doc="Turn the camera's distance and target so that all of it is seen; a floor "
+        doc="Move the camera so that the whole scene is visible; a floor "
         "or backdrop as wide as everything does not count.",
     ),
     Action(
         "viewer.pick_focus",
-        "Pick What Is Sharp",
+        "Pick Focus",
         pick_focus,
         "Viewer/Handles",
         "E",
         "viewer",
         lambda context: find_focus_port(context.session) is not None,
         _picks,
-        doc="Of the selected depth of field: click on the picture, and what is there is sharp.",
+        doc="Click on the picture to focus the selected depth of field node there.",
     ),
     Action(
         "viewer.remove_light",
-        "Remove the Light",
+        "Remove Light",
         remove_chosen_light,
         "Viewer/Handles",
         "Delete",
         "viewer",
         can_remove,
-        doc="The one that is selected of the selected node. A double click on the picture adds one.",
+        doc="Remove the selected light of the selected node. A double click on the picture adds one.",
     ),
 )

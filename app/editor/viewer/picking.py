@@ -37,7 +37,7 @@ def title(graph: Graph, port: Port) -> str:
 def pick_port(context: ViewerContext, side: str, label: str) -> None:
     """A button that says what is shown, and a list to choose from."""
     name = f"button viewer {side}"
-    doc = f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept."
+    doc = f"What {side} shows. Ctrl+1 to Ctrl+9 assign a node to a key, 1 to 9 show it."
     dropdown(context, label, name, doc, lambda: list_ports(context, side))
     left, _, right, bottom = context.places[name]
     color = context.palette.accent if side == "A" else context.palette.good

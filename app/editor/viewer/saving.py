@@ -29,7 +29,7 @@ def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | N
         context.display.release_slot("saved")
     name = f"{context.session.name}.{a.port.node.rpartition('/')[2]}.png"
     context.dialogs.browse = Browse(
-        "Save what is seen",
+        "Save viewer picture",
         "export",
         lambda path: context.log.attempt(lambda: _save(context, path, pixels)),
         saving=True,

@@ -55,7 +55,7 @@ class ScopesPanel:
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
             draw_empty_panel(
-                self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on."
+                self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "Choose one with the buttons above."
             )
             return
         if image is None:
@@ -97,7 +97,7 @@ class ScopesPanel:
         imgui.same_line(0.0, gap)
         label, lit = ("Scene", True) if viewer.scopes_of_scene else ("Display", False)
         _wrap(label)
-        doc = "What is measured: scene-linear numbers, or what the display shows"
+        doc = "Measure scene-linear values, or display values"
         if quiet_button(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 

@@ -107,7 +107,7 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             context,
             f"1/{1 / viewer.proxy:.0f}",
             "proxy",
-            "Proxy: compute fewer pixels",
+            "Proxy: compute at a lower resolution",
             lit=viewer.proxy != 1.0,
             apart=True,
             more=lambda: _proxy_while_dragging(context),
@@ -125,7 +125,7 @@ def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_View
             context,
             icons.ICON_FA_CHESS_BOARD,
             "background",
-            "Behind what is transparent",
+            "Background of transparent pixels",
             lit=viewer.background != "checker",
         ),
     ]
@@ -247,11 +247,11 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
 
     def menu() -> None:
         for meaning in MEANINGS:
-            title = f"Show as {meaning}" if meaning != "auto" else "Show as it says"
+            title = f"Show as {meaning}" if meaning != "auto" else "Detect automatically"
             if imgui.menu_item(title, "", viewer.meaning == meaning)[0]:
                 viewer.meaning = meaning
         imgui.separator()
-        if imgui.menu_item("Measure the range", "", measured)[0]:
+        if imgui.menu_item("Measure the Range", "", measured)[0]:
             viewer.low = viewer.high = 0.0
 
     def black(width: float) -> None:
@@ -264,7 +264,7 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
         if new_high != high:
             viewer.low, viewer.high = low, new_high
 
-    how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", "How data is shown", menu, not measured)
+    how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", "How to show data", menu, not measured)
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
@@ -274,7 +274,7 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
     def menu() -> None:
         if context.coloring.fault:
             imgui.text_disabled("The color config cannot be read: these are the built-in views")
-        if imgui.menu_item(f"As the output asks ({asked_view or 'default'})", "", not viewer.view)[0]:
+        if imgui.menu_item(f"From the output ({asked_view or 'default'})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
         for display in list_displays(color):
@@ -287,7 +287,7 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
         if looks := list_looks(color):
             imgui.separator()
             if imgui.begin_menu("Look"):
-                for look, title in (("", "As the view says"), (NO_LOOK, "None"), *((name, name) for name in looks)):
+                for look, title in (("", "From the view"), (NO_LOOK, "None"), *((name, name) for name in looks)):
                     if imgui.menu_item(title, "", viewer.look == look)[0]:
                         viewer.look = look
                 imgui.end_menu()
@@ -299,7 +299,7 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
 
 def _proxy_while_dragging(context: ViewerContext) -> None:
     coarse = context.store.current.proxy_while_dragging
-    if imgui.menu_item("Coarser while dragging", "", coarse)[0]:
+    if imgui.menu_item("Lower resolution while dragging", "", coarse)[0]:
         context.log.attempt(lambda: context.store.change(proxy_while_dragging=not coarse))
 
 

@@ -211,9 +211,11 @@ class Viewer:
         elif images.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
         elif viewer.compares and self._context.session.views.find_port("B") is None:
-            draw_badge(self._context, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
+            draw_badge(
+                self._context, sight, "B shows nothing: choose it above, or press Shift+V on a node", palette.warning
+            )
         elif viewer.picking:
-            draw_badge(self._context, sight, "Click to pick; right click ends", palette.accent)
+            draw_badge(self._context, sight, "Click to pick. Right click cancels", palette.accent)
         elif viewer.drawing_region:
             draw_badge(self._context, sight, "Drag a rectangle", palette.accent)
         elif picks(self._context):
@@ -233,7 +235,7 @@ class Viewer:
 
     def _offer_search(self, sight: Sight) -> None:
         count = self._scan.wrong
-        text = f"{count} pixel{'s' if count != 1 else ''} NaN or infinite: find where from"
+        text = f"{count} pixel{'s' if count != 1 else ''} NaN or infinite: find the source"
         box = draw_badge(self._context, sight, text, self._context.palette.error)
         back = imgui.get_cursor_screen_pos()
         imgui.set_cursor_screen_pos(box[:2])

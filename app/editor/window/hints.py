@@ -18,29 +18,29 @@ def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint
     viewer, canvas = editor.viewer, editor.canvas
     if panel == PanelTitle.VIEWER:
         if viewer.picking:
-            return ("Click", "take it from the picture"), ("Right click", "leave it")
+            return ("Click", "pick from the picture"), ("Right click", "cancel")
         if viewer.drawing_region:
-            return (("Drag", "the region"),)
+            return (("Drag", "draw the region"),)
         if viewer.orbits:
             return (
-                ("Drag", "go around"),
+                ("Drag", "orbit"),
                 ("Shift+drag", "move the scene"),
                 ("Wheel", "nearer"),
                 ("Space+drag", "move the picture"),
-                (key_text(editor, "viewer.frame_scene"), "show all of it"),
+                (key_text(editor, "viewer.frame_scene"), "frame the scene"),
             )
         if picks(context):
-            return ("Click", "pick an object, or no longer"), ("Drag", "move the picture"), ("Wheel", "zoom")
+            return ("Click", "select or deselect an object"), ("Drag", "move the picture"), ("Wheel", "zoom")
         if can_add(context):
             return (
                 ("Drag", "move a light"),
                 ("Alt+drag or wheel", "nearer or farther"),
                 ("Shift+drag", "onto a surface"),
-                ("Double click", "add one"),
-                (key_text(editor, "viewer.remove_light"), "remove it"),
+                ("Double click", "add a light"),
+                (key_text(editor, "viewer.remove_light"), "remove the light"),
             )
     if panel == PanelTitle.GRAPH and canvas.tool:
-        return ("Drag", "across links"), ("Escape", "leave it")
+        return ("Drag", "across links"), ("Escape", "cancel")
     return tuple(
         (key_text(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if key_text(editor, keys)
     )
@@ -54,7 +54,7 @@ def key_text(editor: Editor, keys: str) -> str:
 _HINTS: dict[str, tuple[Hint, ...]] = {
     PanelTitle.GRAPH: (
         ("node.add", "add a node"),
-        ("Drag a pin", "link"),
+        ("Drag a socket", "link"),
         ("Middle drag", "move the view"),
         ("Wheel", "zoom"),
         ("Right click", "menu"),
@@ -70,7 +70,7 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Right click", "menu"),
     ),
     PanelTitle.INSPECTOR: (
-        ("Drag", "change (Shift: finely)"),
+        ("Drag", "change (Shift: fine)"),
         ("Click", "type, also +1 or *2"),
         ("Double click a name", "reset"),
         ("Right click", "more"),
@@ -79,12 +79,12 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Drag", "go to a frame"),
         ("time.play", "play"),
         ("Wheel", "zoom"),
-        ("Middle drag", "move along"),
-        ("Drag a corner", "play only a part"),
+        ("Middle drag", "scroll"),
+        ("Drag a corner", "set the playback range"),
         ("Right click", "more"),
     ),
     PanelTitle.SCOPES: (("viewer.region", "measure a part of the picture"),),
-    PanelTitle.HISTORY: (("Click", "go back or forth to a step"),),
+    PanelTitle.HISTORY: (("Click", "go to a step"),),
     PanelTitle.PROBLEMS: (("Click", "show the node"), ("Right click", "copy")),
     PanelTitle.LOG: (("Right click", "copy"),),
 }

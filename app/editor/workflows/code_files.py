@@ -102,7 +102,7 @@ class CodeFileWorkflow:
 
         def keep() -> None:
             self.session.code_files.keep_draft(path)
-            self.log.add("kept; saving will replace the other version")
+            self.log.add("your changes are kept; saving will replace the file on disk")
 
         self.editor.flush()
         if not self.session.code_files.differs_from_disk(path):
@@ -110,7 +110,7 @@ class CodeFileWorkflow:
             return
         self.dialogs.question = Question(
             "Changed on disk",
-            f"{path.name} was changed by another program, and here are changes that are not saved.",
+            f"{path.name} was changed by another program, and you have unsaved changes.",
             (("Load theirs", lambda: self.log.attempt(load)), ("Keep mine", keep)),
         )
 
@@ -125,7 +125,7 @@ CODE: tuple[Action[CodeFileWorkflow], ...] = (
         "graph",
         lambda files: files.active_code is not None,
         contexts=frozenset({"code"}),
-        doc="Show the code of the node, and change it.",
+        doc="Show and edit the code of the node.",
         separated=True,
     ),
     Action(
@@ -143,7 +143,7 @@ CODE: tuple[Action[CodeFileWorkflow], ...] = (
         "Graph/Code",
         enabled=lambda files: files.active_code is not None,
         contexts=frozenset({"code"}),
-        doc="Write the code to a file of its own, for use in other graphs. From now on the node reads it from there.",
+        doc="Write the code to its own file, for use in other graphs. The node reads it from there from now on.",
     ),
     Action(
         "code.inline",

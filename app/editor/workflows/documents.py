@@ -64,7 +64,7 @@ class DocumentWorkflow:
 
     def ask_for_new(self) -> None:
         """Start an empty graph, after asking about unsaved work."""
-        self._unless_unsaved(self.start_new, "start anew")
+        self._unless_unsaved(self.start_new, "start a new graph")
 
     def start_new(self) -> None:
         """Start an empty graph."""
@@ -135,7 +135,7 @@ class DocumentWorkflow:
             return
         self.dialogs.question = Question(
             "Changed on disk",
-            f"{path.name} was changed by another program since it was read here.",
+            f"{path.name} was changed by another program since you opened it.",
             (("Replace it", lambda: self.log.attempt(write)), ("Cancel", _do_nothing)),
         )
 
@@ -162,7 +162,7 @@ class DocumentWorkflow:
         """Go back to the saved file, after asking."""
         self.dialogs.question = Question(
             "Revert",
-            "Go back to what was saved last? This can be undone.",
+            "Go back to the last saved version? This can be undone.",
             (("Revert", lambda: self.log.attempt(self.session.files.revert)), ("Cancel", _do_nothing)),
         )
 
@@ -174,10 +174,10 @@ class DocumentWorkflow:
             return
         self.dialogs.question = Question(
             "Changed on disk",
-            f"{path.name} was changed by another program, and here are changes that are not saved.",
+            f"{path.name} was changed by another program, and you have unsaved changes.",
             (
                 ("Load theirs", lambda: self.log.attempt(self.session.files.reload)),
-                ("Keep mine", lambda: self.log.add("kept; saving will replace the other version")),
+                ("Keep mine", lambda: self.log.add("your changes are kept; saving will replace the file on disk")),
             ),
         )
 
@@ -200,7 +200,7 @@ class DocumentWorkflow:
             return
         self.dialogs.question = Question(
             "Unsaved changes",
-            f"'{self.session.name}' has changes that are not saved.",
+            f"'{self.session.name}' has unsaved changes.",
             (
                 (f"Save and {verb}", lambda: self.save(then)),
                 (f"{verb.capitalize()} without saving", then),
@@ -217,7 +217,7 @@ class DocumentWorkflow:
         renders = "A render is" if count == 1 else f"{count} renders are"
         self.dialogs.question = Question(
             "Renders are not finished",
-            f"{renders} not finished. Frames that are done stay, and Resume can go on from there.",
+            f"{renders} not finished. Finished frames are kept, and Resume continues from there.",
             (("Stop rendering and quit", then), ("Cancel", _do_nothing)),
         )
 

@@ -106,7 +106,7 @@ FLIPBOOK: tuple[Action[FlipbookPlayer], ...] = (
         FlipbookPlayer.choose,
         "Viewer",
         separated=True,
-        doc="A sequence on the disk, in place of the document.",
+        doc="Play a sequence of files in place of the document.",
     ),
     Action(
         "flipbook.compare",
@@ -122,6 +122,6 @@ FLIPBOOK: tuple[Action[FlipbookPlayer], ...] = (
         FlipbookPlayer.close,
         "Viewer",
         enabled=_is_open,
-        doc="End the flipbook.",
+        doc="Close the flipbook.",
     ),
 )

@@ -47,5 +47,5 @@ def test_hexadecimal():
     assert from_hexadecimal(" #F80 ") == pytest.approx((1.0, decode(0x88 / 255), 0.0, 1.0))
     assert from_hexadecimal("ff000080", 1.0)[3] == 128 / 255
     assert from_hexadecimal("ff0000", 0.25)[3] == 0.25
-    with pytest.raises(UsageError, match="'red' is no color"):
+    with pytest.raises(UsageError, match="'red' is not a color"):
         from_hexadecimal("red")

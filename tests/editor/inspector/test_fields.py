@@ -62,7 +62,7 @@ class TestTyping:
         fields = Fields(DARK)
         fields.type_in("one.gain", "1", 1.0, GAIN)
         fields.typing.text = "99"
-        assert fields.typing.fault == "99 is too large: it takes 0 to 16"
+        assert fields.typing.fault == "99 is too large: type a number from 0 to 16"
         with pytest.raises(UsageError):
             fields.typing.result()
 

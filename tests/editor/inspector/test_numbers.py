@@ -87,18 +87,18 @@ class TestTyping:
             ("1/0", GAIN, "divides by zero"),
             ("9**9**9", WEIGHT, "too large"),
             ("1e999", WEIGHT, "too large"),
-            ("(-2)**0.5", WEIGHT, "is no number"),
-            ("2px", STOPS, r"'px' does not fit: this counts stops \(EV\)"),
-            ("3 foo", GAIN, "'foo' is no unit"),
-            ("50%", STOPS, "percent do not fit"),
-            ("17", GAIN, "17 is too large: it takes 0 to 16"),
+            ("(-2)**0.5", WEIGHT, "is not a number"),
+            ("2px", STOPS, r"'px' does not fit this value: its unit is stops \(EV\)"),
+            ("3 foo", GAIN, "'foo' is not a known unit"),
+            ("50%", STOPS, "% does not fit"),
+            ("17", GAIN, "17 is too large: type a number from 0 to 16"),
             ("-1", GAIN, "-1 is too small"),
-            ("1.5", SEED, "a whole number is wanted, not 1.5"),
-            ("__import__('os')", GAIN, "is no part of a number"),
-            ("a", GAIN, "is no part of a number"),
+            ("1.5", SEED, "1.5 is not a whole number"),
+            ("__import__('os')", GAIN, "is not valid in a number"),
+            ("a", GAIN, "is not valid in a number"),
             ("1" * 201, GAIN, "too long"),
             ("*", GAIN, "missing"),
-            ("1 = 1", GAIN, "'=' is no part"),
+            ("1 = 1", GAIN, "'=' is not valid"),
         ],
     )
     def test_mistakes_are_named(self, text, declaration, reason):
@@ -210,5 +210,5 @@ def test_the_bar_starts_at_zero():
 
 
 def test_the_tooltip():
-    assert describe_value(GAIN, "1.00") == "A plain factor; usually 0 to 4; it takes 0 to 16\nDefault: 1.00"
+    assert describe_value(GAIN, "1.00") == "A plain factor; usually 0 to 4; from 0 to 16\nDefault: 1.00"
     assert describe_value(STOPS, "0").splitlines()[0] == "Brightness."

@@ -43,7 +43,7 @@ def desk(tmp_path: Path) -> Desk:
 
 def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
     form = RenderForm(desk)
-    assert list(form.extents()) == ["this frame", "all frames", "some frames"]
+    assert list(form.extents()) == ["this frame", "all frames", "listed frames"]
     assert (form.extent_of(), form.frames()) == ("all frames", tuple(range(1, 25)))
     assert form.file("image") == tmp_path / "out" / "soft_bloom.####.exr"
     aim = form.targets(0.0)
@@ -54,14 +54,14 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     assert form.frames() == (7,)
     assert aim_text(form.targets(0.0)) == "Writes soft_bloom.exr"
     desk.session.apply(SetFrameRange(None))
-    assert list(RenderForm(desk).extents()) == ["this frame", "some frames"]
+    assert list(RenderForm(desk).extents()) == ["this frame", "listed frames"]
     assert RenderForm(desk).extent_of() == "this frame"
 
 
 def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
     form = RenderForm(desk)
     desk.timeline.set_part(desk.session, 5, 9)
-    form.extend("what is played")
+    form.extend("playback range")
     assert form.frames() == (5, 6, 7, 8, 9)
     desk.timeline.part = None
     assert form.extent_of() == "all frames"
@@ -69,7 +69,7 @@ def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
 
 def test_typed_frames_are_checked(desk: Desk) -> None:
     form = RenderForm(desk)
-    form.extend("some frames")
+    form.extend("listed frames")
     assert (form.listed, form.list_fault) == ("1-24", "")
     form.listed = "1-24x2,40"
     assert form.frames() == (*range(1, 25, 2), 40)
@@ -91,7 +91,7 @@ def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
     form.number()
     assert form.targets(0.0).fault == ""
     form.files["image"] = str(tmp_path / "out" / "mine.%03d.png")
-    form.extend("some frames")
+    form.extend("listed frames")
     assert form.targets(0.0).first.endswith("mine.001.png")
 
 
@@ -103,14 +103,14 @@ def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
     assert aim.exist == 3
     (tmp_path / "out" / "soft_bloom.0004.exr").touch()
     assert form.targets(0.9) is aim and form.targets(1.1).exist == 4, "the disk is asked once in a second"
-    assert exist_text(aim, False) == "3 of them are there, and will be replaced."
+    assert exist_text(aim, False) == "3 of them exist and will be replaced."
     assert exist_text(aim, True).startswith("3 of them are there. They are kept")
     form.chosen["image"] = False
     assert "Choose an output" in form.targets(0.0).fault
 
 
 def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
-    form = RenderForm(desk, jobs=4, resume=True, extent="some frames", listed="3,5-6")
+    form = RenderForm(desk, jobs=4, resume=True, extent="listed frames", listed="3,5-6")
     options = form.options()
     assert (options.frames, options.processes, options.resume) == ((3, 5, 6), 4, True)
     form.listed = "3"
