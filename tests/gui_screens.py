@@ -327,7 +327,7 @@ def dialogs(ui: Ui) -> Screens:
     ui.editor.log.add("cannot connect 'noise.out' to 'vignette.amount': an Image is no Number", "error")
     ui.wait(4)
     yield "toasts"
-    ui.editor.log.dismiss()
+    ui.editor.log.entries.clear()
 
 
 def canvas(ui: Ui) -> Screens:

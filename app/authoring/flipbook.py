@@ -41,7 +41,7 @@ class FlipbookStrip:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """The name of the strip."""
         return self.path.name
 
     @staticmethod
@@ -74,7 +74,7 @@ class Flipbook:
         self._seen = self._state
 
     def follow(self, cached: Iterable[int]) -> bool:
-        """To be asked again and again: True if pictures must be read anew, for some that are `cached` have changed."""
+        """Update the strips; True if files of `cached` frames have changed and must be read again."""
         states = self._state
         if states == self._seen:
             return False
@@ -85,7 +85,7 @@ class Flipbook:
 
     @property
     def _state(self) -> tuple[tuple[frozenset[int], bool], ...]:
-        """Of every strip the frames that are written, and whether its render has ended."""
+        """For every strip, the frames that are written, and whether its render has ended."""
         return tuple(
             (_list_written_frames(strip), strip.export is None or strip.export.ended_at > 0.0) for strip in self.strips
         )
@@ -109,7 +109,7 @@ def _make_session(strips: Sequence[FlipbookStrip], rate: float, frame: int) -> S
         names.append(name)
         view = "none" if strip.path.suffix.lower() in _ENCODED else strip.view
         reader: Any = catalogue()["read_image"]
-        node = f"flipbook: {name}"  # what is known of a node of the document must not be said of this one
+        node = f"flipbook: {name}"  # no node of the document has this name
         graph = graph.add(node, reader(path=str(strip.path), missing="hold"))
         graph = graph.add_output(name, Output(view=view)).connect(Port(node, "out"), Port(OUTPUTS, name))
     first, last = min(strip.frames[0] for strip in strips), max(strip.frames[1] for strip in strips)

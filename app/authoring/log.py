@@ -1,4 +1,4 @@
-"""What happened: sentences that panels show and toasts repeat."""
+"""The log: sentences that the Log panel lists and toasts show."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TOAST_SECONDS = 6.0
 
 @dataclass(frozen=True)
 class LogEntry:
-    """One sentence; `detail` (a traceback, say) is shown on demand. `at` is seconds since the epoch."""
+    """One message; `detail` (such as a traceback) is shown on demand. `at` is in seconds since 1970."""
 
     sentence: str
     level: Level
@@ -30,22 +30,20 @@ class LogEntry:
 
 @dataclass
 class Log:
-    """The newest sentences, oldest first."""
+    """The last messages, oldest first."""
 
     entries: deque[LogEntry] = field(default_factory=lambda: deque[LogEntry](maxlen=KEPT))
     clock: Callable[[], float] = time
-    dismissed: float = 0.0
-    """Entries up to this time are not repeated as toasts any more."""
 
     def add(self, sentence: str, level: Level = "info", detail: str = "") -> None:
-        """Note a sentence; the same one twice in a row is noted once."""
+        """Add a message; the same one twice in a row is added once."""
         newest = self.entries[-1] if self.entries else None
         if newest and (newest.sentence, newest.level, newest.detail) == (sentence, level, detail):
             self.entries.pop()
         self.entries.append(LogEntry(sentence, level, self.clock(), detail))
 
     def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
-        """Do something that the user asked for; what goes wrong becomes an entry, and `default` is returned.
+        """Run an action of the user; an error becomes a message, and `default` is returned.
 
         A HalationError is a mistake that its sentence explains. Any other exception is a fault of the program.
         """
@@ -63,13 +61,9 @@ class Log:
         return default
 
     def toasts(self) -> tuple[LogEntry, ...]:
-        """What was said just now."""
-        since = max(self.clock() - TOAST_SECONDS, self.dismissed)
+        """The messages that are new enough for a toast."""
+        since = self.clock() - TOAST_SECONDS
         return tuple(entry for entry in self.entries if entry.at > since)
-
-    def dismiss(self) -> None:
-        """No toast for what was said so far."""
-        self.dismissed = self.clock()
 
     def age(self, entry: LogEntry) -> float:
         """Seconds since an entry was added."""

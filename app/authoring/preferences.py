@@ -1,4 +1,4 @@
-"""What one person likes: kept beside the documents, never in them."""
+"""The preferences of the user, in a file of their own, never in documents."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"
 
 
 def state_folder() -> Path:
-    """Where the editor keeps what is no document: HALATION_STATE, else where the system wants it."""
+    """The folder of preferences and recovered work: HALATION_STATE, else the system's folder for settings."""
     folder = os.environ.get("HALATION_STATE")
     return Path(folder).absolute() if folder else platformdirs.user_state_path("halation", appauthor=False)
 
@@ -97,7 +97,7 @@ class PreferenceStore:
         self._forgotten: set[str] = set()
 
     def change(self, **values: Any) -> None:
-        """Set fields of `now`. Raises UsageError for a value that makes no sense."""
+        """Set preferences. Raises UsageError for an invalid value."""
         checked: dict[str, Any] = {}
         for name, value in values.items():
             if name not in NAMES:
@@ -122,7 +122,7 @@ class PreferenceStore:
         )
 
     def folder(self, purpose: Purpose) -> str:
-        """The folder that was used last for this, "" if there is none any more."""
+        """The folder that was used last for a purpose; "" if there is none."""
         folder = self.current.folders.get(purpose, "")
         return folder if os.path.isdir(folder) else ""  # noqa: PTH112 - as above
 
@@ -152,7 +152,7 @@ class PreferenceStore:
         return True
 
     def _merge_with_file(self) -> Preferences:
-        """What is in the file, with what changed here put over it."""
+        """The preferences of the file, with the changes of this editor."""
         there = self._read(self._written)
         changed = _list_differences(self.current, self._written)
         recent = tuple(entry for entry in there.recent if entry.path not in self._forgotten)
@@ -211,13 +211,13 @@ class PreferenceStore:
 
 
 def _check_value(name: str, value: Any) -> Any:
-    """A value as its field declares it. Raises ValidationError or ValueError."""
+    """A value converted to the type of its field. Raises ValidationError or ValueError."""
     converted = msgspec.convert(msgspec.to_builtins(value, enc_hook=dict), TYPES[name])
     return CHECKS[name](converted) if name in CHECKS else converted
 
 
 def _merge_recent(first: tuple[Recent, ...], second: tuple[Recent, ...]) -> tuple[Recent, ...]:
-    """Both lists as one, newest first, every path once."""
+    """Both lists merged, newest first, every path once."""
     newest: dict[str, Recent] = {}
     for recent in sorted((*first, *second), key=lambda recent: recent.time, reverse=True):
         newest.setdefault(recent.path, recent)
@@ -225,7 +225,7 @@ def _merge_recent(first: tuple[Recent, ...], second: tuple[Recent, ...]) -> tupl
 
 
 def _list_differences(preferences: Preferences, before: Preferences) -> dict[str, Any]:
-    """The fields in which they differ, as `preferences` has them."""
+    """The fields of `preferences` that differ from another one."""
     return {name: getattr(preferences, name) for name in NAMES if getattr(preferences, name) != getattr(before, name)}
 
 

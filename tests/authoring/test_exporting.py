@@ -103,7 +103,7 @@ def test_failures_are_sentences(exports, folder, tmp_path):
 def test_what_makes_no_sense_is_refused_at_once(exports, folder):
     with pytest.raises(UsageError, match="choose a file"):
         exports.start(brighter(folder), [])
-    with pytest.raises(UsageError, match="'beauty' is filled from memory"):
+    with pytest.raises(UsageError, match="'beauty' is a picture in memory"):
         exports.start(brighter(folder), [("", folder / "x.exr")], {"beauty": np.zeros((2, 2, 4))})
     assert exports.all == ()
 

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import pytest
 from halation.authoring.commands import ReplaceGraph
 from halation.authoring.edits.element_id import ElementId
-from halation.editor.fields.value_field import height_of
 from halation.graph import Graph, Port
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
 from toy_nodes import Lamps, Tint
@@ -109,19 +107,5 @@ def test_many_lights_are_scrolled_to(gui) -> None:
         assert len(of(ui)) == 1024
         assert ui.editor.places["light lamps.lights 8"][3] <= ui.editor.places["button add lamps.lights"][1] + 1
         ui.wheel(-100)
-
-    gui(body)
-
-
-def test_how_high_fields_are(gui) -> None:
-    def body(ui) -> None:
-        start(ui, *(Light(),) * 3)
-        for node in ("lamps", "tint", "convolve3x3", "vignette"):
-            select(ui, node)
-            item = ui.session.graph.nodes[node]
-            for name, declaration in item.values.items():
-                _, top, _, bottom = ui.editor.places[f"field {node}.{name}"]
-                high = ui.ask(lambda: height_of(declaration, getattr(item, name)))  # noqa: B023
-                assert bottom - top == pytest.approx(high, abs=1.0), name
 
     gui(body)

@@ -51,7 +51,7 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
     def body(ui) -> None:
         ui.session.apply(SetValue(Port("bloom", "intensity"), 0.1))
         answer(ui, picture, "Open its graph")
-        assert "changes that are not saved" in ui.editor.dialogs.question.sentence
+        assert "unsaved changes" in ui.editor.dialogs.question.sentence
         ui.click("answer 1")
         ui.settled()
         session = ui.session

@@ -76,7 +76,7 @@ def test_the_form_in_every_theme(gui, shot: Path, theme: str, scale: float) -> N
         ui.shot(f"form_{theme}_{scale:g}.png")
         ui.click("Frames")
         ui.shot(f"form_frames_{theme}_{scale:g}.png")
-        ui.click("Frames some frames")
+        ui.click("Frames listed frames")
         ui.click("render frames")
         ui.type("1-8x2,x", enter=False)
         assert "render list fault" in ui.editor.places

@@ -1,4 +1,4 @@
-"""Things that take time to make, made in a thread and kept."""
+"""A cache whose entries are computed in a thread."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ V = TypeVar("V")
 
 
 class BackgroundCache(Generic[K, V]):
-    """What was asked for last is made first; of what is made, the `kept` used last stay.
+    """Entries computed in a thread, the last requested first; the `kept` most recently used ones stay.
 
     `make` must not raise. At most `waiting` requests wait, the oldest are forgotten. `begin` runs in the thread first.
     """
@@ -35,7 +35,7 @@ class BackgroundCache(Generic[K, V]):
         self._closed = False
 
     def get(self, key: K) -> V | None:
-        """What was made of `key`; None if it is not ready: ask again."""
+        """The entry of `key`; None if it is not ready yet: ask again later."""
         with self._changed:
             if key in self._finished:
                 self._finished.move_to_end(key)
@@ -52,11 +52,11 @@ class BackgroundCache(Generic[K, V]):
 
     @property
     def is_busy(self) -> bool:
-        """True while something that was asked for is not ready."""
+        """True while a requested entry is not ready."""
         return bool(self._requested)
 
     def forget(self) -> None:
-        """Nothing that was asked for is wanted any more."""
+        """Drop all waiting requests."""
         with self._changed:
             self._requested.clear()
 

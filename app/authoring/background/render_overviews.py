@@ -1,4 +1,4 @@
-"""Renders, looked at in a thread: what they hold, for panels and for the compiler; which object is where."""
+"""The contents of render files, read in a thread: layers, camera and mattes, for panels and for the compiler."""
 
 from __future__ import annotations
 
@@ -32,27 +32,27 @@ ROLES = (
     Role.MATERIAL_ID,
     Role.UV,
 )
-"""What a render is read for."""
+"""The roles that a layer of a render can have."""
 
 _KEPT, _KEPT_IDS = 256, 3
 
 ChosenLayers = Mapping[str, str]
-"""Layers that somebody chose, by role."""
+"""Layers that the user chose, by role."""
 
 _Key = tuple[str, str, tuple[tuple[str, str], ...]]
 """Path, version of the file, and chosen layers."""
 
 
 class OverviewPending(InputError):
-    """A render is still being looked at. `ready` says when asking again makes sense."""
+    """A render is still being read. `ready` says when it makes sense to ask again."""
 
     def __init__(self, path: str, ready: Callable[[], bool]) -> None:
-        super().__init__(f"{path}: is still being looked at: wait a moment")
+        super().__init__(f"{path}: is still being read: wait a moment")
         self.ready = ready
 
 
 class RenderOverviews:
-    """What renders hold: never waits for a file."""
+    """The contents of renders. Never waits for a file."""
 
     def __init__(self, sandbox: Sandbox) -> None:
         self._sandbox, self._versions = sandbox, FileVersions(sandbox)
@@ -64,7 +64,7 @@ class RenderOverviews:
         )
 
     def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> RenderOverview | str | None:
-        """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
+        """The contents of a render; a sentence if it cannot be read, None while it is being read."""
         path = representative_file(path, sandbox=self._sandbox)
         version, fault = self._versions.of(path)
         if fault:
@@ -73,7 +73,7 @@ class RenderOverviews:
         return overview and overview[0]
 
     def describe_render(self, path: str, named: ChosenLayers) -> Render:
-        """The same for the compiler. Raises Pending, and InputError for a file that cannot be read."""
+        """The contents of a render, for the compiler. Raises Pending, and InputError for a file that cannot be read."""
         key = _key(path, fingerprint(path, sandbox=self._sandbox), named)
         entry = self._overviews.get(key)
         if entry is None:
@@ -83,14 +83,14 @@ class RenderOverviews:
         return entry[1]
 
     def ids(self, path: Path, matte: Matte) -> IdMap | str | None:
-        """What is where in the picture, a sentence if nobody knows, None while it is being read."""
+        """The object at each pixel (cryptomatte); a sentence if it is unknown, None while it is being read."""
         path = representative_file(path, sandbox=self._sandbox)
         version, fault = self._versions.of(path)
         return fault or self._ids.get((str(path), version, matte.layers[0]))
 
     @property
     def is_busy(self) -> bool:
-        """True while something is being looked at."""
+        """True while a file is being read."""
         return self._overviews.is_busy or self._ids.is_busy
 
     def close(self) -> None:
@@ -109,7 +109,7 @@ class RenderOverviews:
         except HalationError as fault:
             return str(fault), str(fault)
         except Exception as fault:
-            message = f"{path}: cannot be looked at ({fault})"
+            message = f"{path}: cannot be read ({fault})"
             return message, message
         try:
             return contents, read_render(path, dict(named), sandbox=self._sandbox)

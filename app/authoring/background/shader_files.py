@@ -1,4 +1,4 @@
-"""Shaders in the Interactive Shader Format that lie in folders of this machine, read in a thread."""
+"""Finds the ISF shaders (Interactive Shader Format) in folders of this machine, in a thread."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ...resources.sandbox import UNRESTRICTED
 from .cache import BackgroundCache
 
 CUSTOMARY = ("/Library/Graphics/ISF", "~/Library/Graphics/ISF", "/ProgramData/ISF")
-"""Where programs that know the format look for shaders."""
+"""The folders of ISF shaders that programs on macOS share."""
 
 MOST = 5000
-"""Files of one folder that are looked at."""
+"""The most files of one folder that are read: a choice, so that a huge folder does not take minutes."""
 
 _Key = tuple[tuple[str, int], ...]
 
@@ -39,12 +39,12 @@ def _make_cache() -> BackgroundCache[_Key, tuple[ShaderFile, ...]]:
 
 @dataclass
 class ShaderFiles:
-    """What there is to be added; nothing is read before somebody asks."""
+    """The ISF shaders of some folders; nothing is read before `find` is called."""
 
     _known: BackgroundCache[_Key, tuple[ShaderFile, ...]] = field(default_factory=_make_cache)
 
     def find(self, folders: Iterable[str]) -> tuple[ShaderFile, ...] | None:
-        """The shaders in these folders and the customary ones; None while they are being looked for."""
+        """The shaders in these folders and the customary ones; None while they are being read."""
         searched = dict.fromkeys(str(Path(folder).expanduser()) for folder in (*CUSTOMARY, *folders))
         key = tuple((folder, _folder_time(folder)) for folder in searched if _folder_time(folder))
         return self._known.get(key) if key else ()
@@ -55,7 +55,7 @@ class ShaderFiles:
 
 
 def _folder_time(folder: str) -> int:
-    """When something was added to a folder; 0 if there is none."""
+    """When a file was last added to a folder; 0 if there is no such folder."""
     try:
         return Path(folder).stat().st_mtime_ns or 1
     except (OSError, ValueError):

@@ -197,7 +197,7 @@ def make_node(document: OpenDocument, type_id: str) -> Node:
 
 
 def type_stem(type_id: str) -> str:
-    """What a new node of a type is called: without the namespace of a plug-in."""
+    """The name of new nodes of a type: without the namespace of a plug-in."""
     return "code" if type_id == coding.CODE else type_id.rpartition(".")[2]
 
 

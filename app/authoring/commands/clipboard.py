@@ -14,7 +14,7 @@ from .command import EditCommand, Edited, require_selection
 
 @dataclass(frozen=True)
 class CutSelection(EditCommand[str]):
-    """Remove the selection; gives it as text."""
+    """Remove the selection; returns it as text."""
 
     def apply(self, document: OpenDocument) -> Edited[str]:
         text = copy_elements(document.graph, document.selection)
@@ -42,7 +42,7 @@ class PasteText(EditCommand[tuple[ElementId, ...]]):
 
 @dataclass(frozen=True)
 class DuplicateSelection(EditCommand[tuple[ElementId, ...]]):
-    """Add the selection once more, fed by the same; gives the new elements, which are selected."""
+    """Add a copy of the selection with the same sources; returns the new elements, which are selected."""
 
     offset: Place = (24.0, 24.0)
 

@@ -28,7 +28,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Edited(Generic[T]):
-    """What a command makes of a document, and the `outcome` that its caller needs, such as the id of a new node.
+    """The document after a command, and the `outcome` for its caller, such as the id of a new node.
 
     `graph` takes the place of the graph that the user sees; `root`, if given, that of the whole document. `select` are
     the elements selected afterwards, by default those that are left. Steps with the same `merge` token become one.
@@ -53,7 +53,7 @@ class EditCommand(ABC, Generic[T]):
 
     @abstractmethod
     def apply(self, document: OpenDocument) -> Edited[T]:
-        """What the document is to become. Raises HalationError with one sentence if the command makes no sense."""
+        """The document after the command. Raises HalationError with one sentence if the command is invalid."""
 
 
 def require_selection(document: OpenDocument, verb: str) -> frozenset[ElementId]:
@@ -72,5 +72,5 @@ def require_nodes(document: OpenDocument, verb: str) -> tuple[ElementId, ...]:
 
 
 def count_links(targets: Collection[Port]) -> str:
-    """Some links for the label of a step: `1 link`, `3 links`."""
+    """The number of links, for the label of a step: `1 link`, `3 links`."""
     return f"{len(set(targets))} {'link' if len(set(targets)) == 1 else 'links'}"

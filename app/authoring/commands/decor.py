@@ -15,7 +15,7 @@ from .command import EditCommand, Edited
 
 @dataclass(frozen=True)
 class AddFrame(EditCommand[ElementId]):
-    """Add a frame around the selection, or at `at`; gives it."""
+    """Add a frame around the selection, or at `at`; returns its id."""
 
     title: str = ""
     at: Place | None = None
@@ -50,7 +50,7 @@ class EditFrame(EditCommand[None]):
 
 @dataclass(frozen=True)
 class ResizeFrame(EditCommand[None]):
-    """Give a frame another rectangle."""
+    """Set the rectangle of a frame."""
 
     frame: ElementId
     x: float
@@ -68,7 +68,7 @@ class ResizeFrame(EditCommand[None]):
 
 @dataclass(frozen=True)
 class AddComment(EditCommand[ElementId]):
-    """Add a comment at that place; gives it."""
+    """Add a comment at a position; returns its id."""
 
     at: Place
     text: str = ""
@@ -80,7 +80,7 @@ class AddComment(EditCommand[ElementId]):
 
 @dataclass(frozen=True)
 class EditComment(EditCommand[None]):
-    """Write something else in a comment."""
+    """Set the text of a comment."""
 
     comment: ElementId
     text: str
@@ -93,7 +93,7 @@ class EditComment(EditCommand[None]):
 
 @dataclass(frozen=True)
 class ResizeComment(EditCommand[None]):
-    """Put a comment somewhere and make it as wide; it is as high as its text."""
+    """Set the position and the width of a comment; its height follows from its text."""
 
     comment: ElementId
     x: float
@@ -110,7 +110,7 @@ class ResizeComment(EditCommand[None]):
 
 @dataclass(frozen=True)
 class AddDot(EditCommand[ElementId]):
-    """Add a dot on the link that feeds `target`; gives it."""
+    """Add a dot on the link to `target`; returns its id."""
 
     target: Port
     at: Place
@@ -122,7 +122,7 @@ class AddDot(EditCommand[ElementId]):
 
 @dataclass(frozen=True)
 class JoinDot(EditCommand[None]):
-    """Let the link that feeds `target` pass a dot of another link from the same source."""
+    """Route the link to `target` through a dot of another link from the same source."""
 
     dot: ElementId
     target: Port

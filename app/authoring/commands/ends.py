@@ -17,7 +17,7 @@ from .command import EditCommand, Edited
 
 
 class Keep:
-    """Says that something stays as it is, where None means something else."""
+    """A marker: the field stays as it is. None means something else there."""
 
 
 KEEP = Keep()

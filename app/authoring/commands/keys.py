@@ -70,7 +70,7 @@ class ToggleKey(EditCommand[None]):
 
 @dataclass(frozen=True)
 class AnimateValue(EditCommand[None]):
-    """Let a value change over time; without an animation it stays as it is at the current frame."""
+    """Animate a value; without an animation it keeps its number at the current frame."""
 
     port: Port
     animation: Animation | None
@@ -83,7 +83,7 @@ class AnimateValue(EditCommand[None]):
 
 @dataclass(frozen=True)
 class AnimateValues(EditCommand[None]):
-    """The same for several values, as one step."""
+    """Animate several values, as one step."""
 
     animations: Mapping[Port, Animation | None]
     label: str
@@ -98,7 +98,7 @@ class AnimateValues(EditCommand[None]):
 
 @dataclass(frozen=True)
 class SetExpression(EditCommand[None]):
-    """Let a value follow an expression; a `=` in front does not count. Without text it stays as it is now."""
+    """Drive a value by an expression; a leading `=` is ignored. Without text the value keeps its current number."""
 
     port: Port
     text: str
@@ -115,7 +115,7 @@ class SetExpression(EditCommand[None]):
 
 @dataclass(frozen=True)
 class BakeKeys(EditCommand[None]):
-    """Turn what a value is at each of these frames, by default of the whole range, into keys."""
+    """Set a key with the current result of the value at each of these frames, by default at all frames of the range."""
 
     port: Port
     frames: Iterable[int] | None = None

@@ -17,7 +17,7 @@ from .command import EditCommand, Edited, count_links, require_nodes, require_se
 
 @dataclass(frozen=True)
 class Connect(EditCommand[None]):
-    """Link `source` to `target`, in place of what fed it."""
+    """Link `source` to `target`, which replaces its link."""
 
     source: Port
     target: Port
@@ -77,7 +77,7 @@ class CutLinks(EditCommand[None]):
 
 @dataclass(frozen=True)
 class MoveLink(EditCommand[None]):
-    """Let the link to one socket feed another instead."""
+    """Move a link from one socket to another."""
 
     old_target: Port
     new_target: Port
@@ -89,7 +89,7 @@ class MoveLink(EditCommand[None]):
 
 @dataclass(frozen=True)
 class SwapInputs(EditCommand[None]):
-    """Exchange what feeds the first two inputs of a node."""
+    """Swap the links of the first two inputs of a node."""
 
     id: str
 
@@ -99,7 +99,7 @@ class SwapInputs(EditCommand[None]):
 
 @dataclass(frozen=True)
 class DeleteSelection(EditCommand[None]):
-    """Remove what is selected; with `heal`, what fed a node then feeds what it fed, where that fits."""
+    """Delete the selection; with `heal`, the nodes before and after it are linked where that fits."""
 
     heal: bool = True
 
@@ -135,7 +135,7 @@ class ReplaceNode(EditCommand[None]):
 
 @dataclass(frozen=True)
 class RenameNode(EditCommand[None]):
-    """Give a node another id; everything that names it follows."""
+    """Rename a node; links, keys and expressions follow."""
 
     id: str
     new: str

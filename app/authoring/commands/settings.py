@@ -47,7 +47,7 @@ class SetFrameRate(EditCommand[None]):
 
 @dataclass(frozen=True)
 class SetPreroll(EditCommand[None]):
-    """Set how many frames nodes with a memory look back; None: to the first frame."""
+    """Set how many earlier frames temporal nodes process; None: from the first frame on."""
 
     preroll: int | None
     merge: str = ""
@@ -76,7 +76,7 @@ class SetColorSettings(EditCommand[None]):
 
 @dataclass(frozen=True)
 class SetCanvasSize(EditCommand[None]):
-    """Set the size of what is made from nothing, in pixels; None for that of the first picture."""
+    """Set the size of generated pictures, in pixels; None for the size of the first picture."""
 
     size: Size | None
     merge: str = ""
@@ -90,5 +90,5 @@ class SetCanvasSize(EditCommand[None]):
 
 
 def _set(document: OpenDocument, label: str, settings: Settings, merge: str) -> Edited[None]:
-    """Other settings of the whole document, also where the user is inside a group."""
+    """Replace the settings of the whole document, also where the user is inside a group."""
     return Edited(label, None, root=replace(document.root, settings=settings), merge=merge)

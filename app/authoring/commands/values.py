@@ -34,7 +34,7 @@ class SetValue(EditCommand[None]):
 
 @dataclass(frozen=True)
 class SetValues(EditCommand[None]):
-    """Set several values, as `SetValue` does, as one step."""
+    """Set several values as one step."""
 
     values: Mapping[Port, object]
     label: str

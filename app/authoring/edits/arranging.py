@@ -1,4 +1,4 @@
-"""Laying out a whole graph, or a part of it, anew."""
+"""Arranges a graph, or a part of it, in layers from left to right."""
 
 from __future__ import annotations
 

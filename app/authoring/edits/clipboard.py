@@ -23,7 +23,7 @@ from .routes import routes, with_routes
 from .wiring import Types
 
 _FROM = "from"
-"""Where relative paths of the text start."""
+"""The key of the folder in which relative paths of the text start."""
 
 
 def cut_part(graph: Graph, chosen: Collection[ElementId]) -> Graph:
@@ -111,7 +111,7 @@ def paste_part(
 
 
 def _name_ends(graph: Graph, part: Graph) -> dict[ElementId, ElementId]:
-    """What the ends of `part` are called in the graph: an equal one that serves, else one under a free name."""
+    """The names of the ends of `part` in the graph: those of equal ends, else free names."""
     read = {source for target, source in part.links.items() if ElementId.of_port(target) != ElementId.of_port(source)}
     end_names: dict[ElementId, ElementId] = {}
     for name, end in part.inputs.items():

@@ -1,4 +1,4 @@
-"""Nodes made of code: another text for a node, texts of files, code moved between the graph and a file."""
+"""Edits of code nodes: set the text of a node or a file, move code between the graph and a file."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CODE = "glsl"
 """The type of nodes whose code is GLSL, in documents and in the list of what can be added."""
 
 LANGUAGES: Mapping[str, str] = {"glsl": "GLSL", "isf": "ISF"}
-"""What the types of nodes that are made of code are called."""
+"""The names of code languages."""
 
 ENDINGS: Mapping[str, Language] = {".glsl": "glsl", ".fs": "isf"}
 """Files of code by the ending of their name."""
@@ -40,7 +40,7 @@ vec4 tint(
 
 @dataclass(frozen=True)
 class BrokenCodeNode(Unknown):
-    """A node whose code says no node, with the `code` as it is here: that in the file may be another one."""
+    """A node whose `code` is invalid. The code in its file may be another one."""
 
     code: Code | None = None
 
@@ -56,7 +56,7 @@ def with_code_type(types: Mapping[str, type[Node]]) -> Mapping[str, type[Node]]:
 
 
 def read_node_code(item: Item | None, folder: str, sandbox: Sandbox) -> Code | None:
-    """The code of a node, even of one whose code says no node; None for all other nodes."""
+    """The code of a node, even if it is invalid; None for nodes that are not made of code."""
     if isinstance(item, CustomNode):
         return item.code
     if not isinstance(item, Unknown) or item.type not in get_args(Language):
@@ -73,7 +73,7 @@ def read_node_code(item: Item | None, folder: str, sandbox: Sandbox) -> Code | N
 
 
 def make_code_node(code: Code, values: Mapping[str, Any] | None = None) -> Item:
-    """A node of that code, with those of the values that fit; if the code says none, what is to be mended."""
+    """A node made of code, with those of `values` that fit; a `BrokenCodeNode` if the code is invalid."""
     try:
         kind = node_type(code)
     except CodeFault as fault:
@@ -91,12 +91,12 @@ def make_file_node(file: str, folder: str, sandbox: Sandbox) -> Item:
 
 
 def set_code(graph: Graph, id: str, code: Code) -> Graph:
-    """A graph where a node has that code. Links, values and what animates them stay where names and types agree."""
+    """The graph with another code in a node. Links, values and animation stay where names and types agree."""
     return _replace_node(graph, id, make_code_node(code, _list_changed_values(graph.node(id))))
 
 
 def file_texts(graph: Graph) -> dict[Path, str]:
-    """The text of every file of code as nodes of the graph have it, and of groups that are part of it."""
+    """The text of every code file, as the nodes of the graph and of its own groups have it."""
     text_by_file: dict[Path, str] = {}
     for body, item in code_items(graph, borrowed=False):
         file = code_file(item, body.folder)
@@ -106,7 +106,7 @@ def file_texts(graph: Graph) -> dict[Path, str]:
 
 
 def set_file_code(graph: Graph, file: Path, text: str, sandbox: Sandbox) -> Graph:
-    """The graph with another text in a file of code; the very same one if no node has its code in it."""
+    """The graph with another text of a code file; the same object if no node uses the file."""
     return _map_code_nodes(
         graph,
         lambda body, id, item, code: (
@@ -119,7 +119,7 @@ def set_file_code(graph: Graph, file: Path, text: str, sandbox: Sandbox) -> Grap
 
 
 def reread_file_code(graph: Graph, file: Path, sandbox: Sandbox) -> Graph:
-    """The graph with the code of a file as it is on the disk now; the very same one if nothing differs."""
+    """The graph with the code of a file as it is on the disk now; the same object if nothing differs."""
 
     def change(body: Graph, id: str, item: Item, code: Code) -> Graph:
         if file not in (path := code_file(item, body.folder), path and path.with_suffix(".vs")):
@@ -171,7 +171,7 @@ def _map_code_nodes(
 
 
 def _list_changed_values(item: Item) -> Mapping[str, Any]:
-    """What is set of a node: the values that are not at their default."""
+    """The values of a node that are not at their default."""
     if isinstance(item, Unknown):
         raw = item.raw.get("values")
         return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
@@ -197,7 +197,7 @@ def _make_broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Bro
 
 
 def _replace_node(graph: Graph, id: str, item: Item) -> Graph:
-    """The graph with another node in that place; keys of the document that mean nothing here stay with it."""
+    """The graph with another node of that id; unknown keys of the document stay with it."""
     extra = {key: facts for key, facts in graph.extra.items() if key == f"nodes.{id}"}
     after = graph.replace(id, item)
     return replace(after, extra={**after.extra, **extra}) if extra and extra.keys() - after.extra.keys() else after

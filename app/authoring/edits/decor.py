@@ -23,10 +23,10 @@ from .layout import bounds
 from .sizes import COMMENT, element_size
 
 PADDING, TITLE = 24.0, 28.0
-"""Room between a frame and what is in it, and for its title above that."""
+"""The padding between a frame and its elements, and the height of its title, in canvas units."""
 
 EMPTY = (320.0, 200.0)
-"""The size of a frame around nothing."""
+"""The size of an empty frame."""
 
 SMALLEST = 40.0
 
@@ -59,7 +59,7 @@ def add_comment(graph: Graph, at: Place, text: str) -> tuple[Graph, ElementId]:
 
 
 def set_box(graph: Graph, note: ElementId, x: float, y: float, width: float, height: float) -> Graph:
-    """A graph where a frame or comment has that rectangle, which never gets too small to be grabbed."""
+    """The graph with another rectangle of a frame or comment, which never gets too small for the mouse."""
     facts = {
         "x": round_coordinate(x),
         "y": round_coordinate(y),
@@ -72,7 +72,7 @@ def set_box(graph: Graph, note: ElementId, x: float, y: float, width: float, hei
 
 
 def set_facts(graph: Graph, note: ElementId, **facts: object) -> Graph:
-    """A graph where a frame or comment says something else. Raises GraphError if there is none."""
+    """The graph with other facts of a frame or comment. Raises GraphError if there is none."""
     kind = note.kind
     if kind not in DECOR or note not in list_decor(graph, kind):
         raise GraphError(f"there is no {kind} '{note.name}'")

@@ -1,4 +1,4 @@
-"""Removing anything that lies on the canvas."""
+"""Deletes elements of the canvas."""
 
 from __future__ import annotations
 

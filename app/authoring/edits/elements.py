@@ -1,4 +1,4 @@
-"""What `graph.ui` says of the elements of a graph: where they lie, how large they are, what is written on them."""
+"""Reads and writes `graph.ui`: the position, size and text of the elements of a graph."""
 
 from __future__ import annotations
 
@@ -31,18 +31,18 @@ def list_elements(graph: Graph) -> tuple[ElementId, ...]:
 
 
 def can_be_linked(element: ElementId, graph: Graph) -> bool:
-    """True for what links can meet: nodes, inputs and outputs."""
+    """True for elements with sockets: nodes, inputs and outputs."""
     return element in graph.nodes or element.port is not None
 
 
 def list_decor(graph: Graph, kind: DecorKind) -> Mapping[ElementId, Mapping[str, Any]]:
-    """All frames, comments or dots of a graph, with what is known of them; malformed ones are left out."""
+    """All frames, comments or dots of a graph with their facts; malformed ones are left out."""
     section = _section(graph, decor_section(kind))
     return {ElementId.of(kind, name): facts for name, facts in section.items() if name and _is_object(facts)}
 
 
 def entry(graph: Graph, element: ElementId) -> Mapping[str, Any]:
-    """What `ui` says of an element, empty if nothing."""
+    """The facts of an element in `ui`; empty if there are none."""
     section, key = element.ui_entry
     facts = _section(graph, section).get(key)
     return facts if _is_object(facts) else {}
@@ -56,7 +56,7 @@ def place(graph: Graph, element: ElementId) -> Place | None:
 
 
 def with_entries(graph: Graph, changes: Mapping[ElementId, Mapping[str, Any]]) -> Graph:
-    """`ui` with facts about elements added; a fact of None goes."""
+    """The graph with facts about elements added to `ui`; a fact of None removes it."""
     sections: dict[str, dict[str, Any]] = {}
     for element, facts in changes.items():
         section, key = element.ui_entry
@@ -66,7 +66,7 @@ def with_entries(graph: Graph, changes: Mapping[ElementId, Mapping[str, Any]]) -
 
 
 def without_entries(graph: Graph, elements: Iterable[ElementId]) -> Graph:
-    """`ui` without what it says of some elements."""
+    """The graph without the facts of some elements."""
     sections: dict[str, dict[str, Any]] = {}
     for element in elements:
         section, key = element.ui_entry
@@ -75,14 +75,14 @@ def without_entries(graph: Graph, elements: Iterable[ElementId]) -> Graph:
 
 
 def with_places(graph: Graph, places: Mapping[ElementId, Place]) -> Graph:
-    """`ui` with elements somewhere else."""
+    """The graph with elements at other places."""
     return with_entries(
         graph, {element: {"x": round_coordinate(x), "y": round_coordinate(y)} for element, (x, y) in places.items()}
     )
 
 
 def with_sections(graph: Graph, sections: Mapping[str, Mapping[str, Any]]) -> Graph:
-    """`ui` with whole sections replaced; empty ones go."""
+    """The graph with whole sections of `ui` replaced; empty ones are removed."""
     ui = {**graph.ui, **sections}
     for name, section in sections.items():
         if not section:
@@ -99,13 +99,13 @@ def fresh_decor(graph: Graph, kind: DecorKind) -> ElementId:
 
 
 def round_coordinate(number: float) -> float:
-    """A coordinate with as many digits as anyone can see; a whole one without a point, as people write it."""
+    """A coordinate rounded to what can be seen; a whole one is an int, for short files."""
     rounded = round(float(number), 2)
     return int(rounded) if rounded == int(rounded) else rounded
 
 
 def clean_text(text: str) -> str:
-    """Text as a file can hold it."""
+    """Text without characters that JSON in UTF-8 cannot hold."""
     return text.encode("utf-8", "replace").decode()
 
 

@@ -1,4 +1,4 @@
-"""Graphs inside graphs: the body of a group, and a changed body put back."""
+"""Finds the body of a group in a graph, and puts a changed body back."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ GroupPath = tuple[str, ...]
 """Ids of groups, each inside the one before."""
 
 Moves = Mapping[Port, Port]
-"""Ends and controls of a body that got another name: `inputs.a`, `outputs.a` or `controls.a` by what it was before."""
+"""Renamed ends and controls of a body: the new `inputs.a`, `outputs.a` or `controls.a` by the old one."""
 
 
 def find_group(graph: Graph, id: str) -> Group:
@@ -47,7 +47,7 @@ def is_place(graph: Graph, path: GroupPath) -> bool:
 
 
 def find_borrowed_group(graph: Graph, path: GroupPath) -> tuple[GroupPath, str] | None:
-    """The outermost group on the way whose body is a file of its own, with the file's path; None if there is none."""
+    """The outermost group on the path whose body comes from a file, and the file's path; None if there is none."""
     for depth, id in enumerate(path, 1):
         item = find_group(graph, id)
         if item.path:

@@ -1,4 +1,4 @@
-"""Nodes become a group: a graph of their own with ends where links crossed its border."""
+"""Turns nodes into a group: a graph of its own, with inputs and outputs where links crossed its border."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .routes import routes, tidy_routes
 from .sizes import WIDTH, element_size
 
 _KINDS = {"float": Kind.FIELD, "int": Kind.FIELD, "bool": Kind.FIELD, "color": Kind.IMAGE, "vector": Kind.VECTOR}
-"""What an input is that feeds a value of that type."""
+"""The kind of an input that feeds a value of that type."""
 
 
 def make_group(graph: Graph, chosen: Collection[ElementId], name: str = "") -> tuple[Graph, str]:
@@ -123,7 +123,7 @@ def _vertical_order(graph: Graph, target: Port) -> tuple[float, float, Port]:
 
 
 def _kind(graph: Graph, source: Port, target: Port) -> tuple[Kind, int]:
-    """The type of an end in a link: that of the source, else whatever the target takes."""
+    """The type of an end in a link: that of the source, else one that the target takes."""
     for ask, port in ((graph.source, source), (graph.target, target)):
         try:
             socket: Socket | Value | None = ask(port)

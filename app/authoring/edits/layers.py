@@ -119,7 +119,7 @@ def _make_layers(names: Sequence[str], links: Sequence[Link], numbers: Mapping[s
 
 
 def _uncross(layering: BoxLayers) -> None:
-    """Order each layer by the mean place of its neighbors, to and fro; the order with fewest crossings stays."""
+    """Order each layer by the mean place of its neighbors, sweeping right and left; the fewest crossings win."""
     best, fewest = [list(layer) for layer in layering.layers], _count_crossings(layering)
     for sweep in range(_SWEEPS):
         if not fewest:

@@ -1,4 +1,4 @@
-"""Where elements lie: places for those that have none, and a tidy arrangement of all."""
+"""Positions of elements: for those that have none, and a layered layout of all."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .layers import place_boxes
 from .sizes import element_size
 
 GAP = (80.0, 40.0)
-"""Room between the columns and rows of a layout."""
+"""The gaps between the columns and rows of a layout, in canvas units."""
 
 OFFSET = 24.0
 """How far an element moves that would exactly cover another."""
@@ -50,7 +50,7 @@ def pin_places(graph: Graph, before: Graph | None = None) -> Graph:
 
 
 def lay_out(graph: Graph, elements: Collection[ElementId], sizes: Sizes | None = None) -> dict[ElementId, Place]:
-    """A layered layout of some nodes and ends, from 0,0 on; parts that no link holds together lie below each other."""
+    """A layered layout of some nodes and ends, from 0,0 on; parts that are not linked lie below each other."""
     rest = {key: element_size(graph, key, sizes) for key in list_elements(graph) if key in set(elements)}
     links = [pair for pair in element_links(graph) if pair[0] in rest and pair[1] in rest]
     places: dict[ElementId, Place] = {}
@@ -104,7 +104,7 @@ def shift_off(places: Places, occupied_places: Collection[Place]) -> dict[Elemen
 
 
 def _find_connected_parts(names: list[ElementId], links: list[tuple[ElementId, ElementId]]) -> list[list[ElementId]]:
-    """The names that links hold together, in the order of `names`."""
+    """The connected parts of the graph, in the order of `names`."""
     beside: dict[ElementId, list[ElementId]] = {name: [] for name in names}
     for start, end in links:
         beside[start].append(end)

@@ -1,4 +1,4 @@
-"""The content of one graph put into another, under ids that are free there."""
+"""Adds the content of one graph to another, under free ids."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .routes import routes, with_routes
 
 @dataclass(frozen=True)
 class MergedPart:
-    """`graph` holds everything; `names` says what nodes and decor of the part are called there."""
+    """`graph` has everything; `names` has the new ids of the nodes and decor of the part."""
 
     graph: Graph
     names: Mapping[ElementId, ElementId]
@@ -79,12 +79,12 @@ def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
 
 
 def rename_dots(merged_part: MergedPart, dots: tuple[str, ...]) -> tuple[str, ...]:
-    """Dots of the part as they are called now."""
+    """The dots of the part, under their new ids."""
     return tuple(merged_part.names[ElementId.of("dot", dot)].name for dot in dots)
 
 
 def _extra(part: Graph, names: Mapping[str, str]) -> dict[str, Mapping[str, object]]:
-    """Unknown keys of the nodes, by where they are now."""
+    """Unknown keys of the nodes, under their new ids."""
     extra: dict[str, Mapping[str, object]] = {}
     for path, facts in keys_of_nodes(part.extra, names).items():
         section, id, *inside = path.split(".", 2)

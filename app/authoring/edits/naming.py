@@ -1,4 +1,4 @@
-"""Ids and names from what there is."""
+"""Ids for new nodes, and names of values and elements for labels."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def name_copy(name: str, used_names: Container[str], kind: str = "") -> str:
 
 
 def value_label(graph: Graph, port: Port) -> str:
-    """A value as people read it: as it is labelled, else by its name."""
+    """A value for the user: its label, else its name."""
     item = graph.nodes.get(port.node)
     value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
     return (value.label if value else "") or port.socket.replace("_", " ")

@@ -35,7 +35,7 @@ def is_viewable(graph: Graph, port: Port) -> bool:
 
 
 def default_view(graph: Graph) -> Port | None:
-    """What to show where nobody chose: the first output that is linked, else the last node's, else an input."""
+    """What the viewer shows by default: the first linked output, else that of the last node, else an input."""
     for name in graph.outputs:
         if Port(OUTPUTS, name) in graph.links:
             return Port(OUTPUTS, name)

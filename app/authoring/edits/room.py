@@ -1,4 +1,4 @@
-"""Room for nodes that were put into a link."""
+"""Makes space for nodes that were put into a link."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .routes import inner_dots
 from .sizes import element_size
 
 MARGIN = 40.0
-"""Room between boxes that were in each other's way."""
+"""The gap between boxes that overlapped, in canvas units."""
 
 Box = tuple[float, float, float, float]
 

@@ -1,4 +1,4 @@
-"""The dots that links pass: layout only, the logic of a link never changes."""
+"""The dots that links run through: layout only, a dot never changes a link."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def with_routes(graph: Graph, changed: Mapping[Port, Iterable[str]]) -> Graph:
 
 
 def tidy_routes(graph: Graph) -> Graph:
-    """A graph without routes of links that are gone, and without dots that no link passes."""
+    """The graph without routes of removed links, and without dots that no link uses."""
     if "routes" not in graph.ui and "dots" not in graph.ui:
         return graph
     ends = {str(target) for target in graph.links}
@@ -87,7 +87,7 @@ def remove_dots(graph: Graph, removed: Collection[ElementId]) -> Graph:
 
 
 def split_route(graph: Graph, dots: Route, x: float) -> tuple[Route, Route]:
-    """A route cut in two: what lies left of `x` up to the first dot that does not, and the rest."""
+    """A route split in two at the first dot that is not left of `x`."""
     for index, dot in enumerate(dots):
         spot = place(graph, ElementId.of("dot", dot))
         if spot is not None and spot[0] >= x:

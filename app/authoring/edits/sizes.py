@@ -1,4 +1,4 @@
-"""How large elements are where nobody has measured them yet."""
+"""Estimated sizes of elements that were not drawn yet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Keys and expressions follow the values that they belong to, from one graph to another."""
+"""Moves keys and expressions with their values from one graph to another."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Animations = Mapping[Port, Animation]
 
 
 def rename_in_expression(animation: Animation, names: Mapping[str, str]) -> Animation:
-    """An expression where nodes, controls or values (`node.value`) are called otherwise, all at once; keys as is."""
+    """An expression with nodes, controls or values (`node.value`) renamed, all at once; keys stay as they are."""
     if not isinstance(animation, Expression):
         return animation
     heads = {name.partition(".")[0] for name in animation.names}
@@ -30,7 +30,7 @@ def rename_in_expression(animation: Animation, names: Mapping[str, str]) -> Anim
 
 
 def animation_of(graph: Graph, ids: Collection[str]) -> dict[Port, Animation]:
-    """What changes over time in some nodes."""
+    """The animation of some nodes."""
     return {port: item for port, item in graph.animation.items() if port.node in ids}
 
 

@@ -1,4 +1,4 @@
-"""A group becomes what is in it."""
+"""Replaces a group by its content."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class _OpenedGroup:
         return known_links, {outside[start] for start in known_links.values() if start in outside}
 
     def controls(self) -> dict[str, object]:
-        """Controls of the graph, which turn what controls of the group turned."""
+        """The controls of the graph, which now set the values that controls of the group set."""
         controls = {}
         for name, item in self.graph.controls.items():
             target = self._control(item.target.socket) if item.target.node == self.id else item.target
@@ -110,7 +110,7 @@ class _OpenedGroup:
         return viewers
 
     def _source(self, port: Port | None) -> Port | None:
-        """What a source inside the group is, seen from the graph; None if there is nothing."""
+        """The source outside of the group that a source inside stands for; None if there is none."""
         if port is None or port.node != INPUTS:
             return port and self.merged_part.port(port)
         outside = self.graph.links.get(Port(self.id, port.socket))
@@ -120,7 +120,7 @@ class _OpenedGroup:
         return Port(INPUTS, self.hoisted[port.socket]) if own and (own.file or own.default is not None) else None
 
     def _control(self, name: str) -> Port | None:
-        """What a control of the group turns, seen from the graph."""
+        """The value that a control of the group sets, seen from the graph."""
         is_control = name in self.body.controls and name not in self.body.inputs
         return self.merged_part.port(self.body.controls[name].target) if is_control else None
 

@@ -1,4 +1,4 @@
-"""Values of nodes and of groups: defaults, and colors as a value takes them."""
+"""Values of nodes and of groups: defaults, animation, controls and colors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Links: which sockets fit, nodes put into links and taken out of them."""
+"""Links: which sockets fit, and nodes that are put into links or taken out of them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Types = Mapping[str, type[Node]]
 
 
 def why_not_linkable(graph: Graph, source: Port, target: Port) -> str | None:
-    """Why a link cannot be, loops included; None if it can."""
+    """Why a link is impossible, loops included; None if it is possible."""
     if fault := graph.link_fault(source, target):
         return fault
     loop = find_route(target.node, source.node, graph.fed)
@@ -28,7 +28,7 @@ def why_not_linkable(graph: Graph, source: Port, target: Port) -> str | None:
 
 
 def list_targets(item: Item, id: str) -> tuple[Port, ...]:
-    """What can be linked into a node: inputs, then values that take a link."""
+    """The sockets of a node that take a link: inputs, then values."""
     face = signature(item)
     wireable = face.values if face.pointwise or not isinstance(item, Node) else {}
     values = [name for name, value in wireable.items() if value.wireable]

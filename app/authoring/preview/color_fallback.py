@@ -1,4 +1,4 @@
-"""How colors are managed, as far as the config that is wanted can be read."""
+"""The color management of the document, or the built-in one if its config cannot be read."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ _BUILT_IN = ColorSettings(BUILT_IN)
 
 @dataclass
 class ColorFallback:
-    """The last answer: a config that cannot be read is not tried again before it changes."""
+    """Caches the last result: an unreadable config is not tried again before it changes."""
 
     sandbox: Sandbox
     requested_manager: ColorManager | None = None
     manager: ColorManager | None = None
     fault: str = ""
-    """Why the built-in config stands in."""
+    """Why the built-in config is used instead; "" if it is not."""
 
     def resolve(self, color: ColorSettings) -> ColorManager:
-        """How colors are managed by these settings, or by those that stand in for them."""
+        """The color manager of these settings, or the built-in one if their config cannot be read."""
         manager = get_color_manager(color, self.sandbox)
         if self.manager is None or manager is not self.requested_manager:
             self.requested_manager, self.manager, self.fault = manager, manager, ""

@@ -1,4 +1,4 @@
-"""The pictures that panels show: each stays until another takes its place."""
+"""The pictures that panels show: each stays until the next one is ready."""
 
 from __future__ import annotations
 
@@ -26,66 +26,66 @@ class DisplayedImage:
     texture: DeviceTexture
     size: Size
     full_size: Size
-    """Its size at scale 1."""
+    """The size of the whole picture at scale 1."""
     scale: float
     kind: Kind
     channels: int
     key: str
     revision: int
-    """Greater for every picture that is not the one before."""
+    """Greater for every new picture."""
     frame: int = 1
     start: tuple[int, int] = (0, 0)
 
     @property
     def partial(self) -> bool:
-        """True if the texture is not all of the picture."""
+        """True if the texture is only a part of the picture."""
         return self.texture.size != self.size
 
     @property
     def share(self) -> float:
-        """The part of the picture that the texture is, of its area."""
+        """The area of the texture as a fraction of the picture."""
         width, height = self.texture.size
         return width * height / (self.size[0] * self.size[1])
 
 
 @dataclass(eq=False)
 class _LeasedImage:
-    """What a panel shows, and the lease that keeps it."""
+    """The picture of a panel, and the lease that keeps its texture on the device."""
 
     image: DisplayedImage
     lease: TextureLease
 
 
 class DisplayedImages:
-    """What each panel shows, by its name."""
+    """The picture of each panel, by the panel's name."""
 
     def __init__(self, runner: Runner) -> None:
         self._runner = runner
         self._pictures: dict[str, _LeasedImage] = {}
         self._parts: dict[str, _LeasedImage] = {}
-        """Of pictures that are newer than those."""
+        """Parts of newer pictures, by the panel's name."""
         self._full_sizes: dict[Port, Size] = {}
         self._revision = 0
 
     def find(self, name: str) -> DisplayedImage | None:
-        """What a panel shows."""
+        """The picture of a panel; None if it has none."""
         picture = self._pictures.get(name)
         return picture and picture.image
 
     def find_part(self, name: str) -> DisplayedImage | None:
-        """The part of a newer picture, where no more is there of it."""
+        """The part of a newer picture that is ready before the whole."""
         picture = self._parts.get(name)
         return picture and picture.image
 
     def show(self, name: str, port: Port, wish: PreviewRequest, face: FrameImage) -> None:
-        """Let a panel show something else."""
+        """Set the picture of a panel."""
         surface, before = face.surface, self._pictures.get(name)
         self._pictures[name] = self._lease_image(before, port, wish, face, surface.size)
         _drop(before)
         _drop(self._parts.pop(name, None))
 
     def show_part(self, wish: PreviewRequest, ports: Mapping[str, Port], plan: Plan, part: PictureRegion) -> None:
-        """Let panels show a part of something else, until all of it is there."""
+        """Show a part of new pictures until the whole is ready."""
         for name, port in ports.items():
             surface, before = plan.surfaces[plan.outputs[name]], self._parts.get(name)
             face = FrameImage(surface, self.full_size(port, wish, plan, part.size))
@@ -133,7 +133,7 @@ class DisplayedImages:
         return full_size
 
     def keep(self, names: Container[str]) -> None:
-        """Take down what no panel of these names shows."""
+        """Release the pictures of all other panels."""
         for pictures in (self._pictures, self._parts):
             for name in [name for name in pictures if name not in names]:
                 _drop(pictures.pop(name))

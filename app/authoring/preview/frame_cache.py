@@ -1,4 +1,4 @@
-"""What is known of all frames of one graph: which are there, and the histories on the way to others."""
+"""The frames of one graph that are on the device, and the histories of temporal nodes."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from ...graph import Port
 from ...renderer import FrameRenderer, Renderer, TextureLease
 
 SHARE = 0.5
-"""The part of the memory budget that frames may take which were shown."""
+"""The share of the memory budget for frames that were shown; the rest is for the current frame."""
 
 LOOK_AGAIN = 0.2
-"""Seconds after which it is looked up anew which frames are there."""
+"""Seconds between two checks which frames are still on the device: a choice, for checking takes time."""
 
 MOST_FRAMES = 5000
-"""Frames that are remembered at all."""
+"""The most frames that are remembered, whatever their size."""
 
 
 @dataclass(frozen=True)
 class FrameImage:
-    """What a panel shows of a frame."""
+    """The picture of one frame in one panel."""
 
     surface: Surface
     full_size: Size
 
 
 FrameImages = Mapping[str, FrameImage]
-"""By the panels' names."""
+"""The pictures of one frame, by the panels' names."""
 
 
 class FrameCache:
@@ -45,16 +45,16 @@ class FrameCache:
         self._images_by_frame: dict[int, FrameImages] = {}
         self._leases: dict[int, TextureLease] = {}
         self._last_lookup: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
-        """For whom it was looked up which frames are there, when, and which."""
+        """The last check: for which panels, when, and which frames were there."""
         self._frame_renderers: dict[tuple[tuple[str, Port], ...], FrameRenderer] = {}
         self.closed = False
         self.failed_frames: set[int] = set()
-        """Frames that cannot be made."""
+        """Frames that failed to render."""
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
     def add_frame(self, frame: int, faces: FrameImages, renderer: Renderer, current_frame: int) -> None:
-        """A frame has been made; `now` is the one that is looked at."""
+        """Add a rendered frame; `now` is the current one."""
         if self.closed:
             return
         self._last_lookup = (), 0.0, ()
@@ -71,12 +71,12 @@ class FrameCache:
             self._forget_frame(next(iter(self._images_by_frame)))
 
     def find(self, frame: int, names: Mapping[str, Port], renderer: Renderer) -> FrameImages | None:
-        """What panels of these names show at a frame, if all of it is on the device."""
+        """The pictures of a frame for these panels, if all are on the device."""
         faces = self._images_by_frame.get(frame)
         return faces if faces is not None and is_on_device(faces, names, renderer) else None
 
     def list_frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
-        """The frames that are on the device, in order; what had to make room is noticed a moment later."""
+        """The frames that are on the device, in order; frames that were dropped are noticed a moment later."""
         time_now = time.monotonic()
         asked_names, looked_up_at, frames = self._last_lookup
         if asked_names != tuple(names) or time_now - looked_up_at > LOOK_AGAIN:
@@ -88,7 +88,7 @@ class FrameCache:
 
     @property
     def nbytes(self) -> int:
-        """What frames that are kept take on the device."""
+        """The bytes of all cached frames on the device."""
         return sum(self._sizes().values())
 
     # --- histories ---------------------------------------------------------------------------------------------------
@@ -103,12 +103,12 @@ class FrameCache:
         return bool(self._frame_renderers)
 
     def add_frame_renderer(self, ports: Mapping[str, Port], reel: FrameRenderer) -> FrameRenderer:
-        """They have one."""
+        """Remember the history of these ports."""
         self._frame_renderers[tuple(ports.items())] = reel
         return reel
 
     def close(self) -> None:
-        """Let go of everything."""
+        """Release everything."""
         self.closed = True
         for lease in (*self._leases.values(), *self._frame_renderers.values()):
             lease.close()
@@ -126,7 +126,7 @@ class FrameCache:
         }
 
     def _make_room(self, most: int, current_frame: int) -> None:
-        """Let frames go that are wanted last, until the others fit."""
+        """Release the frames that playback needs last, until the others fit."""
         sizes = self._sizes()
         total, first, last = sum(sizes.values()), min(self._leases), max(self._leases)
         if total <= most:
@@ -138,7 +138,7 @@ class FrameCache:
                 return
 
     def _release_frame(self, frame: int) -> None:
-        """No longer keep a frame; it may stay for a while."""
+        """Release a frame; its texture may stay on the device for a while."""
         if lease := self._leases.pop(frame, None):
             lease.close()
 

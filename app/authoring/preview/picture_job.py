@@ -1,4 +1,4 @@
-"""One picture, or several of one frame, on their way: compiled and run in small steps, history first."""
+"""The job that compiles and runs the pictures of one frame in small steps, history first."""
 
 from __future__ import annotations
 
@@ -39,11 +39,11 @@ class PictureJob:
         self.run: Run | None = None
         self.started_at = time.perf_counter()
         self.finished_passes = 0
-        """Passes of runs that have ended."""
+        """Passes of the runs that have ended."""
         self.preroll = (0, 0)
-        """Frames of the history that have been run, and all that must be."""
+        """History frames that have been run, and how many must be run in all."""
         self.planned_frames = (0, 0)
-        """The same for plans."""
+        """History frames that have been planned, and how many must be planned in all."""
         self.lease = renderer.runner.create_lease()
         self._runs: Iterator[Run] | None = None
         self._frame_renderer: FrameRenderer | None = None
@@ -77,7 +77,7 @@ class PictureJob:
         return ("pre-roll", finished, total) if total and finished < total else None
 
     def step(self) -> bool:
-        """Do a little; True when all is done."""
+        """Do one step; True when the job is done."""
         if self.run is None:
             self._plan_next()
             return False
@@ -87,13 +87,13 @@ class PictureJob:
         return self._runs is None or not self._start_next_run()
 
     def close(self) -> None:
-        """Drop it."""
+        """Drop the job."""
         if self.run is not None:
             self.run.close()
         self.lease.close()
 
     def _plan_next(self) -> None:
-        """Compile one plan; with the last one, begin to run."""
+        """Compile one plan; after the last one, start to run."""
         assert self._frame_renderer is not None
         if planned := self._frame_renderer.plan_next(self.frame):
             self.planned_frames = planned
@@ -113,12 +113,12 @@ class PictureJob:
 
 
 def begin_visible_part(renderer: Renderer, wish: PreviewRequest, glimpse: VisibleRegion) -> PictureJob | None:
-    """What makes the part of a wish that can be seen; None where nothing is gained by that."""
+    """A job for the visible part of a request; None if it would not be faster than the whole."""
     ports = {name: wish.ports[name] for name in sorted(glimpse.names)}
     try:
         part = find_visible_part(renderer, wish, ports, glimpse)
         return PictureJob(renderer, wish, ports, wish.frame, False, part=part) if part else None
-    except HalationError:  # is found again, and said, where all is made
+    except HalationError:  # the job for the whole picture finds and reports it
         return None
 
 

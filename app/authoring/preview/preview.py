@@ -1,4 +1,4 @@
-"""Pictures for panels: compiled, run step by step, displayed until better ones are ready."""
+"""The preview: compiles and runs what panels want to show, step by step."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...inputs.provider import Binding
 
 PATIENCE = 0.3
-"""Seconds that a run may go on after the graph has changed: during a long drag, pictures would never come otherwise."""
+"""Seconds that a run may go on after the graph has changed: otherwise a long drag would never show a picture."""
 
 
 class Preview:
@@ -50,7 +50,7 @@ class Preview:
         self._job: PictureJob | None = None
         self._shelf = DisplayedImages(renderer.runner)
         self._seen: Graph | None = None
-        """The last graph that was wanted: it may differ from the wish in its layout."""
+        """The last requested graph: it may differ from the request in its layout."""
         self._stopwatch = PassTimes()
         self._timings: dict[str, NodeTiming] = {}
         self._cameras: dict[Port, CameraModel] = {}
@@ -78,7 +78,7 @@ class Preview:
         frame: int = 1,
         size: Size | None = None,
     ) -> None:
-        """What panels want to show, by their names. Costs nothing when it is the same as before."""
+        """Say what panels want to show, by their names. Costs nothing if it is the same as before."""
         before = self._wish
         wish = PreviewRequest(graph, dict(ports), dict(bindings or {}), scale, frame, size)
         if before is not None:
@@ -96,7 +96,7 @@ class Preview:
         self._shelf.keep(wish.ports)
 
     def work(self, seconds: float) -> bool:
-        """Compute for about so long, one pass at least; True while there is more to do.
+        """Compute for about `seconds`, at least one pass; True while there is more to do.
 
         Returns early where a file is still being decoded. A user's mistake becomes one of `faults`.
         """
@@ -115,7 +115,7 @@ class Preview:
         return self._has_more
 
     def refresh(self) -> None:
-        """Look again at all files: what has changed on disk is computed anew."""
+        """Check all files again: what has changed on disk is computed again."""
         if self._wish is not None:
             self._wish = replace(self._wish, outside_version=self._wish.outside_version + 1)
         self._forget()
@@ -126,7 +126,7 @@ class Preview:
         self._forget()
 
     def clear(self) -> None:
-        """Forget every result, picture and thumbnail; all is computed anew."""
+        """Drop every result, picture and thumbnail; everything is computed again."""
         self._forget()
         self._shelf.keep(())
         self._thumbnails.clear()
@@ -136,7 +136,7 @@ class Preview:
         self._runner.release_idle()
 
     def close(self) -> None:
-        """Give back all that is kept. The renderer stays open."""
+        """Release everything. The renderer stays open."""
         self.clear()
         self._wish = None
         self._thumbnails.close()
@@ -144,11 +144,11 @@ class Preview:
     # --- what the editor asks ----------------------------------------------------------------------------------------
 
     def find_whole_image(self, name: str) -> DisplayedImage | None:
-        """The last good picture for a panel, until the new one is ready. It is whole."""
+        """The last whole picture for a panel."""
         return self._shelf.find(name)
 
     def find_visible_image(self, name: str) -> DisplayedImage | None:
-        """The same, or the part of a newer one that can be seen."""
+        """The last picture for a panel: whole, or the visible part of a newer one."""
         return self._shelf.find_part(name) or self._shelf.find(name)
 
     def fault(self, name: str) -> str | None:
@@ -156,7 +156,7 @@ class Preview:
         return self._round.broken.get(name) if self._round else None
 
     def thumbnail(self, path: str) -> tuple[DeviceTexture, bool] | None:
-        """The last small picture of a node, and whether it is what the node shows now."""
+        """The last thumbnail of a node, and whether it is up to date."""
         return self._thumbnails.find(path, self._wish.node_mark) if self._wish else None
 
     def camera(self, port: Port) -> CameraModel | None:
@@ -165,7 +165,7 @@ class Preview:
 
     @property
     def thumbnails(self) -> frozenset[str]:
-        """Paths of all nodes and inputs that have a small picture; the same object until that changes."""
+        """Paths of all nodes and inputs that have a thumbnail; the same object until that changes."""
         return self._thumbnails.paths
 
     @property
@@ -176,33 +176,33 @@ class Preview:
 
     @property
     def completing(self) -> bool:
-        """True while all that can be seen is ready, but not the rest."""
+        """True while the visible part is ready, but not the whole picture."""
         work, peeks = self._round, self._job is not None and self._job.part is not None
         return work is not None and work.part is not None and self.busy and not (peeks or self._is_behind())
 
     @property
     def remembers(self) -> bool:
-        """True if frames are known to need the ones before."""
+        """True if frames need the ones before them."""
         return self._wish is not None and self._wish.frame_cache.needs_history
 
     @property
     def under_way(self) -> int | None:
-        """The frame that is being computed, for now or for later."""
+        """The frame that is being computed, to show it now or later."""
         return self._job.frame if self._job else None
 
     @property
     def frames(self) -> tuple[int, ...]:
-        """The frames that can be shown at once, of the graph as it is."""
+        """The frames of the current graph that can be shown at once."""
         return self._wish.frame_cache.list_frames(self._wish.ports, self.renderer) if self._wish else ()
 
     @property
     def frames_bytes(self) -> int:
-        """What these take on the device, as far as they are kept."""
+        """The bytes of these frames on the device."""
         return self._wish.frame_cache.nbytes if self._wish else 0
 
     @property
     def progress(self) -> tuple[int, int]:
-        """Passes done, and passes to do in all, as far as they are known."""
+        """Passes done, and passes in all, as far as they are known."""
         return self._round.count_passes(self._job) if self._round else (0, 0)
 
     @property
@@ -212,12 +212,12 @@ class Preview:
 
     @property
     def timings(self) -> Mapping[str, NodeTiming]:
-        """What the nodes of the pictures that are shown took when they ran last, by path."""
+        """The time and memory of each displayed node when it ran last, by path."""
         return self._timings
 
     @property
     def memory(self) -> tuple[int, int]:
-        """Bytes of textures on the device, and how many of results may stay there."""
+        """Bytes of textures on the device, and the memory budget."""
         return self._runner.textures.allocated, self._runner.textures.budget
 
     # --- one step after the other ------------------------------------------------------------------------------------
@@ -233,7 +233,7 @@ class Preview:
         return bool(self._round and not self.busy and not self.skims and self._code.is_behind(self._round))
 
     @property
-    def _draws(self) -> bool:  # thumbnails, while there is time for them
+    def _draws(self) -> bool:  # thumbnails, if there is time left
         return self.thumbnailing and self._thumbnails.waiting and not self.skims
 
     def _is_behind(self) -> bool:
@@ -245,7 +245,7 @@ class Preview:
         self._job = self._round = None
 
     def _forget(self) -> None:
-        """Begin anew, with nothing that is known of any frame."""
+        """Start again, without any frames."""
         self._restart()
         for take in self._takes:
             take.close()
@@ -256,7 +256,7 @@ class Preview:
 
     @property
     def _looks_ahead(self) -> bool:
-        """True if there is a frame to be computed for later."""
+        """True if a frame should be computed ahead."""
         work, frame = self._round, self.ahead
         if frame is None or work is None or self._job is not None or work.queue or work.broken or not work.wish.ports:
             return False
@@ -264,7 +264,7 @@ class Preview:
         return frame not in take.failed_frames and take.find(frame, work.wish.ports, self.renderer) is None
 
     def _advance(self) -> bool:
-        """Do the next thing; False if there is nothing to do now."""
+        """Do the next step; False if there is nothing to do now."""
         if self._wish is not None and self._is_behind() and self._may_restart(self._wish):
             self._begin(self._wish)
         if self._round is None:
@@ -281,7 +281,7 @@ class Preview:
         return True
 
     def _begin(self, wish: PreviewRequest) -> None:
-        """Work on a wish, from what is there of it already."""
+        """Start to work on a request, with the results that are there already."""
         job, ports = self._job, wish.ports
         if job is not None and job.ahead and job.frame == wish.frame and job.wish.frame_cache is wish.frame_cache:
             job.ahead, job.wish = False, wish
@@ -302,14 +302,14 @@ class Preview:
         self._settle(self._round)
 
     def _may_restart(self, wish: PreviewRequest) -> bool:
-        """Let a run that was begun for the same panels come to its end if that is soon."""
+        """Let a run for the same panels finish if that is soon."""
         work, job = self._round, self._job
         if work is None or job is None or work.is_replaced(wish, job):
             return True
         return self.clock() - work.started_at > self.patience
 
     def _peek(self, work: PreviewWork) -> bool:
-        """Begin with what can be seen, where that is a part of what is still to be done."""
+        """Start with the visible part, if it is less than what is still to be computed."""
         job, glimpse = self._job, self.glimpse
         if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or work.queue):
             return False
@@ -323,7 +323,7 @@ class Preview:
         return True
 
     def _compile(self, work: PreviewWork) -> bool:
-        """Begin with the next ports; False if there are none."""
+        """Compile the next ports; False if there are none."""
         if self._looks_ahead and self.ahead is not None:
             ports, frame, ahead = work.wish.ports, self.ahead, True
         elif not work.queue or work.must_wait(self.clock()):
@@ -363,7 +363,7 @@ class Preview:
             self._settle(work)
 
     def _add_fault(self, work: PreviewWork, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
-        """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
+        """Handle an error: wait for a file, try the ports one by one, or report it. False if it must wait."""
         if ahead is not None:
             work.wish.frame_cache.failed_frames.add(ahead)
         elif isinstance(error, OverviewPending):
@@ -376,7 +376,7 @@ class Preview:
         return True
 
     def _settle(self, work: PreviewWork) -> None:
-        """What was wrong before is known to be over only when all has been tried."""
+        """Report errors when everything was tried: only then it is known which earlier ones are over."""
         self.errors = MappingProxyType({**(self.errors if work.queue else {}), **work.faults})
         mistakes = {path: error for path, error in self.errors.items() if not isinstance(error, NoFileError)}
         self.faults = MappingProxyType({path: str(error) for path, error in mistakes.items()})

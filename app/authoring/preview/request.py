@@ -1,4 +1,4 @@
-"""What the editor wants to see, and what its ports mean."""
+"""Preview requests: which ports panels want to show."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ class PreviewRequest:
     upstream: UpstreamHashes | None = None
     """What each node depends on, in this graph or in an earlier one."""
     frame_cache: FrameCache = field(default_factory=FrameCache)
-    """What is known of all frames of it."""
+    """The cached frames of this graph."""
 
     def render_request(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> RenderRequest:
-        """The same for the renderer."""
+        """The request as the renderer takes it."""
         return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region)
 
     def differs_only_in_frame(self, before: PreviewRequest) -> bool:
-        """True where nothing but the frame differs."""
+        """True if only the frame differs."""
         return replace(self, frame=before.frame).wants_same_pixels(before)
 
     def wants_same_pixels(self, request: PreviewRequest) -> bool:
-        """True where the same pixels are wanted; layout does not matter."""
+        """True if both requests give the same pixels; layout does not matter."""
         return (
             self.ports == request.ports
             and self.scale == request.scale
@@ -53,7 +53,7 @@ class PreviewRequest:
         )
 
     def has_same_outside(self, request: PreviewRequest) -> bool:
-        """True where all that comes from outside of the graph is the same."""
+        """True if files, bindings and settings from outside of the graph are the same."""
         return (
             (self.frame, self.size) == (request.frame, request.size)
             and self.bindings.keys() == request.bindings.keys()
@@ -61,14 +61,14 @@ class PreviewRequest:
         )
 
     def node_mark(self, path: str) -> object:
-        """Something that changes when anything upstream of a node does."""
+        """A value that changes when anything upstream of a node changes."""
         if self.upstream is None or self.upstream.graph is not self.graph:
             self.upstream = UpstreamHashes(self.graph, before=self.upstream)
         return self.upstream.hashes.get(path), self.outside_version
 
 
 def _pixel_facts(graph: Graph) -> tuple[Any, ...]:
-    """All of a graph that pixels depend on."""
+    """The parts of a graph that pixels depend on."""
     return (
         graph.nodes,
         graph.links,
@@ -83,18 +83,18 @@ def _pixel_facts(graph: Graph) -> tuple[Any, ...]:
 
 
 def _is_same_binding(first: Binding, second: Binding) -> bool:
-    """Arrays are the same where they are one object: comparing all pixels in every frame would be slow."""
+    """True if two bindings are the same; arrays by identity, since comparing pixels in every frame is slow."""
     plain = (str, PurePath, float, int, tuple)
     return first is second or (isinstance(first, plain) and isinstance(second, plain) and first == second)
 
 
 def canvas_path(port: Port) -> str:
-    """Where a port is on the canvas: inputs are boxes of their own."""
+    """The path of a port's element on the canvas: inputs are elements of their own."""
     return f"{port}" if port.node.rpartition("/")[2] == INPUTS else port.node
 
 
 def pixel_kind(graph: Graph, port: Port, channels: int) -> Kind:
-    """What the pixels of a port mean."""
+    """The kind of pixels of a port."""
     *groups, last = port.node.split("/")
     for name in groups:
         item = graph.nodes.get(name)

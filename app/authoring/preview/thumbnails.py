@@ -1,4 +1,4 @@
-"""Small pictures of nodes, drawn from results that are on the device anyway."""
+"""Thumbnails of nodes, drawn from results that are on the device anyway."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from .request import PreviewRequest, canvas_path, pixel_kind
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64
-"""The range of a field is measured on so many columns."""
+"""The width of the picture on which the range of a field is measured: small enough to read it back every time."""
 
 
 @dataclass(frozen=True)
 class ThumbnailSource:
-    """A result that a node shows. `mark` changes when anything upstream of the node does."""
+    """The result that a thumbnail shows. `mark` changes when anything upstream of the node changes."""
 
     path: str
     key: str
@@ -32,7 +32,7 @@ class ThumbnailSource:
 
 @dataclass(frozen=True)
 class _DisplaySource:
-    """What the display is handed."""
+    """The picture and its meaning, as the display takes them."""
 
     texture: DeviceTexture
     full_size: tuple[int, int]
@@ -53,7 +53,7 @@ class _Thumbnail:
 
 
 def list_thumbnail_sources(wish: PreviewRequest, plan: Plan) -> dict[str, ThumbnailSource]:
-    """What the nodes of a wish show when its plan has run, by path: of several outputs the first."""
+    """The thumbnail sources of a plan that has run, by path: the first output of each node."""
     sources: dict[str, ThumbnailSource] = {}
     for port, number in plan.results.items():
         path, surface = canvas_path(port), plan.surfaces[number]
@@ -63,7 +63,7 @@ def list_thumbnail_sources(wish: PreviewRequest, plan: Plan) -> dict[str, Thumbn
 
 
 class Thumbnails:
-    """The last small picture of every node. Nothing is ever computed for them but themselves."""
+    """The last thumbnail of every node. No result is ever computed only for a thumbnail."""
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self._renderer, self._display = renderer, display
@@ -72,15 +72,15 @@ class Thumbnails:
         self._waiting: dict[str, ThumbnailSource] = {}
         self._coloring, self._manager = ColorFallback(renderer.sandbox), get_default_color_manager()
         self.paths: frozenset[str] = frozenset()
-        """Who has a picture; the same object until that changes."""
+        """The paths that have a thumbnail; the same object until that changes."""
 
     @property
     def waiting(self) -> bool:
-        """True while there are some to be drawn."""
+        """True while thumbnails wait to be drawn."""
         return bool(self._waiting)
 
     def offer(self, subjects: Mapping[str, ThumbnailSource], color: ColorSettings | None = None) -> None:
-        """These results are there now, by path; their colors are managed that way."""
+        """Offer results for thumbnails, by path, with the color manager that displays them."""
         self._manager = self._coloring.resolve(color or ColorSettings())
         for path, subject in subjects.items():
             thumbnail = self._thumbnails.get(path)
@@ -91,7 +91,7 @@ class Thumbnails:
                 self._waiting[path] = subject
 
     def draw_next(self) -> None:
-        """Draw one, unless its result had to make room for others."""
+        """Draw the next thumbnail, if its result is still on the device."""
         subject = self._waiting.pop(next(iter(self._waiting)))
         texture = self._renderer.runner.find_texture(subject.key)
         if texture is None:
@@ -107,12 +107,12 @@ class Thumbnails:
             self.paths |= {subject.path}
 
     def find(self, path: str, mark: Callable[[str], object]) -> tuple[DeviceTexture, bool] | None:
-        """The last picture of a node, and whether it is what the node shows now, which its `mark` says."""
+        """The last thumbnail of a node, and whether it is up to date, by its `mark`."""
         thumbnail = self._thumbnails.get(path)
         return thumbnail and (thumbnail.texture, thumbnail.mark == mark(path))
 
     def clear(self) -> None:
-        """Forget all of them."""
+        """Drop all thumbnails."""
         for path in self._thumbnails:
             self._display.release_slot(f"thumbnail {path}")
         self._thumbnails.clear()
@@ -120,7 +120,7 @@ class Thumbnails:
         self.paths = frozenset()
 
     def close(self) -> None:
-        """Give everything back."""
+        """Release all textures."""
         self.clear()
         self._probe.close()
 
@@ -133,6 +133,6 @@ class Thumbnails:
         low, high = find_data_range(pixels)
         if subject.channels > 1:
             low, high = balance_range(low, high)
-        elif low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
+        elif low >= 0.0 and high <= 1.0:  # a mask, for example: black and white have a meaning
             low, high = 0.0, 1.0
         return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=low, high=high)

@@ -1,4 +1,4 @@
-"""What nodes take, from what passes took."""
+"""The time and memory of nodes, from those of their passes."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from ...compiler import Pass, Plan
 
 MOST_SECONDS = 4096
-"""Passes whose times are remembered."""
+"""The most passes whose times are remembered."""
 
 
 @dataclass(frozen=True)
 class NodeTiming:
-    """What the passes of a node took, and the bytes that they wrote. Passes shared with other nodes count for all."""
+    """The seconds of a node's passes and the bytes that they wrote. A pass of several nodes counts for each."""
 
     seconds: float
     bytes: int
@@ -21,30 +21,30 @@ class NodeTiming:
 
 
 def pass_key(plan: Plan, pass_: Pass) -> str:
-    """What stands for a pass: equal keys took equal work."""
+    """The key of a pass: equal keys mean equal work."""
     return plan.surfaces[pass_.targets[0]].key
 
 
 class PassTimes:
-    """What passes took when they were timed last."""
+    """The last measured times of passes."""
 
     def __init__(self) -> None:
         self._seconds: dict[str, float] = {}
 
     def note(self, plan: Plan, timings: Iterable[tuple[Pass, float]]) -> dict[str, NodeTiming]:
-        """Passes of a plan have been timed: what is known of all its nodes."""
+        """Add the times of a plan's passes; returns the timings of its nodes."""
         self._seconds |= {pass_key(plan, pass_): seconds for pass_, seconds in timings}
         while len(self._seconds) > MOST_SECONDS:
             self._seconds.pop(next(iter(self._seconds)))
         return sum_node_timings(plan, self._seconds)
 
     def clear(self) -> None:
-        """Forget it all."""
+        """Forget all times."""
         self._seconds.clear()
 
 
 def sum_node_timings(plan: Plan, seconds: Mapping[str, float]) -> dict[str, NodeTiming]:
-    """Times of all nodes of a plan whose passes have been timed."""
+    """The timings of all nodes of a plan whose passes have been measured."""
     timings: dict[str, NodeTiming] = {}
     for pass_ in plan.passes:
         if pass_key(plan, pass_) not in seconds:

@@ -1,4 +1,4 @@
-"""What can be seen of pictures: where that is a small part of them, it is computed before the rest."""
+"""The visible region of pictures: if it is a small part of them, it is computed first."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ Box = tuple[float, float, float, float]
 """Left, top, right, bottom as fractions of a picture."""
 
 MARGIN = 1 / 16
-"""What is computed beyond each edge, as a part of what is seen: small moves need nothing new."""
+"""The margin beyond each edge, as a fraction of the visible region: small moves of the view need nothing new."""
 
 GRID = 16
-"""Pixels: the least margin, and what regions are whole multiples of."""
+"""Pixels: the least margin, and the grid to which regions are rounded."""
 
 LARGEST = 0.5
-"""The part of a picture above which all of it is computed at once."""
+"""The fraction of a picture above which the whole is computed at once: a part would save little."""
 
 SMALL = 2**18
-"""Pixels of a picture below which all of it is computed at once."""
+"""Pixels (512 x 512) below which the whole picture is computed at once: it is fast enough."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class VisibleRegion:
     names: frozenset[str]
 
     def region(self, size: Size) -> Region | None:
-        """What to compute of a picture of so many pixels; None where that is hardly less than all."""
+        """The region to compute of a picture of a size; None if it is nearly the whole."""
         spans: list[tuple[int, int]] = []
         for length, low, high in zip(size, self.box[:2], self.box[2:], strict=True):
             more = max(GRID, math.ceil((high - low) * length * MARGIN))
@@ -48,7 +48,7 @@ class VisibleRegion:
         return region if pixels >= SMALL and region.width * region.height <= LARGEST * pixels else None
 
     def share(self, scale: float) -> float:
-        """The part of the pictures that is computed first at a scale, of their area."""
+        """The area that is computed first at a scale, as a fraction of the pictures."""
         size = scale_size(self.picture, scale)
         region = self.region(size)
         return region.width * region.height / (size[0] * size[1]) if region else 1.0
@@ -62,7 +62,7 @@ class PictureRegion:
     size: Size
 
     def shows(self, glimpse: VisibleRegion) -> bool:
-        """True if all that can be seen is in it."""
+        """True if the region contains everything visible."""
         for axis, (first, end) in enumerate((self.region.across, self.region.down)):
             length, low, high = self.size[axis], glimpse.box[axis], glimpse.box[axis + 2]
             if first > max(math.floor(low * length) - 1, 0) or end < min(math.ceil(high * length) + 1, length):
@@ -73,7 +73,7 @@ class PictureRegion:
 def find_visible_part(
     renderer: Renderer, wish: PreviewRequest, ports: Mapping[str, Port], glimpse: VisibleRegion
 ) -> PictureRegion | None:
-    """What to compute first of these ports; None where it must be all, or all is there.
+    """The region of these ports to compute first; None if all must be computed, or all is there.
 
     Frames that need the ones before are made as a whole, since these are. Raises the errors of `app.errors`.
     """

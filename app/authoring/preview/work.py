@@ -1,4 +1,4 @@
-"""The work on one wish."""
+"""The work on one preview request."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from .timing import NodeTiming
 from .visible_region import PictureRegion, VisibleRegion
 
 REST = 0.2
-"""Seconds that a graph must stay as it is before all of a picture is computed of which the seen part is there."""
+"""Seconds without a change before the rest of a picture follows its visible part: a choice."""
 
 
 @dataclass(eq=False)
 class PreviewWork:
-    """What is still to be compiled, and what went wrong so far."""
+    """The queue of pictures that are still to be compiled, and the errors so far."""
 
     wish: PreviewRequest
     queue: list[Mapping[str, Port]]
     started_at: float
     passes: int = 0
     from_cache_only: bool = False
-    """True if its pictures were there, and nothing else was looked at."""
+    """True if all pictures came from the cache."""
     faults: dict[str, HalationError] = field(default_factory=dict[str, HalationError])
     pending: OverviewPending | None = None
     """The render that the first of the queue waits for."""
     broken: dict[str, str] = field(default_factory=dict[str, str])
-    """Why panels cannot show what they want, by name."""
+    """Why panels cannot show their picture, by name."""
     timings: dict[str, NodeTiming] = field(default_factory=dict[str, NodeTiming])
     part: PictureRegion | None = None
-    """What is shown of its pictures, while the rest is still to be computed."""
+    """The region that is ready, while the rest is still to be computed."""
     tried_region: VisibleRegion | None = None
-    """What was seen when a part was looked for last."""
+    """The visible region for which a part was tried last."""
 
     def may_show_part_first(self, glimpse: VisibleRegion | None) -> bool:
         """True if a part of its pictures may be computed first."""
@@ -52,18 +52,18 @@ class PreviewWork:
         return finished + job.run.passes_done, finished + job.run.total
 
     def is_replaced(self, wish: PreviewRequest, job: PictureJob) -> bool:
-        """True if nothing that `job` does would be shown for another wish."""
+        """True if another request would not show the pictures of `job`."""
         differs = self.wish.ports != wish.ports or self.wish.scale != wish.scale
         return differs or job.ahead or bool(self.part and not job.part)
 
     def must_wait(self, clock_time: float) -> bool:
-        """True while the first of the queue must not be begun; `clock_time` is of the clock of `started_at`."""
+        """True while the first of the queue must wait; `clock_time` is on the same clock as `started_at`."""
         if self.part is not None and clock_time - self.started_at < REST:
             return True
         return self.pending is not None and not self.pending.ready()
 
     def note_failure(self, ports: Mapping[str, Port], error: HalationError) -> None:
-        """One fault must not hide what else can be shown: every port is tried alone."""
+        """Try every port alone: one error must not hide the other pictures."""
         if len(ports) > 1:
             self.queue = [{name: port} for name, port in ports.items()] + self.queue
             return

@@ -14,7 +14,7 @@ LOOK_AGAIN = 1.0
 
 
 class DocumentClaim:
-    """The document of one editor, in a file whose lock tells that the editor still runs."""
+    """The document that one editor has open, in a file that is locked while the editor runs."""
 
     def __init__(self, file: Path) -> None:
         self._file = file.with_suffix(".open")
@@ -23,7 +23,7 @@ class DocumentClaim:
         self._is_shared = False
 
     def set_path(self, path: Path | None) -> None:
-        """Say which file is edited here from now on."""
+        """Set the file that this editor has open."""
         if path == self._path:
             return
         self._path, self._looked_at = path, float("-inf")
@@ -42,7 +42,7 @@ class DocumentClaim:
         return self._is_shared
 
     def close(self) -> None:
-        """Nothing is edited here any more."""
+        """Remove the claim of this editor."""
         self.set_path(None)
 
     def _find_other(self, path: bytes) -> bool:

@@ -1,4 +1,4 @@
-"""Unsaved work survives whatever happens to the editor: it is written beside the preferences, never over a file.
+"""Keeps unsaved work through crashes: it is written beside the preferences, never over a document.
 
 Each editor has a file of its own and holds a lock while it runs. A file whose lock is free belongs to an editor that
 is gone: numbers of processes are used again, locks are not.
@@ -28,14 +28,14 @@ from .claims import DocumentClaim
 from .file_locks import is_held, lock
 
 FIRST = 1.0
-"""Seconds from the first change to the first write."""
+"""Seconds from the first change to the first write: a crash soon after the start loses little."""
 
 LONGEST = 9.0
 """Seconds between writes at most: with the time that writing takes, what is kept is never older than ten."""
 
 
 class _Record(msgspec.Struct):
-    """What a recovery file holds. `graph` is the document itself."""
+    """The content of a recovery file. `graph` is the document."""
 
     graph: msgspec.Raw
     path: str = ""
@@ -64,7 +64,7 @@ class RecoveredWork:
 
     @property
     def title(self) -> str:
-        """What to call it."""
+        """The title of the work: the name of its file."""
         return self.path.name if self.path else "Untitled"
 
     def load(self, sandbox: Sandbox) -> Graph:
@@ -74,7 +74,7 @@ class RecoveredWork:
         return document.loads(self.text, f"recovered {self.title}", self.folder, sandbox=sandbox)
 
     def discard(self) -> None:
-        """Remove it for good. Raises OutputError."""
+        """Delete the recovered work. Raises OutputError."""
         _remove(self.file)
         _remove(self.file.with_suffix(".lock"))
 
@@ -117,7 +117,7 @@ class RecoveryFile:
         return "another editor has this document open too: who saves last replaces what the other saved"
 
     def note(self, graph: Graph, path: Path | None, dirty: bool) -> None:
-        """Say what there is now; costs nothing where nothing changed."""
+        """Note the current document; costs nothing if nothing changed."""
         if not dirty:
             if self._noted is not None or self._adopted:
                 self.clear()
@@ -125,23 +125,23 @@ class RecoveryFile:
             self._set_noted((graph, path))
 
     def clear(self) -> None:
-        """Forget what was noted: it is safe elsewhere, or not wanted."""
+        """Forget the noted work: it is saved, or the user discarded it."""
         self._set_noted(None)
 
     def find_abandoned(self) -> tuple[RecoveredWork, ...]:
-        """What editors that no longer run left behind, newest first. What is the same in its own file is removed."""
+        """The unsaved work of editors that no longer run, newest first. Work that its own file holds too is removed."""
         abandoned_files = [file for file in _files(self.folder, "*.json") if not is_held(file.with_suffix(".lock"))]
         abandoned: list[RecoveredWork] = []
         for recovered in map(_read, abandoned_files):
             if _is_saved(recovered):
                 with contextlib.suppress(OutputError):
                     recovered.discard()
-            elif recovered.file.exists():  # if not, another editor was faster
+            elif recovered.file.exists():  # otherwise another editor has adopted it already
                 abandoned.append(recovered)
         return tuple(sorted(abandoned, key=lambda recovered: recovered.time, reverse=True))
 
     def adopt(self, recovered: RecoveredWork, sandbox: Sandbox) -> Graph:
-        """Its graph; its file goes once ours holds the work, or nothing is dirty any more. Raises DocumentError."""
+        """The graph of recovered work; its file goes once this editor has written the work. Raises DocumentError."""
         graph = recovered.load(sandbox)
         with self._change:
             self._adopted.append(recovered)
@@ -192,7 +192,7 @@ class RecoveryFile:
                 return
 
     def _settle(self, noted: tuple[Graph, Path | None] | None) -> str:
-        """Make the file what `noted` says; what went wrong, or ""."""
+        """Write what `noted` holds; returns what went wrong, or ""."""
         assert self._file is not None
         with self._change:
             adopted = tuple(self._adopted)
@@ -225,12 +225,12 @@ def _text(graph: Graph, path: Path | None) -> str:
 
 
 def _plain(path: Path) -> str:
-    """A path as text; the work is kept even where the path has bytes that are no text."""
+    """A path as text; the work is kept even if the path has bytes that are not UTF-8."""
     return os.fsencode(path).decode(errors="replace")
 
 
 def _read(file: Path) -> RecoveredWork:
-    """What a recovery file holds; a broken one has a `fault`."""
+    """The work in a recovery file; a broken one has a `fault`."""
     try:
         record = msgspec.json.decode(read_text(file, sandbox=UNRESTRICTED), type=_Record)
     except (DocumentError, msgspec.MsgspecError, UnicodeDecodeError) as fault:
@@ -242,7 +242,7 @@ def _read(file: Path) -> RecoveredWork:
 
 
 def _is_saved(recovered: RecoveredWork) -> bool:
-    """True if the file that it belongs to holds the same: the editor ended just after saving."""
+    """True if the work's own file has the same content: the editor ended just after saving."""
     if recovered.path is None or recovered.fault:
         return False
     try:
@@ -253,12 +253,12 @@ def _is_saved(recovered: RecoveredWork) -> bool:
 
 @contextlib.contextmanager
 def _claim_name(folder: Path) -> Iterator[Path]:
-    """A name in the folder that is ours for as long as its lock is held. Raises OSError."""
+    """A new file in the folder, locked for this editor. Raises OSError."""
     while True:
         file = folder / f"{secrets.token_hex(8)}.json"
         with file.with_suffix(".lock").open("xb") as lock_file:
             lock(lock_file, wait=True)
-            # Somebody tidying up may have removed it before it was locked.
+            # Another editor that removes leftovers may have removed it before it was locked.
             if not file.with_suffix(".lock").exists():
                 continue
             yield file
@@ -268,7 +268,7 @@ def _claim_name(folder: Path) -> Iterator[Path]:
 
 
 def _remove_leftovers(folder: Path) -> None:
-    """Remove what ended editors left unfinished."""
+    """Remove unfinished files of editors that have ended."""
     for path in find_temporary_files(folder):
         if not is_held(folder / f"{path.name.rpartition('-')[2].partition('.')[0]}.lock"):
             _remove(path)

@@ -1,4 +1,4 @@
-"""Renders to files in processes of their own: the interface stays quick, and a fault there harms nothing here."""
+"""The render queue: each render runs in its own process, so the window stays fast and a crash there does no harm."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ class RenderQueue:
 
     @property
     def running(self) -> tuple[QueuedRender, ...]:
-        """Those that are computed now."""
+        """The renders that run now."""
         return tuple(render for render in self.all if render.state == "running")
 
     @property
     def waiting(self) -> tuple[QueuedRender, ...]:
-        """Those whose turn is still to come, the next one first."""
+        """The renders that wait, the next one first."""
         return tuple(render for render in self.all if render.state == "waiting")
 
     @property
     def unfinished(self) -> tuple[QueuedRender, ...]:
-        """Those that run or wait."""
+        """The renders that run or wait."""
         return tuple(render for render in self.all if render.state in ("running", "waiting"))
 
     def start(
@@ -57,11 +57,11 @@ class RenderQueue:
         are replaced. It waits for those before it. Raises UsageError, and GraphError for what JSON cannot hold.
         """
         if not destinations:
-            raise UsageError("nothing says where to write: choose a file")
+            raise UsageError("no file to write is chosen: choose one")
         inputs: dict[str, str] = {}
         for name, item in (bindings or {}).items():
             if not isinstance(item, str | Path):
-                raise UsageError(f"input '{name}' is filled from memory, which an export cannot see: save it to a file")
+                raise UsageError(f"input '{name}' is a picture in memory, which renders cannot read: save it to a file")
             inputs[name] = os.path.abspath(item)  # noqa: PTH100 - a layer may follow the path
         order = replace(
             options or RenderJob(sandbox=self._sandbox),
@@ -73,14 +73,14 @@ class RenderQueue:
         return self._queue(QueuedJob(order, graph))
 
     def resume(self, export: QueuedRender) -> QueuedRender:
-        """Go on with one that has ended, in its place: frames that are finished and would be the same are kept."""
+        """Continue a render that has ended: frames that are up to date are skipped."""
         if export not in self.all or export in self.unfinished:
             return export
         job = export.job
         return self._queue(QueuedJob(replace(job.order, resume=True), job.graph), export)
 
     def move(self, export: QueuedRender, by: int) -> None:
-        """Let one that waits have its turn earlier or later."""
+        """Move a waiting render up or down in the queue."""
         with self._lock:
             line = list(self.waiting)
             if export not in line:
@@ -91,12 +91,12 @@ class RenderQueue:
             self.all = tuple(next(turns) if render.state == "waiting" else render for render in self.all)
 
     def clear(self) -> None:
-        """Forget those that have ended."""
+        """Remove the renders that have ended."""
         with self._lock:
             self.all = self.unfinished
 
     def close(self, wait: bool = False) -> None:
-        """Cancel what runs and waits, or wait for it."""
+        """Cancel the renders that run and wait, or wait for them."""
         if not wait:
             self._closed = True
             for render in reversed(self.unfinished):
@@ -115,7 +115,7 @@ class RenderQueue:
         return queued
 
     def _start_next(self) -> None:
-        """Begin with the next ones; also called on the threads of those that end."""
+        """Start the next renders; also called on the threads of renders that end."""
         with self._lock:
             while not self._closed and self.waiting and len(self.running) < self.at_once:
                 self.waiting[0].begin()

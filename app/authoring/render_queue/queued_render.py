@@ -1,4 +1,4 @@
-"""One render to files: its process, what that tells, and how it is stopped."""
+"""One render to files: starts its process, reads its progress, and stops it."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from ...resources.atomic_write import temporary_prefix
 RenderState = Literal["waiting", "running", "done", "failed", "cancelled"]
 
 _PATIENCE = 0.6
-"""Seconds that a render may take to stop by itself."""
+"""Seconds that a render may take to stop by itself and remove its unfinished files; `cancel` promises a second."""
 
 _MOST_NOTES = 200
 
 _MIN_DONE_FOR_ESTIMATE = 0.3
-"""The part of a frame that must be done before anybody can say how long the rest takes."""
+"""The fraction of the first frame that must be done before the remaining time is shown: earlier estimates jump."""
 
 
 @dataclass(frozen=True)
 class QueuedJob:
-    """What is rendered, now or again: the job that is sent to a process, and its graph."""
+    """The job that is sent to the process, and its graph; kept to start it again."""
 
     order: RenderJob
     graph: Graph
@@ -58,7 +58,7 @@ class QueuedRender:
         self.written_files: tuple[Path, ...] = ()
         self.started_at = self.ended_at = 0.0
         self._first_pass_at = 0.0
-        """When the first pass was through."""
+        """When the first pass was done."""
         self._report_end, self._has_ended, self._lock = ended, threading.Event(), threading.Lock()
         self._process: subprocess.Popen[str] | None = None
         self._helpers: tuple[int, ...] = ()
@@ -66,22 +66,22 @@ class QueuedRender:
 
     @property
     def destinations(self) -> tuple[tuple[str, Path], ...]:
-        """Names of outputs, and where they go."""
+        """The names of outputs, and their files."""
         return self.job.order.files
 
     @property
     def fraction(self) -> float:
-        """How much of it is done, 0..1."""
+        """The fraction that is done, 0 to 1."""
         return 1.0 if self.state == "done" else min((self.done + self._partial_frame) / max(self.total, 1), 1.0)
 
     @property
     def seconds(self) -> float:
-        """How long it has been running, or ran."""
+        """The running time in seconds."""
         return (self.ended_at or time.monotonic()) - self.started_at if self.started_at else 0.0
 
     @property
     def seconds_left(self) -> float | None:
-        """How long it still takes, if the frames to come take as long as those before; None where nobody knows."""
+        """The remaining seconds, if all frames take equally long; None while that is unknown."""
         finished_frames = self.done - self.reused + self._partial_frame
         if self.state != "running" or finished_frames < _MIN_DONE_FOR_ESTIMATE or not self._first_pass_at:
             return None
@@ -92,7 +92,7 @@ class QueuedRender:
         )
 
     def begin(self) -> None:
-        """Start the process. What it cannot do is its `sentence`."""
+        """Start the process. If that fails, `sentence` says why."""
         with self._lock:
             if self.state != "waiting":
                 return
@@ -110,21 +110,21 @@ class QueuedRender:
                     start_new_session=True,
                 )
             except OSError as fault:
-                self.failure = f"the export cannot be started: {fault.filename or ''} {fault.strerror}"
+                self.failure = f"the render process cannot be started: {fault.filename or ''} {fault.strerror}"
                 self._finish("failed")
                 return
             self.state = "running"
         threading.Thread(target=self._run, args=(self._process,), name="export", daemon=True).start()
 
     def cancel(self) -> None:
-        """Stop it, within a second; finished frames stay. Nothing happens if it has ended."""
+        """Stop the process within a second; finished frames are kept. Nothing happens if it has ended."""
         with self._lock:
             if self.state == "waiting":
                 self._finish("cancelled")
             if self._process is None or self.state != "running" or self._cancelled:
                 return
             self._cancelled = True
-        # Killed at once, it could not remove what it had begun to write. It may be busy, so it gets a moment.
+        # A process that is killed cannot remove its unfinished files, so it gets a moment to stop.
         if sys.platform != "win32":
             self._process.terminate()
         deadline = threading.Timer(_PATIENCE if sys.platform != "win32" else 0.0, self._kill)
@@ -132,7 +132,7 @@ class QueuedRender:
         deadline.start()
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, at most `timeout` seconds; False if it has not."""
+        """Wait until the process has ended, at most `timeout` seconds; False if it still runs."""
         return self._has_ended.wait(timeout)
 
     # --- on the thread of its own ------------------------------------------------------------------------------------
@@ -142,14 +142,14 @@ class QueuedRender:
             self._read_output(running)
         finally:
             if not self._has_ended.is_set():
-                self.failure = "what the export says cannot be understood"
+                self.failure = "the render process sent an invalid message: use 'halation render' to see its output"
                 self._finish("failed")
             self._report_end()
 
     def _read_output(self, running: subprocess.Popen[str]) -> None:
         with running as process:
             assert process.stdin and process.stdout and process.stderr
-            with contextlib.suppress(OSError):  # it may end before it has read everything
+            with contextlib.suppress(OSError):  # the process may end before it has read everything
                 process.stdin.write(self.job.order.to_json())
             with contextlib.suppress(OSError):
                 process.stdin.close()
@@ -160,7 +160,7 @@ class QueuedRender:
         self._end(running.returncode, output)
 
     def _read_progress(self, line: str) -> None:
-        """One line of what the process tells."""
+        """Read one line of progress from the process."""
         with contextlib.suppress(ValueError, KeyError, TypeError, IndexError):
             event = json.loads(line)
             if "processes" in event:
@@ -189,7 +189,7 @@ class QueuedRender:
             self._finish("cancelled")
         else:
             fault = report.get("error", {}).get("message") or (self.notes[-1] if self.notes else "it gave no reason")
-            self.failure = str(fault).removeprefix("-: ") if code > 0 else f"the export was ended by signal {-code}"
+            self.failure = str(fault).removeprefix("-: ") if code > 0 else f"the process was ended by signal {-code}"
             self._finish("failed")
 
     def _finish(self, state: RenderState) -> None:
@@ -197,14 +197,14 @@ class QueuedRender:
         self._has_ended.set()
 
     def _kill(self) -> None:
-        """End the process, and those that share its frames."""
+        """Kill the process, and those that share its frames."""
         if self._process is None or self.state != "running":
             return
         with contextlib.suppress(OSError):
             os.killpg(self._process.pid, signal.SIGKILL) if sys.platform != "win32" else self._process.kill()
 
     def _remove_partial_files(self, process: int) -> None:
-        """Remove what the processes had not finished when they were killed."""
+        """Remove the unfinished files of killed processes."""
         for folder in {Path(os.path.realpath(path)).parent for _, path in self.destinations}:
             for number in (process, *self._helpers):
                 for part in folder.glob(f"{temporary_prefix(number)}*"):
@@ -213,6 +213,6 @@ class QueuedRender:
 
     @property
     def _partial_frame(self) -> float:
-        """How much of the frame under way is done."""
+        """The fraction of the current frame that is done."""
         finished, total = self.passes
         return finished / total if total else 0.0

@@ -32,7 +32,7 @@ class UndoableDocument(OpenDocument):
     # --- changes of the document -------------------------------------------------------------------------------------
 
     def apply(self, command: EditCommand[T]) -> T:
-        """Do what a command says, as one step of the history; gives what the command promises, such as a new id."""
+        """Apply a command as one step of the history; returns its outcome, such as the id of a new node."""
         edited = command.apply(self)
         if edited.renamed is not None:
             self._follow_rename(*edited.renamed)
@@ -46,15 +46,15 @@ class UndoableDocument(OpenDocument):
         return edited.outcome
 
     def undo(self) -> None:
-        """Take the last step back."""
+        """Undo the last step."""
         self.go_to(self.history.position - 1)
 
     def redo(self) -> None:
-        """Do again what was undone last."""
+        """Redo the step that was undone last."""
         self.go_to(self.history.position + 1)
 
     def go_to(self, position: int) -> None:
-        """Take steps back or do them again until `position` of them are in force."""
+        """Undo or redo until the first `position` steps are done."""
         self.seal()
         snapshot = self.history.go_to(position)
         if snapshot is not None:
@@ -65,7 +65,7 @@ class UndoableDocument(OpenDocument):
         self.history.seal()
 
     def abandon(self, merge: str) -> None:
-        """Take an unfinished step back as if it had never been, as when a drag is cancelled."""
+        """Undo an unfinished step and drop it from the history, as when a drag is cancelled."""
         before = self.history.abandon(merge)
         if before is not None:
             self._move_to(before)
@@ -117,7 +117,7 @@ class UndoableDocument(OpenDocument):
         self._move_to(Snapshot(root))
 
     def migrate(self, change: Callable[[Graph], Graph]) -> None:
-        """Change the document, its whole history and what was saved, keeping what they mean; this is no step."""
+        """Change the document, its whole history and the saved state in the same way; this is no undo step."""
         changed: dict[int, Graph] = {}
 
         def change_once(graph: Graph) -> Graph:
@@ -134,7 +134,7 @@ class UndoableDocument(OpenDocument):
     # --- inside ------------------------------------------------------------------------------------------------------
 
     def _apply_graph(self, edited: Edited[T], graph: Graph) -> None:
-        """Put `graph` where `self.graph` is, as one step; without a difference, only select."""
+        """Replace the current graph as one step; if it is equal, only change the selection."""
         if graph == self.graph:
             if edited.select is not None:
                 self._select(edited.select, self.active)

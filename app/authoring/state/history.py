@@ -1,4 +1,4 @@
-"""What can be undone: a list of steps, each with the document before and after."""
+"""The undo history: a list of steps, each with the document before and after."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from ...graph import Graph
 from ..edits.element_id import NO_ELEMENT, ElementId
 
 MOST = 1000
-"""Steps that are kept; older ones are forgotten."""
+"""Steps that are kept at most; older ones are dropped. Graphs share their unchanged parts, so a step is small."""
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """A document as it was seen: its graph, the groups entered, and what was selected."""
+    """The state that a step restores: the document, the groups entered, and the selection."""
 
     root: Graph
     place: tuple[str, ...] = ()
@@ -24,7 +24,7 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class HistoryStep:
-    """One thing that was done. Further ones with the same `merge` become part of it."""
+    """One undo step. Further changes with the same `merge` become part of it."""
 
     label: str
     before: Snapshot
@@ -34,7 +34,7 @@ class HistoryStep:
 
 @dataclass
 class History:
-    """Steps, oldest first; `position` of them are in force, the others can be done again."""
+    """Steps, oldest first; the first `position` of them are done, the others undone."""
 
     _steps: list[HistoryStep] = field(default_factory=list[HistoryStep])
     position: int = 0
@@ -46,26 +46,16 @@ class History:
 
     @property
     def can_undo(self) -> bool:
-        """True if something was done."""
+        """True if there is a step to undo."""
         return self.position > 0
 
     @property
     def can_redo(self) -> bool:
-        """True if something was undone."""
+        """True if there is a step to redo."""
         return self.position < len(self._steps)
 
-    @property
-    def undo_label(self) -> str:
-        """What undo would take back, or nothing."""
-        return self._steps[self.position - 1].label if self.can_undo else ""
-
-    @property
-    def redo_label(self) -> str:
-        """What redo would do again, or nothing."""
-        return self._steps[self.position].label if self.can_redo else ""
-
     def add(self, step: HistoryStep) -> None:
-        """One more step; what was undone is forgotten. It joins the last one if both have the same `merge`."""
+        """Add a step; undone steps are dropped. It joins the last step if both have the same `merge`."""
         last = self._steps[self.position - 1] if self.can_undo and not self.can_redo else None
         del self._steps[self.position :]
         if last and step.merge and last.merge == step.merge:
@@ -75,13 +65,13 @@ class History:
         self.position = len(self._steps)
 
     def snapshot_before(self, merge: str) -> Snapshot | None:
-        """The document before the last step, if that is one of this `merge` to which more can be added."""
+        """The state before the last step, if that step has this `merge` and is unfinished."""
         if not merge or not self.can_undo or self.can_redo or self._steps[-1].merge != merge:
             return None
         return self._steps[-1].before
 
     def abandon(self, merge: str) -> Snapshot | None:
-        """Forget the last step if it is that unfinished one; returns the document before it."""
+        """Drop the last step if it has this `merge` and is unfinished; returns the state before it."""
         before = self.snapshot_before(merge)
         if before is not None:
             self.position -= 1
@@ -89,7 +79,7 @@ class History:
         return before
 
     def seal(self) -> None:
-        """End merging; a step that came back to where it began is forgotten."""
+        """End merging; a step that changed nothing in the end is dropped."""
         if not self.can_undo or self.can_redo or not self._steps[-1].merge:
             return
         last = self._steps.pop()
@@ -98,7 +88,7 @@ class History:
         self.position = len(self._steps)
 
     def go_to(self, position: int) -> Snapshot | None:
-        """The document with that many steps in force, at least none and at most all; None if nothing changes."""
+        """Undo or redo until that many steps are done; returns the state then, None if nothing changes."""
         target = min(max(position, 0), len(self._steps))
         if target == self.position:
             return None
@@ -107,7 +97,7 @@ class History:
         return self._steps[target].before if back else self._steps[target - 1].after
 
     def map_documents(self, edit: Callable[[Graph], Graph]) -> None:
-        """Apply what is no step, such as another folder, to every document of the past and future."""
+        """Apply a change that is no step, such as another folder, to the documents of all steps."""
         self._steps = [
             replace(
                 step,

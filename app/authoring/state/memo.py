@@ -1,4 +1,4 @@
-"""Answers that are computed once for the objects that they depend on."""
+"""A cache of results that depend on immutable objects."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ T = TypeVar("T")
 
 
 class Memo:
-    """The last answer under each name. Graphs are immutable, so the same objects give the same answer."""
+    """Caches the last result under each name. Graphs are immutable, so the same objects give the same result."""
 
     def __init__(self) -> None:
         self._answers: dict[str, tuple[tuple[object, ...], Any]] = {}
 
     def get(self, name: str, of: tuple[object, ...], compute: Callable[[], T]) -> T:
-        """What `compute` returns, until one of the objects `of` which it is computed is another object."""
+        """The result of `compute`; it is computed again when one of the objects in `of` is another object."""
         before, answer = self.last(name)
         if len(before) != len(of) or any(old is not new for old, new in zip(before, of, strict=True)):
             answer = compute()
@@ -23,13 +23,13 @@ class Memo:
         return answer
 
     def last(self, name: str) -> tuple[tuple[object, ...], Any]:
-        """The objects and the answer under a name, as they were the last time; empty and None if there is none."""
+        """The last objects and the last result under a name; empty and None if there is none."""
         return self._answers.get(name, ((), None))
 
     def forget(self, name: str) -> None:
-        """Compute that answer anew the next time."""
+        """Compute that result again the next time."""
         self._answers.pop(name, None)
 
     def clear(self) -> None:
-        """Forget all answers."""
+        """Drop all results."""
         self._answers.clear()

@@ -1,4 +1,4 @@
-"""What is wrong with a graph, and which element of the canvas shows it."""
+"""The problems of a graph, and which element of the canvas shows them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .memo import Memo
 
 
 def find_problems(memo: Memo, name: str, graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem, ...]:
-    """The problems of a graph, starting from those that were found last under that name: most nodes did not change."""
+    """The problems of a graph; nodes that did not change since the last call with this name are not checked again."""
     before, problems = memo.last(name)
     old_graph, old_types = before or (None, None)
 

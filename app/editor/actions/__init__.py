@@ -1,3 +1,3 @@
-"""What can be done from menus: the tables of actions are in the rooms that they work on, those of the window here."""
+"""Actions of the Edit, View and Help menus. Actions of a panel are in the folder of that panel."""
 
 MENUS = ("File", "Edit", "Graph", "Viewer", "Time", "View", "Help")

@@ -1,4 +1,4 @@
-"""Actions on what is selected."""
+"""Actions on the selection."""
 
 from __future__ import annotations
 

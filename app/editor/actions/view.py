@@ -1,4 +1,4 @@
-"""Actions on the window: what is shown, and help."""
+"""Actions on the window: display settings and help."""
 
 from __future__ import annotations
 

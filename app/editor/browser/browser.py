@@ -1,4 +1,4 @@
-"""Choosing a file without leaving the window."""
+"""The file browser dialog."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ PLACE_ICONS: dict[PlaceKind, str] = {
 
 
 class FileBrowser:
-    """Places, a path that can be typed, a list or a grid; letters filter, arrows choose, Enter opens, Escape closes."""
+    """Places, a path field, and files as a list or a grid. Letters filter, arrows choose, Enter opens."""
 
     def __init__(self, context: BrowserContext) -> None:
         self._context = context
@@ -48,11 +48,11 @@ class FileBrowser:
         self._elsewhere = False
 
     def close(self) -> None:
-        """End what runs beside the window."""
+        """Stop the threads."""
         self._grid.close()
 
     def draw(self) -> None:
-        """Draw over everything, if a file is wanted."""
+        """Draw the dialog, if a file is asked for."""
         browse = self._context.dialogs.browse
         if browse is None:
             self._browsing = None
@@ -167,7 +167,7 @@ class FileBrowser:
             self._naming = False
 
     def _move_by_arrows(self, browsing: Browsing, columns: int) -> None:
-        """Arrows choose; up and down only where a field does not need them."""
+        """Move the selection by arrow keys; left and right only where no text field needs them."""
         if self._elsewhere:
             return
         keys = (
@@ -223,7 +223,7 @@ class FileBrowser:
             self._open_chosen(browsing)
 
     def _open_chosen(self, browsing: Browsing) -> None:
-        """Go to the folder that was typed or chosen, or answer with the file."""
+        """Open the typed or chosen folder, or return the file."""
         if (folder := browsing.typed_folder) is not None:
             self._go_to(browsing, folder)
             return

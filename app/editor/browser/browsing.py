@@ -1,4 +1,4 @@
-"""What a file browser is about to do: where it is, what is chosen, what an answer would be. Draws nothing."""
+"""The state of the file browser: its folder, the chosen item, the resulting file. Draws nothing."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass
 class Browsing:
-    """One request for a file while it is open."""
+    """The state of one open request for a file."""
 
     browse: Browse
     folder: Path
@@ -34,12 +34,12 @@ class Browsing:
     down: bool = False
     hidden: bool = False
     chosen: int = -1
-    """The index in `items`; -1 is none, as while a new name is typed."""
+    """The index of the chosen item in `items`; -1 for none, as while a new name is typed."""
     listing: Listing = field(default_factory=Listing)
     _back: str = ""
 
     def go(self, folder: Path) -> None:
-        """Show another folder; the one that was left is chosen if it is in there."""
+        """Show another folder; the folder that was left is chosen if it is in there."""
         self._back = self.folder.name if self.folder.parent == folder else ""
         self.folder, self.query, self.chosen = folder, "", self.first
         self.listing.show(folder)
@@ -47,11 +47,11 @@ class Browsing:
             self.name = Path(self.browse.name).name
 
     def up(self) -> None:
-        """Show the folder around this one."""
+        """Show the parent folder."""
         self.go(self.folder.parent)
 
     def poll(self) -> None:
-        """Take what was read meanwhile."""
+        """Take over files that were read in the meantime."""
         if self.listing.poll() and self._back:
             names = [item.name for item in self.items]
             self.chosen = names.index(self._back) if self._back in names else self.first
@@ -60,17 +60,17 @@ class Browsing:
 
     @property
     def first(self) -> int:
-        """What is chosen at first: while saving nothing, so that Enter takes the name."""
+        """The index that is chosen at first: none while saving, so that Enter takes the typed name."""
         return -1 if self.browse.saving else 0
 
     @property
     def items(self) -> tuple[Item, ...]:
-        """What is listed."""
+        """The items that are listed."""
         return self.listing.arrange(self.endings, self.query, self.order, self.down, self.hidden)
 
     @property
     def item(self) -> Item | None:
-        """The one that is chosen."""
+        """The chosen item."""
         items = self.items
         return items[self.chosen] if 0 <= self.chosen < len(items) else None
 
@@ -87,7 +87,7 @@ class Browsing:
 
     @property
     def target(self) -> Path | None:
-        """The file that would be the answer now, with the ending that is asked for.
+        """The file that the dialog would return now, with the requested ending.
 
         While a file is saved, the user may type a path instead of a name; a path that ends with a folder is no answer.
         """
@@ -100,7 +100,7 @@ class Browsing:
 
     @property
     def typed_folder(self) -> Path | None:
-        """The folder that the name field names, None for anything else: Enter shows it."""
+        """The folder whose path is in the name field, which Enter shows; None for anything else."""
         text = self.name if self.browse.saving else self.query
         if not text.strip() or not (self.browse.saving or is_path(text)):
             return None
@@ -130,7 +130,7 @@ def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:
 
 
 def endings(browse: Browse) -> frozenset[str]:
-    """Which files are listed."""
+    """The endings of the files that are listed."""
     if browse.purpose == "image":
         return list_readable_endings() | VIDEO_ENDINGS
     if browse.purpose == "table":
@@ -153,5 +153,5 @@ def size_text(size: int) -> str:
 
 
 def time_text(time: float) -> str:
-    """When a file was changed."""
+    """The time of the last change of a file, as text."""
     return strftime("%Y-%m-%d %H:%M", localtime(time))

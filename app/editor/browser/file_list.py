@@ -1,4 +1,4 @@
-"""Files as a list and as pictures; only what is visible is drawn."""
+"""Files as a table and as a grid of thumbnails; only visible items are drawn."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class FileTable:
 
 
 class FileGrid:
-    """Pictures with their names; those that are visible are decoded beside the window."""
+    """A grid of thumbnails with names; visible ones are decoded in a thread."""
 
     def __init__(self, context: BrowserContext) -> None:
         self._context = context
@@ -90,7 +90,7 @@ class FileGrid:
         self._textures = Textures()
 
     def close(self) -> None:
-        """End the decoding, give pictures back."""
+        """Stop the decoding and release textures."""
         if self._pictures:
             self._pictures.close()
         self._textures.clear()
@@ -167,7 +167,7 @@ class FileGrid:
 
 
 def _sort(browsing: Browsing) -> None:
-    """Take over what a click on a header asked for."""
+    """Sort as the user asked by a click on a header."""
     specs = imgui.table_get_sort_specs()
     if specs is not None and specs.specs_dirty and specs.specs_count:
         first = specs.get_specs(0)

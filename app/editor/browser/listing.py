@@ -1,4 +1,4 @@
-"""What is in a folder: read in a thread, sorted and filtered for a list."""
+"""The content of a folder: read in a thread, sorted and filtered."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Item:
 
 
 def read_folder(folder: Path) -> tuple[Item, ...]:
-    """Everything in a folder; what cannot be looked at is left out. Raises InputError if the folder cannot be read."""
+    """All items of a folder; unreadable ones are left out. Raises InputError if the folder cannot be read."""
     try:
         with os.scandir(folder) as entries:
             items = [_item(entry) for entry in entries]
@@ -47,7 +47,7 @@ def arrange_items(
     down: bool = False,
     hidden: bool = False,
 ) -> tuple[Item, ...]:
-    """What a list shows: folders first, then files whose name ends in one of `endings` (none: all), sorted.
+    """Sorted items: folders first, then files whose name ends in one of `endings` (none: all).
 
     With a `query` the best matches come first instead.
     """
@@ -80,7 +80,7 @@ class Listing:
         self._shown: tuple[Item, ...] = ()
 
     def arrange(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
-        """The items `arranged`; asking the same again costs nothing."""
+        """The items, sorted and filtered; cached while nothing changes."""
         arguments = (endings, query, order, down, hidden)
         if not self._arguments or self._arguments[0] is not self.items or self._arguments[1:] != arguments:
             self._shown = arrange_items(self.items, endings, query=query, order=order, down=down, hidden=hidden)
@@ -101,7 +101,7 @@ class Listing:
         self._reader.start()
 
     def poll(self) -> bool:
-        """Take what has been read; True if there was something new."""
+        """Take over items that were read; True if there are new ones."""
         if self._reader is None or self._reader.is_alive():
             return False
         self.items, self.fault, self._reader = self._reader.items, self._reader.fault, None
@@ -131,7 +131,7 @@ class _FolderReader(Thread):
 
 
 def make_folder(parent: Path, name: str) -> Path:
-    """A new folder. Raises InputError."""
+    """Create a folder. Raises InputError."""
     name = name.strip()
     if not name or name in (".", "..") or set(name) & set('/\\:*?"<>|'):
         raise InputError(f"'{name}' is not a valid name for a folder: use letters, digits and spaces")
@@ -158,7 +158,7 @@ def extension_of(name: str) -> str:
 
 
 def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
-    """Numbers within names sort as numbers: frame 2 before frame 10."""
+    """A sort key in which numbers count as numbers: frame 2 before frame 10."""
     parts = re.split(r"(\d+)", name.casefold())
     return tuple((part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in parts)
 

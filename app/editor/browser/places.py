@@ -1,4 +1,4 @@
-"""Where files tend to be."""
+"""Folders that the file browser offers, and paths that the user types."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MOUNTS = ("/media/", "/mnt/", "/run/media/", "/Volumes/")
 
 @dataclass(frozen=True)
 class Place:
-    """A folder worth one click."""
+    """A folder in the list of places."""
 
     title: str
     path: Path

@@ -73,7 +73,7 @@ class CodeHelp:
 
 
 def list_includes() -> Iterator[tuple[str, str]]:
-    """The files that code can include, and the signatures of their functions."""
+    """The files that code can include, with the signatures of their functions."""
     for name, text in sorted(load_library().texts.items()):
         if name.startswith("lib/"):
             signatures = (

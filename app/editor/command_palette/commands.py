@@ -1,4 +1,4 @@
-"""What the command palette offers."""
+"""The commands of the command palette, and how they are ranked."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Command:
-    """One line of the palette. `reason` says why it cannot be done now, "" if it can."""
+    """One line of the palette. `reason` says why it is disabled, "" if it is not."""
 
     id: str
     label: str
@@ -32,7 +32,7 @@ class Command:
     doc: str = ""
     reason: str = ""
     weight: float = 0.0
-    """Added to how well it matches: what is wanted less often stands lower."""
+    """Added to the score of a match: commands that are used less often rank lower."""
 
 
 def list_commands(context: PaletteContext) -> tuple[Command, ...]:
@@ -43,7 +43,7 @@ def list_commands(context: PaletteContext) -> tuple[Command, ...]:
 def rank_commands(
     query: str, offered: tuple[Command, ...], recent: Collection[str]
 ) -> tuple[tuple[Command, Match], ...]:
-    """The commands that match, best first; without a query those used last, then those that can be done now."""
+    """The matching commands, best first; without a query the last used ones, then those that are enabled."""
     labels = tuple(command.label for command in offered)
     matches = [(offered[ranked.index], ranked) for ranked in match(query, labels)]
     if query.strip():
@@ -58,7 +58,7 @@ def rank_commands(
 
 
 def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
-    """Why an action cannot be done now, "" if it can."""
+    """Why an action is disabled, "" if it is not."""
     if context.actions.is_enabled(action):
         return ""
     if action.id == "edit.undo":

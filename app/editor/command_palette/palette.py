@@ -1,4 +1,4 @@
-"""Everything that can be done, found by a few letters."""
+"""The command palette: a search over all commands."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ROWS = 12
 
 
 class CommandPalette:
-    """A field and a list: arrows choose, Enter does it, Escape closes."""
+    """A search field and a list: arrows choose, Enter runs the command, Escape closes."""
 
     def __init__(self, context: PaletteContext) -> None:
         self._context = context
@@ -34,7 +34,7 @@ class CommandPalette:
         self._open = False
 
     def draw(self) -> None:
-        """Draw over everything, if it is open."""
+        """Draw the dialog, if it is open."""
         if "palette" not in self._context.dialogs.open:
             self._open = False
             return

@@ -1,4 +1,4 @@
-"""What this program is."""
+"""The About dialog."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ _LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
 
 
 class AboutDialog:
-    """Version and what it runs on, ready to be copied into a report."""
+    """The versions of Halation, the system and its libraries, to be copied into a bug report."""
 
     def __init__(self, context: DialogContext) -> None:
         self._context = context
 
     def draw(self) -> None:
-        """Draw over everything, if it is open."""
+        """Draw the dialog, if it is open."""
         if "about" not in self._context.dialogs.open:
             return
         close = backdrop(self._context, "about")

@@ -1,4 +1,4 @@
-"""All shortcuts on one sheet."""
+"""The dialog with all shortcuts."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ if TYPE_CHECKING:
     from .context import DialogContext
 
 Blocks = Sequence[tuple[str, tuple[tuple[str, str], ...]]]
-"""Titles, and lines of keys and what they do."""
+"""Blocks of the sheet: a title, and rows of keys and what they do."""
 
 _WIDTH = 1340.0
 
 
 class CheatSheet:
-    """Columns by subject; Preferences is where they are changed."""
+    """All shortcuts in columns, grouped by menu. They are changed in Preferences."""
 
     def __init__(self, context: DialogContext) -> None:
         self._context = context
 
     def draw(self) -> None:
-        """Draw over everything, if it is open."""
+        """Draw the dialog, if it is open."""
         if "shortcuts" not in self._context.dialogs.open:
             return
         close = backdrop(self._context, "shortcuts")

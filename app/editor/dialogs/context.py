@@ -1,4 +1,4 @@
-"""What the small dialogs uses."""
+"""What the small dialogs use."""
 
 from __future__ import annotations
 

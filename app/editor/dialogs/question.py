@@ -1,4 +1,4 @@
-"""A question that must be answered before anything else."""
+"""The dialog for a question that must be answered first."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class QuestionDialog:
         self._context = context
 
     def draw(self) -> None:
-        """Draw over everything, if there is a question."""
+        """Draw the dialog, if there is a question."""
         question = self._context.dialogs.question
         if question is None:
             return
@@ -47,7 +47,7 @@ class QuestionDialog:
 
 
 def _draw_buttons(context: DialogContext, question: Question) -> int | None:
-    """Side by side from the right, or one above the other where they do not fit; the index of the one clicked."""
+    """Draw the buttons in a row from the right, or below each other if they do not fit; returns the clicked index."""
     style = imgui.get_style()
     labels = [answer for answer, _ in question.answers]
     width = sum(imgui.calc_text_size(label).x + 2 * style.frame_padding.x for label in labels)

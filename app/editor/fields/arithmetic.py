@@ -1,4 +1,4 @@
-"""Reading what was typed into a number field: arithmetic, units, and changes relative to the old number."""
+"""Evaluates the text of a number field: arithmetic, units, and changes relative to the old number."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from halation.nodes import Unit
 from ...errors import UsageError
 
 LONGEST = 200
-"""Characters that an expression may have."""
+"""The most characters of an expression: a choice, so that evaluating never takes long."""
 
 _TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)\s*([a-zA-Z°%]*)|(\*\*|[-+*/^()])|(\S))")
 _RELATIVE = re.compile(r"\s*(?:([-+*/])=|(\+|\*\*|\*|/))")
@@ -49,12 +49,12 @@ _FAULTS = (ZeroDivisionError, OverflowError)
 
 
 def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
-    """The number that `text` means: `0.5+1`, `(2-3)*4**2`, `30deg`, `50%`; `+1`, `*2`, `/3` and `-=1` change `old`.
+    """Evaluate a text: `0.5+1`, `(2-3)*4**2`, `30deg`, `50%`; `+1`, `*2`, `/3` and `-=1` change `old`.
 
     A minus sign at the beginning makes a negative number. Nothing but arithmetic is understood.
 
     Raises:
-        UsageError: what is wrong with it.
+        UsageError: the text is no valid expression.
     """
     if len(text) > LONGEST:
         raise UsageError(f"this is too long for a number: use at most {LONGEST} characters")
@@ -87,7 +87,7 @@ def _read_tokens(text: str, unit: Unit | None) -> list[float | str]:
 
 
 def find_factor(word: str, unit: Unit | None) -> float:
-    """What a number followed by that word is multiplied with."""
+    """The factor of a unit after a number."""
     if not word:
         return 1.0
     if word == "%":

@@ -1,4 +1,4 @@
-"""Choices and switches."""
+"""Fields for choices and switches."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .fields import Edit, Fields
 from .number_field import NO_VALUE
 
 FILTERED = 8
-"""From this many choices on there is a field to find one in."""
+"""The number of choices from which on the list has a search field: more do not fit at one glance."""
 
 
 def choice_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """One of the declared choices: a list to pick from, typing finds, Ctrl and the wheel go through them."""
+    """Draw a choice field: a list in which typing searches; Ctrl and the wheel step through it."""
     assert isinstance(value, str)
     index = choose(fields, id, value, declaration.choices, width, label=label, mixed=mixed)
     return None if index is None else Edit(declaration.choices[index])
@@ -31,7 +31,7 @@ def choice_field(
 def choose(
     fields: Fields, id: str, current: str, choices: Sequence[str], width: float, *, label: str = "", mixed: bool = False
 ) -> int | None:
-    """A list of texts; the index of what was chosen."""
+    """Draw a list of texts; returns the chosen index, None if nothing was chosen."""
     rect, palette = place(width), fields.palette
     pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
     hovered = imgui.is_item_hovered()
@@ -98,7 +98,7 @@ def _draw_popup(
 
 
 def _extend_filter(word: str) -> str:
-    """What was typed over a short list so far."""
+    """The search text that was typed while a short list is open."""
     if imgui.is_key_pressed(imgui.Key.backspace):
         return word[:-1]
     letters = "abcdefghijklmnopqrstuvwxyz"
@@ -109,7 +109,7 @@ def _extend_filter(word: str) -> str:
 def toggle_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """A switch."""
+    """Draw a switch."""
     rect, palette = place(width), fields.palette
     pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
     hovered, on = imgui.is_item_hovered(), bool(value) and not mixed

@@ -1,4 +1,4 @@
-"""Scene-linear colors: a swatch, its numbers, and a picker that works on what the display shows."""
+"""Fields for scene-linear colors: a swatch, its numbers, and a picker for display colors."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _TEXT = Value("hex", "text", "")
 _NAMES = ("R", "G", "B", "A")
 
 WIDTH = 17.0
-"""Of the picker, in heights of a text line."""
+"""The width of the picker, in heights of a text line."""
 
 
 def color_field(
@@ -41,9 +41,9 @@ def color_field(
     eyedropper: bool = True,
     alpha: bool = True,
 ) -> Edit | None:
-    """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear.
+    """Draw a swatch that opens the picker, and its scene-linear numbers if there is room.
 
-    Without `alpha` that is not shown, and stays as it is or is to be ignored.
+    Without `alpha`, the alpha is not shown and does not change.
     """
     color = rgba(value)
     alpha = alpha and has_alpha(value)
@@ -76,7 +76,7 @@ def color_field(
 
 
 def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True) -> Edit | None:
-    """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
+    """Draw the picker: wheel, intensity, linear numbers, hexadecimal digits, copy, paste and eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     owner, stops = id.removesuffix(" picker"), fields.stops
 
@@ -106,7 +106,7 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, 
 
 
 def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
-    """The color as a display shows it: opaque at the left, over a checkerboard at the right."""
+    """Draw a color as a display shows it: opaque at the left, over a checkerboard at the right."""
     lines, palette = imgui.get_window_draw_list(), fields.palette
     rounding = imgui.get_style().frame_rounding
     opaque, alpha = u32(swatch(color)), min(max(color[3], 0.0), 1.0)
@@ -171,7 +171,7 @@ def _draw_buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha:
 
 
 def _read_color(text: str, color: RGBA) -> Edit | None:
-    """A color that was pasted or typed; anything else changes nothing."""
+    """The color in a pasted or typed text; the old color if it is invalid."""
     parts = text.replace(",", " ").split()
     try:
         numbers = [float(part) for part in parts]
@@ -195,7 +195,7 @@ def _draw_label(fields: Fields, text: str, side: float) -> None:
 
 
 def _place_picker(rect: Rect) -> tuple[float, float]:
-    """Where the picker opens: below the swatch, moved so that all of it can be seen."""
+    """The position of the picker: below the swatch, moved so that all of it is visible."""
     view, pad = imgui.get_main_viewport(), imgui.get_style().window_padding
     width = imgui.get_font_size() * WIDTH + 2 * pad.x
     height = imgui.get_font_size() * (WIDTH - 1.5) + 4 * imgui.get_frame_height_with_spacing() + 2 * pad.y
@@ -204,7 +204,7 @@ def _place_picker(rect: Rect) -> tuple[float, float]:
 
 
 def _draw_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:
-    """A swatch, and the numbers in few digits where there is no room to edit them."""
+    """Draw a swatch, and short numbers where there is no room to edit them."""
     background(fields.palette, rect, hovered=hovered)
     draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), rgba(color), hovered)
     text = NO_VALUE if mixed else " ".join(f"{part:.2g}" for part in color)
@@ -224,7 +224,7 @@ def _luma(color: RGB) -> float:
 
 
 def _draw_bright_corner(fields: Fields, rect: Rect, color: RGBA) -> None:
-    """A corner that says: brighter than can be shown."""
+    """Draw a marked corner: the color is brighter than the display can show."""
     size = (rect[3] - rect[1]) * 0.35
     imgui.get_window_draw_list().add_triangle_filled(
         (rect[0], rect[1]), (rect[0] + size, rect[1]), (rect[0], rect[1] + size), u32(fields.palette.accent)
@@ -232,7 +232,7 @@ def _draw_bright_corner(fields: Fields, rect: Rect, color: RGBA) -> None:
 
 
 def rgba(value: Plain) -> RGBA:
-    """A color as a picker takes it; one without an alpha is opaque."""
+    """A color with an alpha, which is 1 if it had none."""
     assert isinstance(value, tuple)
     red, green, blue, alpha = (*value, 1.0)[:4]
     return red, green, blue, alpha

@@ -1,4 +1,4 @@
-"""Scene-linear colors as a picker shows them: encoded as sRGB, beyond 1 with an intensity. Nothing here draws."""
+"""Converts scene-linear colors for the color picker: sRGB, and an intensity beyond 1. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def decode(number: float) -> float:
 
 
 def swatch(color: RGBA | RGB) -> RGB:
-    """How a scene-linear color looks: encoded as sRGB and limited to what a display can show."""
+    """The display color of a scene-linear color: encoded as sRGB and clamped to 0 to 1."""
     red, green, blue = (min(max(encode(part), 0.0), 1.0) for part in color[:3])
     return red, green, blue
 
 
 def intensity(color: RGBA) -> float:
-    """The stops by which a color is brighter than a display's white; 0 for one that is not."""
+    """How many stops a color is brighter than display white; 0 if it is not."""
     return max(math.log2(max(*color[:3], 1e-30)), 0.0)
 
 
@@ -43,12 +43,12 @@ def from_display(number: RGB, stops: float, alpha: float) -> RGBA:
 
 
 def to_display(color: RGBA, stops: float) -> RGB:
-    """What `picked` makes `color` of."""
+    """The display color of a scene-linear color, darkened by `stops` first."""
     return swatch((color[0] / 2.0**stops, color[1] / 2.0**stops, color[2] / 2.0**stops))
 
 
 def brighten(color: RGBA, stops: float) -> RGBA:
-    """The color with that many stops more."""
+    """The color, brightened by some stops."""
     red, green, blue = (part * 2.0**stops for part in color[:3])
     return red, green, blue, color[3]
 

@@ -1,4 +1,4 @@
-"""Editing a curve: drag points, click to add one, right click or pull it out to remove it."""
+"""The field for a curve: drag points, click to add one, right click or drag it out to remove it."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from .points import (
 )
 
 HEIGHT = 8.0
-"""Heights of a text line that the plot has."""
+"""The height of the plot, in heights of a text line."""
 
 _REACH, _OUT = 9.0, 40.0
-"""Pixels: how near a point can be grabbed, and how far outside of the plot it is thrown away."""
+"""Pixels: how close a click must be to a point, and how far outside of the plot a point is removed."""
 
 
 def curve_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """A plot of the curve, the numbers of the selected point below, and presets."""
+    """Draw a plot of the curve; below it the numbers of the selected point, and presets."""
     assert isinstance(value, tuple)
     rect = place(width, imgui.get_font_size() * HEIGHT)
     imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
@@ -50,7 +50,7 @@ def curve_field(
 
 
 class _Area:
-    """Where x 0..1 and y low..high are on the screen."""
+    """The area of the plot on the screen: x from 0 to 1, y from low to high."""
 
     def __init__(self, rect: Rect, low: float, high: float) -> None:
         pad = 6.0 * ui_scale()
@@ -76,7 +76,7 @@ class _Area:
 
 
 def _range(value: tuple[float, ...], declaration: Value) -> tuple[float, float]:
-    """The heights that are in view: the soft range, and whatever lies beyond."""
+    """The visible range of y: the soft range, extended by points beyond it."""
     low, high = (declaration.low, declaration.high) if math.isfinite(declaration.low) else (0.0, 1.0)
     heights = value[1::2]
     return min(low, *heights), max(high, *heights)
@@ -142,7 +142,7 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hovere
 
 
 def _draw_below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float) -> Edit | None:
-    """The numbers of the selected point, and what can be done with the whole."""
+    """Draw the numbers of the selected point and the presets."""
     curve_edit = None
     gap, side = imgui.get_style().item_inner_spacing.x, imgui.get_font_size() * 4.5
     index = fields.point[1] if fields.point[0] == id else -1

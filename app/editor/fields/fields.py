@@ -1,4 +1,4 @@
-"""What fields of values hand back, and what they remember between frames. Nothing here draws."""
+"""The state of value fields between frames, and the edits that they return. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Edit:
-    """A new value. Edits of one gesture, a drag say, have the same `merge`; `text` is what was typed, if so."""
+    """A new value. Edits of one gesture, such as a drag, have the same `merge`; `text` is the typed text."""
 
     value: Plain
     merge: str = ""
     text: str = ""
     expression: str = ""
-    """What was typed after a `=`, with it: the value is the old one then."""
+    """The typed expression, with its `=`; then `value` is the old value."""
 
 
 @dataclass
@@ -41,12 +41,12 @@ class Typing:
     """True until the text cursor is in it."""
     is_drawn: bool = True
     tab: int = 0
-    """1 or -1: the next or previous field is wanted."""
+    """1 or -1 if Tab goes to the next or previous field."""
     has_stepped: bool = False
     """True in the frame in which an arrow key changed a digit."""
 
     def result(self) -> Edit | None:
-        """What was typed, None if nothing changed. Raises UsageError."""
+        """The edit of the typed text, None if nothing changed. Raises UsageError."""
         if self.text == self.before and not self.merge:
             return None
         if self.number is None:
@@ -58,7 +58,7 @@ class Typing:
 
     @property
     def fault(self) -> str:
-        """What is wrong with the text, "" if nothing."""
+        """Why the text is invalid, "" if it is valid."""
         try:
             self.result()
         except UsageError as error:
@@ -68,16 +68,16 @@ class Typing:
 
 @dataclass
 class Fields:
-    """The fields of one panel: at most one is dragged and at most one typed in."""
+    """The state of the fields of one panel: at most one is dragged and at most one is typed in."""
 
     palette: Palette
     places: dict[str, Rect] = field(default_factory=dict[str, "Rect"])
-    """Those of the window: where widgets were drawn."""
+    """The places of widgets, shared with the window."""
     typing: Typing | None = None
     drag: Drag | None = None
     drag_id: str = ""
     pressed: str = ""
-    """The field under a mouse button that has not been dragged yet."""
+    """The field in which the mouse button was pressed but not dragged yet."""
     next_field: str = ""
     """The field that gets the text cursor when it is drawn next."""
     eyedropper: str = ""
@@ -85,17 +85,17 @@ class Fields:
     stops: float = 0.0
     """The intensity that the open color picker shows, in EV."""
     before: Plain = 0.0
-    """The curve, ramp or lights as they were before they were dragged."""
+    """The curve, ramp or lights before the drag."""
     point: tuple[str, int] = ("", -1)
-    """The curve or ramp field whose point of that number is selected."""
+    """The curve or ramp field with a selected point, and the index of the point."""
     lights: dict[str, int] = field(default_factory=dict[str, int])
-    """Those of the window: the light that is selected, by its field."""
+    """The selected light by its field, shared with the window."""
     lights_shown: dict[str, int] = field(default_factory=dict[str, int])
     """The light that each field has scrolled to."""
     lights_gesture: str = ""
-    """The merge token of the drag that `before` is of, for lights."""
+    """The merge token of the drag of lights to which `before` belongs."""
     filter: str = ""
-    """What was typed to find a choice."""
+    """The search text of the open choice list."""
     gesture: int = 0
     order: list[str] = field(default_factory=list[str])
     """Fields that can be typed in, as drawn so far in this frame."""
@@ -104,10 +104,10 @@ class Fields:
     owners: dict[str, str] = field(default_factory=dict[str, str])
     """The field that a part belongs to."""
     previous_order: tuple[str, ...] = ()
-    """The same of the whole frame before."""
+    """The `order` of the frame before."""
 
     def begin(self, held: bool = True) -> None:
-        """Call before the panel's fields, every frame; `held` says whether a mouse button is down."""
+        """Call in every frame, before the panel's fields; `held` is True while a mouse button is down."""
         if not held:
             self.drag_id = ""
         self.previous_order = tuple(self.order)
@@ -120,7 +120,7 @@ class Fields:
             self.owners.clear()
 
     def end(self) -> tuple[str, Edit] | None:
-        """Call after them: what was typed in a field that is not there any more, since something else was selected."""
+        """Call after the fields; returns the edit of a field that is no longer drawn because the selection changed."""
         abandoned = self.typing
         if abandoned is None or abandoned.is_drawn:
             return None
@@ -144,13 +144,13 @@ class Fields:
         return self.drag_id != ""
 
     def start_gesture(self) -> str:
-        """A merge token that no other gesture has."""
+        """A new merge token for a gesture."""
         self.gesture += 1
         return self.merge
 
     @property
     def merge(self) -> str:
-        """The merge token of the gesture that goes on."""
+        """The merge token of the current gesture."""
         return f"field {id(self)} {self.gesture}"
 
     def type_in(self, id: str, text: str, old: Plain, number: Value | None = None) -> None:

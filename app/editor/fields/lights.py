@@ -1,4 +1,4 @@
-"""Lists of lights as their editor changes them. Nothing here draws."""
+"""Edits of lists of lights. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from msgspec import structs
 Numbers = tuple[float, ...]
 
 KINDS: tuple[str, ...] = tuple(kind.name.capitalize() for kind in LightKind)
-"""What the kinds are called, by their number."""
+"""The names of the kinds of light, by their number."""
 
 _POINT, _SPOT, _SUN, _SPHERE = LightKind
 _SUNLIGHT = 3.0
@@ -20,19 +20,19 @@ _SUNLIGHT = 3.0
 
 @dataclass(frozen=True)
 class LightProperty:
-    """One thing about a light: its name in `Light`, how it is edited, and the kinds of light that have it."""
+    """A property of lights: its name in `Light`, its declaration, and the kinds of light that have it."""
 
     name: str
     declaration: Value
     kinds: tuple[LightKind, ...] = tuple(LightKind)
 
     def read_from(self, light: Light) -> Plain:
-        """What it is; a color with an alpha of 1, as all fields of colors have it."""
+        """The property of a light; a color gets an alpha of 1, as color fields take it."""
         plain: Plain = getattr(light, self.name)
         return (*plain, 1.0) if self.name == "color" and isinstance(plain, tuple) else plain
 
     def apply_to(self, light: Light, plain: Plain) -> Light:
-        """The light with another one. It always shines somewhere, and its inner angle is never the wider one."""
+        """The light with the property set. The direction never gets zero, nor the inner angle wider than the outer."""
         if self.name == "color" and isinstance(plain, tuple):
             return structs.replace(light, color=plain[:3])
         if self.name == "direction" and isinstance(plain, tuple) and not any(plain):
@@ -47,7 +47,7 @@ class LightProperty:
         )
 
     def unit(self, kind: LightKind) -> str | None:
-        """What stands behind the number, where that is no unit of values."""
+        """The unit behind the number, if it is not a unit of values."""
         return None if self.name != "intensity" else "W/m²" if kind is _SUN else "W/sr"
 
 
@@ -133,12 +133,12 @@ PARTS = (
         (_SPHERE,),
     ),
 )
-"""What can be set of lights, in the order in which it is shown."""
+"""The properties of lights, in the order of their rows."""
 
 
 @cache
 def parts_of(kind: LightKind) -> tuple[LightProperty, ...]:
-    """What a light of that kind has; each declares as its default what a new one has."""
+    """The properties of a kind of light; their defaults are those of a new light."""
     new = make_light(kind)
     return tuple(
         replace(part, declaration=structs.replace(part.declaration, default=part.read_from(new)))
@@ -153,45 +153,45 @@ def make_light(kind: LightKind) -> Light:
 
 
 def change_kind(light: Light, kind: LightKind) -> Light:
-    """The light as one of another kind; an intensity that was never touched becomes that of a new one."""
+    """The light as another kind; an unchanged intensity becomes the default of that kind."""
     untouched = light.intensity == make_light(light.kind).intensity
     return structs.replace(light, kind=kind, intensity=make_light(kind).intensity if untouched else light.intensity)
 
 
 def count_lights(numbers: Numbers) -> int:
-    """How many lights there are."""
+    """The number of lights in a list."""
     return len(numbers) // LIGHT_NUMBERS
 
 
 def describe_count(numbers: Numbers) -> str:
-    """The same in words."""
+    """The number of lights in words: `no lights`, `1 light`, `3 lights`."""
     count = count_lights(numbers)
     return "no lights" if not count else "1 light" if count == 1 else f"{count} lights"
 
 
 def light_at(numbers: Numbers, index: int) -> Light:
-    """One of the lights."""
+    """The light at an index."""
     return lights_of(numbers[index * LIGHT_NUMBERS : (index + 1) * LIGHT_NUMBERS])[0]
 
 
 def light_title(light: Light, index: int) -> str:
-    """What a light is called: its kind, and which of the list it is."""
+    """The title of a light: its kind and its number in the list."""
     return f"{KINDS[light.kind]} {index + 1}"
 
 
 def describe_intensity(light: Light) -> str:
-    """The intensity in few digits."""
+    """The intensity as a short text."""
     size = abs(light.intensity)
     return f"{light.intensity:.0f}" if 1e3 <= size < 1e6 else f"{light.intensity:.3g}"
 
 
 def replace_light(numbers: Numbers, index: int, light: Light) -> Numbers:
-    """The list with another light at a place."""
+    """The list with the light at an index replaced."""
     return (*numbers[: index * LIGHT_NUMBERS], *light.numbers, *numbers[(index + 1) * LIGHT_NUMBERS :])
 
 
 def insert_light(numbers: Numbers, index: int, light: Light) -> tuple[Numbers, int]:
-    """The list with one more light behind a place (-1 is before all), and where that is; as it was if it is full."""
+    """The list with a light inserted after an index (-1: at the front), and its index; unchanged if it is full."""
     if count_lights(numbers) >= MAX_LIGHTS:
         return numbers, index
     at = (index + 1) * LIGHT_NUMBERS
@@ -199,12 +199,12 @@ def insert_light(numbers: Numbers, index: int, light: Light) -> tuple[Numbers, i
 
 
 def remove_light(numbers: Numbers, index: int) -> tuple[Numbers, int]:
-    """The list with one light less, and the one that is selected then: that behind it, else the last."""
+    """The list without one light, and the index selected next: that of the light after it, else the last."""
     remaining = (*numbers[: index * LIGHT_NUMBERS], *numbers[(index + 1) * LIGHT_NUMBERS :])
     return remaining, min(index, count_lights(remaining) - 1)
 
 
 def move_light(numbers: Numbers, index: int, by: int) -> tuple[Numbers, int]:
-    """The list with one light further on, as far as that goes, and where it is then."""
+    """The list with one light moved, and its new index."""
     light, (rest, _) = light_at(numbers, index), remove_light(numbers, index)
     return insert_light(rest, min(max(index + by, 0), count_lights(rest)) - 1, light)

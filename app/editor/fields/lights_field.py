@@ -1,4 +1,4 @@
-"""Editing a list of lights: a row for each, one of them selected; buttons add, double, move and remove."""
+"""The field for a list of lights: one row for each, and buttons to add, duplicate, move and remove."""
 
 from __future__ import annotations
 
@@ -33,10 +33,10 @@ from .lights import (
 from .number_field import NO_VALUE
 
 ICONS = (icons.ICON_FA_LIGHTBULB, icons.ICON_FA_BULLSEYE, icons.ICON_FA_SUN, icons.ICON_FA_CIRCLE)
-"""Of the kinds of light, by their number."""
+"""The icons of the kinds of light, by their number."""
 
 ROWS = 8
-"""Lights that can be seen at once; the others are scrolled to."""
+"""The most visible rows; longer lists scroll."""
 
 _MENU = "light menu"
 _EITHER = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right)
@@ -45,7 +45,7 @@ _EITHER = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mou
 def lights_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """The list and its buttons. What the selected light is like has rows of its own."""
+    """Draw the list and its buttons. The properties of the selected light have their own rows."""
     assert isinstance(value, tuple)
     imgui.push_style_color(imgui.Col_.child_bg, vec4(fields.palette.field))
     imgui.begin_child(f"##{id} lights", (width, _list_height(value)), 0, int(imgui.WindowFlags_.no_nav))
@@ -56,14 +56,8 @@ def lights_field(
     return _draw_buttons(fields, id, value, width, NO_VALUE if mixed else describe_count(value)) or edit
 
 
-def lights_height(value: Plain) -> float:
-    """How high the field is."""
-    assert isinstance(value, tuple)
-    return _list_height(value) + imgui.get_style().item_spacing.y + imgui.get_frame_height()
-
-
 def find_selected(fields: Fields, id: str, value: Numbers) -> int:
-    """The light whose rows are shown; -1 if there is none."""
+    """The index of the selected light; -1 if there is none."""
     return min(max(fields.lights.get(id, 0), 0), count_lights(value) - 1)
 
 
@@ -79,7 +73,7 @@ def _list_height(value: Numbers) -> float:
 
 
 def _draw_list(fields: Fields, id: str, value: Numbers) -> Edit | None:
-    """Only those that can be seen are drawn, or even read: there may be a thousand."""
+    """Draw the visible rows only, since a list may have a thousand lights."""
     count, height, edit = count_lights(value), _row_height(), None
     chosen = find_selected(fields, id, value)
     if not count:
@@ -133,7 +127,7 @@ def _draw_row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool)
 
 
 def _draw_face(fields: Fields, light: Light, index: int, rect: Rect) -> None:
-    """The color, with a bar across it if it takes light away; icon, name, and how strong it is."""
+    """Draw a row: color (with a bar if the light is negative), icon, title and intensity."""
     palette, lines, scale = fields.palette, imgui.get_window_draw_list(), ui_scale()
     left, top, right, bottom = rect
     pad = 4.0 * scale
@@ -164,7 +158,7 @@ def _draw_icon(rect: Rect, icon: str, color: tuple[float, float, float]) -> None
 
 @dataclass(frozen=True)
 class _LightAction:
-    """Something that can be done to the selected light: the list that comes of it, and which is selected then."""
+    """An action on the selected light: the list after it, and the index selected then."""
 
     icon: str
     label: str

@@ -1,4 +1,4 @@
-"""Numbers: drag sideways, click to type, Ctrl and wheel to step. Also rows and grids of them."""
+"""Fields for numbers: drag sideways, click to type, Ctrl and wheel to step. Also rows and grids of them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .numbers import SUFFIX, Drag, bar, clamp_number, drop_digit, edit_text, fin
 from .text_entry import text_entry
 
 THRESHOLD = 3.0
-"""Pixels that make a click a drag."""
+"""Pixels of mouse movement that turn a click into a drag."""
 
 AXES = ("x", "y", "z", "w")
 NO_VALUE = "—"
@@ -35,7 +35,7 @@ def number_field(
     suffix: str | None = None,
     plain: bool = False,
 ) -> Edit | None:
-    """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before.
+    """Draw a number field. Shift drags finely, Ctrl in round steps; Escape restores the old number.
 
     `suffix` stands behind it instead of the declared unit. A `plain` one is not filled up to its value.
     """
@@ -65,7 +65,7 @@ def number_field(
 
 
 def _drag(fields: Fields, id: str, value: float, declaration: Value, width: float, active: bool) -> Edit | None:
-    """The number under a drag that goes on, or what it was at first if Escape cancels it."""
+    """The number during a drag, or the old one if Escape cancels it."""
     if imgui.is_item_activated():
         fields.pressed = id
     if fields.drag_id == id and fields.drag and not active:
@@ -141,7 +141,7 @@ def _draw(
 def vector_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """Two to four numbers in a row."""
+    """Draw two to four numbers in a row."""
     assert isinstance(value, tuple)
     return row_of_numbers(fields, id, value, declaration, width, AXES[: len(value)] if not label else ("",) * 4, mixed)
 
@@ -158,7 +158,7 @@ def row_of_numbers(
     keep_type: bool = False,
     plain: bool = False,
 ) -> Edit | None:
-    """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
+    """Draw numbers side by side, with names in them if there is room. Floats unless `keep_type`."""
     gap = imgui.get_style().item_inner_spacing.x * 0.5
     each = (width - gap * (len(names) - 1)) / len(names)
     part, row_edit = declaration if keep_type else structs.replace(declaration, type="float"), None
@@ -181,7 +181,7 @@ def row_of_numbers(
 def matrix_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """Nine numbers in three rows."""
+    """Draw nine numbers in three rows."""
     assert isinstance(value, tuple)
     matrix_edit = None
     imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, imgui.get_style().item_inner_spacing.x * 0.5))

@@ -1,4 +1,4 @@
-"""What a number field does with its number: how it is written, dragged, stepped and typed. Nothing here draws."""
+"""Formats, drags, steps and parses the number of a number field. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SUFFIX: Mapping[Unit | None, str] = MappingProxyType(
         "scene": "",
     }
 )
-"""The unit as it is shown behind a number."""
+"""The suffix of a number, by unit."""
 
 MEANING: Mapping[Unit | None, str] = MappingProxyType(
     {
@@ -51,23 +51,23 @@ _PLAIN = re.compile(r"\s*[-+]?\d*\.?\d*\s*")
 
 
 def span(declaration: Value) -> float:
-    """The width of the soft range; that of a number without one is guessed."""
+    """The width of the soft range; a guess for a number without one."""
     width = declaration.high - declaration.low
     return width if math.isfinite(width) and width > 0.0 else UNBOUNDED_SPAN
 
 
 def near(frame: int, reach: int = 10) -> Value:
-    """A frame, or a count of them, that is dragged in steps of about one: there is no range that it lies in."""
+    """A declaration for a frame number, which has no range and is dragged in steps of about 1."""
     return Value("frame", "int", 1, low=float(frame - reach), high=float(frame + reach))
 
 
 def count_decimals(declaration: Value) -> int:
-    """Digits behind the point that matter, by the soft range."""
+    """The number of decimals to show, by the soft range."""
     return 0 if declaration.type == "int" else min(max(3 - round(math.log10(span(declaration))), 1), 6)
 
 
 def format_number(number: float, declaration: Value) -> str:
-    """The number as a field shows it, without its unit; one too small for the usual digits keeps three of its own."""
+    """The number as a field shows it, without its unit; a very small one keeps three significant digits."""
     if isinstance(number, int) and declaration.type == "int":
         return str(number)
     digits = count_decimals(declaration)
@@ -78,7 +78,7 @@ def format_number(number: float, declaration: Value) -> str:
 
 
 def drop_digit(text: str) -> str:
-    """A shown number with one digit less behind the point; the same where there is none to leave out."""
+    """A displayed number with one decimal less; unchanged if it has none."""
     part = text.partition(".")[2]
     if not part.isdigit():
         return text
@@ -87,7 +87,7 @@ def drop_digit(text: str) -> str:
 
 
 def edit_text(number: float) -> str:
-    """The number as text to edit: all of its digits, no needless ones."""
+    """The number as text to edit, with all of its digits."""
     return str(number) if isinstance(number, int) else repr(float(number)).removesuffix(".0")
 
 
@@ -106,7 +106,7 @@ def clamp_number(number: float, declaration: Value) -> float | int:
 
 
 def bar(number: float, declaration: Value) -> tuple[float, float] | None:
-    """Where the field is filled, as fractions of its width: from zero, or from the low end. None without a range."""
+    """The filled part of the field, as fractions of its width: from zero, or from the low end. None without a range."""
     low, high = declaration.low, declaration.high
     if not (math.isfinite(low) and math.isfinite(high) and low < high):
         return None
@@ -116,18 +116,18 @@ def bar(number: float, declaration: Value) -> tuple[float, float] | None:
 
 @dataclass(frozen=True)
 class Drag:
-    """A number being dragged: where it started and how far, in its own units, it was pulled since."""
+    """A drag of a number: its start, and how far it was moved since, in its own units."""
 
     start: float
     travel: float = 0.0
 
     def move(self, pixels: float, width: float, declaration: Value, *, fine: bool = False) -> Drag:
-        """Pulled on: the width of the field is the whole soft range, ten times as much if `fine`."""
+        """Drag on: the width of the field is the soft range, or a tenth of it if `fine`."""
         speed = span(declaration) / max(width, 1.0)
         return Drag(self.start, self.travel + pixels * speed * (FINE if fine else 1.0))
 
     def number(self, declaration: Value, *, fine: bool = False, snap: bool = False) -> float | int:
-        """Where it is now: within the soft range (or as far out as it started), rounded to the digits shown."""
+        """The number now: within the soft range (or as far out as it started), rounded to the digits shown."""
         low, high = min(declaration.low, self.start), max(declaration.high, self.start)
         number = min(max(self.start + self.travel, low), high)
         if snap:
@@ -139,7 +139,7 @@ class Drag:
 
 
 def parse_number(text: str, old: float, declaration: Value) -> float | int:
-    """The number that was typed. Raises UsageError: no number, or outside the hard range."""
+    """The typed number. Raises UsageError if it is invalid or outside of the hard range."""
     number = evaluate(text, old, declaration.unit)
     if declaration.type == "int":
         if abs(number - round(number)) > 1e-9:
@@ -152,7 +152,7 @@ def parse_number(text: str, old: float, declaration: Value) -> float | int:
 
 
 def step_digit(text: str, caret: int, direction: int) -> tuple[str, int]:
-    """Text and caret after one more or less of the digit left of the caret (the first one at the very left)."""
+    """The text and caret after an arrow key: the digit left of the caret (or the first one) goes up or down by 1."""
     if not _PLAIN.fullmatch(text) or not any(letter.isdigit() for letter in text):
         return text, caret
     point = text.index(".") if "." in text else len(text.rstrip())
@@ -170,7 +170,7 @@ def step_digit(text: str, caret: int, direction: int) -> tuple[str, int]:
 
 
 def describe_value(declaration: Value, default: str) -> str:
-    """The lines of a tooltip: what it is, what it counts, which numbers it takes."""
+    """The tooltip of a value: description, unit, range and default."""
     lines = [declaration.doc] if declaration.doc else []
     if declaration.type in ("float", "int", "vector", "curve"):
         meaning, limits = MEANING[declaration.unit], _limits(declaration)
@@ -182,7 +182,7 @@ def describe_value(declaration: Value, default: str) -> str:
 
 
 def describe_default(declaration: Value) -> str:
-    """The default, as a tooltip says it; "" where that is too much."""
+    """The default as text for a tooltip; "" if it is too long."""
     default = declaration.default
     match declaration.type:
         case "float" | "int":

@@ -1,4 +1,4 @@
-"""Curves and color ramps as their editors change them. Nothing here draws."""
+"""Edits of curves and color ramps. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from halation.nodes import MAX_POINTS, curve_at, ramp_at
 Numbers = tuple[float, ...]
 
 NEAREST = 1e-3
-"""Points of a curve keep this distance."""
+"""The least distance between two points of a curve."""
 
 CURVES: Mapping[str, Numbers] = MappingProxyType(
     {
@@ -79,7 +79,7 @@ def join_points(points: list[Numbers]) -> Numbers:
 
 
 def move_point(numbers: Numbers, width: int, index: int, point: Numbers) -> Numbers:
-    """One point moved: it stays between its neighbors and within 0..1."""
+    """Move a point; it stays between its neighbors and within 0 to 1."""
     points = split_points(numbers, width)
     gap = NEAREST if width == 2 else 0.0
     low = points[index - 1][0] + gap if index > 0 else 0.0
@@ -90,7 +90,7 @@ def move_point(numbers: Numbers, width: int, index: int, point: Numbers) -> Numb
 
 
 def insert_point(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers, int]:
-    """One more point at its place from left to right, and its index; the index alone where one is already there.
+    """Insert a point; returns the points and its index. If there is one at that place already, only its index is new.
 
     Where there are as many as there may be, the nearest one's.
     """
@@ -106,7 +106,7 @@ def insert_point(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers,
 
 
 def remove_point(numbers: Numbers, width: int, index: int) -> Numbers:
-    """One point less; the last two stay."""
+    """Remove a point, unless only two are left."""
     points = split_points(numbers, width)
     if len(points) > 2:
         del points[index]
@@ -114,29 +114,29 @@ def remove_point(numbers: Numbers, width: int, index: int) -> Numbers:
 
 
 def invert(numbers: Numbers, width: int, low: float = 0.0, high: float = 1.0) -> Numbers:
-    """A curve turned upside down in its soft range; a ramp from right to left."""
+    """Invert a curve within its soft range; reverse a ramp."""
     if width == 2:
         return join_points([(x, low + high - y) for x, y in split_points(numbers, 2)])
     return join_points([(1.0 - stop[0], *stop[1:]) for stop in reversed(split_points(numbers, width))])
 
 
 def scale_curve(preset: Numbers, low: float, high: float) -> Numbers:
-    """A preset curve in another soft range."""
+    """A preset curve, scaled to a soft range."""
     return join_points([(x, low + y * (high - low)) for x, y in split_points(preset, 2)])
 
 
 def curve_line(numbers: Numbers, count: int) -> list[tuple[float, float]]:
-    """Points of the curve from x = 0 to 1, to draw it."""
+    """Points of the drawn curve from x = 0 to 1."""
     return [(index / (count - 1), curve_at(numbers, index / (count - 1))) for index in range(count)]
 
 
 def ramp_color(numbers: Numbers, t: float) -> tuple[float, float, float, float]:
-    """The color of a ramp, to draw it."""
+    """The display color of a ramp at a position."""
     return ramp_at(numbers, t)
 
 
 def find_nearest(numbers: Numbers, width: int, x: float, y: float | None, reach: tuple[float, float]) -> int:
-    """The point within `reach` of a place (its x alone for a ramp), -1 if none is."""
+    """The index of the point within `reach` of a position (only x for a ramp), -1 if there is none."""
     best, nearest_index = 1.0, -1
     for index, point in enumerate(split_points(numbers, width)):
         away = ((point[0] - x) / reach[0]) ** 2 + (0.0 if y is None else ((point[1] - y) / reach[1]) ** 2)

@@ -1,4 +1,4 @@
-"""Editing a color ramp: drag stops, click to add one, right click or pull it down to remove it."""
+"""The field for a color ramp: drag stops, click to add one, right click or drag it down to remove it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .number_field import number_field
 from .points import RAMPS, find_nearest, insert_point, invert, move_point, ramp_color, remove_point, split_points
 
 BAND, HANDLES = 1.6, 0.9
-"""Text lines: the height of the colors, and of the handles below them."""
+"""The heights of the colors and of the handles below them, in text lines."""
 
 _OUT, _REACH, _PIECES = 40.0, 8.0, 64
 _PLACE = Value("t", "float", 0.0, low=0.0, high=1.0, minimum=0.0, maximum=1.0)
@@ -26,7 +26,7 @@ _PLACE = Value("t", "float", 0.0, low=0.0, high=1.0, minimum=0.0, maximum=1.0)
 def ramp_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """The colors, a handle for each stop, place and color of the selected one below, and presets."""
+    """Draw the ramp with a handle for each stop; below it the selected stop and presets."""
     assert isinstance(value, tuple)
     line = imgui.get_font_size()
     rect = place(width, line * (BAND + HANDLES))

@@ -1,4 +1,4 @@
-"""Typing in a field: the text cursor, Tab to the next field, arrow keys on digits."""
+"""Text input in a field: Tab goes to the next field, arrow keys change digits."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ _SIGNS = set("+-*/^(%")
 
 
 def text_entry(fields: Fields, width: float, *, lines: int = 1, hint: str = "") -> Edit | None:
-    """Draw the field that is typed in; what was typed, once that is over (or an arrow key changed a digit).
+    """Draw the field that is typed in; returns the edit when typing ends, or an arrow key changed a digit.
 
-    Enter, Tab and a click elsewhere take it, Escape does not; a mistake stays until it is mended or left.
+    Enter, Tab and a click elsewhere accept the text, Escape discards it; an invalid text stays in the field.
     """
     typing = fields.typing
     assert typing is not None
@@ -53,7 +53,7 @@ def _finish(fields: Fields, typing: Typing, entered: bool) -> Edit | None:
 
 
 def _take_step(fields: Fields, typing: Typing) -> Edit | None:
-    """An arrow key shows its effect at once."""
+    """Apply an arrow key at once."""
     if not typing.has_stepped:
         return None
     typing.has_stepped = False
@@ -62,7 +62,7 @@ def _take_step(fields: Fields, typing: Typing) -> Edit | None:
 
 
 def _draw_input(typing: Typing, width: float, lines: int, hint: str) -> bool:
-    """The text field of the window library; True when Enter ended it."""
+    """Draw the input widget; True if Enter ended it."""
     flag = imgui.InputTextFlags_
     flags = int(flag.auto_select_all) | int(flag.callback_completion)
     if typing.number:
@@ -93,7 +93,7 @@ def _draw_input(typing: Typing, width: float, lines: int, hint: str) -> bool:
 
 
 def _draw_note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float]) -> None:
-    """What is wrong with the number, or what the arithmetic comes to."""
+    """Draw why the number is invalid, or the result of the arithmetic."""
     if typing.number is None or typing.text == typing.before or typing.text.lstrip().startswith("="):
         return
     if fault := typing.fault:

@@ -1,4 +1,4 @@
-"""Words: one line, or several where the text is long."""
+"""The field for text: one line, or several if the text is long."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_LINES = 6
 
 
 def lines_of(text: str) -> int:
-    """How many lines the field of a text shows."""
+    """The number of lines that the field of a text shows."""
     return min(max(text.count("\n") + 1, -(-len(text) // 48)), MOST_LINES)
 
 
@@ -34,7 +34,7 @@ def text_field(
     lines: int = 0,
     elide_left: bool = False,
 ) -> Edit | None:
-    """A text that a click lets type in. `hint` is shown while it is empty; `elide_left` keeps its end in view."""
+    """Draw a text field. `hint` is shown while it is empty; `elide_left` keeps the end of the text visible."""
     assert isinstance(value, str)
     count = lines or lines_of(value)
     fields.order.append(id)

@@ -1,4 +1,4 @@
-"""The field that fits a value."""
+"""Draws the field of a value, by its type."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from imgui_bundle import imgui
 
 from .choice_field import choice_field, toggle_field
 from .color_field import color_field
-from .curve_field import HEIGHT, curve_field
+from .curve_field import curve_field
 from .fields import Edit, Fields
-from .lights_field import lights_field, lights_height
+from .lights_field import lights_field
 from .number_field import matrix_field, number_field, vector_field
-from .ramp_field import BAND, HANDLES, ramp_field
+from .ramp_field import ramp_field
 from .text_field import text_field
 
 
 def value_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
 ) -> Edit | None:
-    """Draw the field for a value at the cursor; what was changed, if anything.
+    """Draw the field of a value at the cursor; returns its edit.
 
     `id` is unique in the window. `label` stands inside the field, `mixed` shows that several values differ.
     """
@@ -47,19 +47,3 @@ def value_field(
     edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)
     imgui.end_group()
     return edit
-
-
-def height_of(declaration: Value, value: Plain) -> float:
-    """How high the field of a value is in pixels, while nothing in it is selected."""
-    frame, line, gap = imgui.get_frame_height(), imgui.get_font_size(), imgui.get_style().item_spacing.y
-    match declaration.type:
-        case "matrix":
-            return 3 * frame + imgui.get_style().item_inner_spacing.x
-        case "curve":
-            return line * HEIGHT + gap + frame
-        case "ramp":
-            return line * (BAND + HANDLES) + gap + frame
-        case "lights":
-            return lights_height(value)
-        case _:
-            return frame

@@ -1,4 +1,4 @@
-"""What was done, step by step."""
+"""The History panel."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class HistoryPanel:
-    """Steps, oldest first; a click goes there. Steps that were undone stay until something else is done."""
+    """The undo steps, oldest first; a click goes there. Undone steps stay until the next edit."""
 
     def __init__(self, context: HistoryContext) -> None:
         self._context = context
@@ -57,7 +57,7 @@ class HistoryPanel:
 
 
 def _draw_mark(context: HistoryContext, color: RGB, first: bool) -> None:
-    """A dot left of the last item, joined with the one above."""
+    """Draw a dot left of the last item, joined with the one above."""
     low, high, scale = imgui.get_item_rect_min(), imgui.get_item_rect_max(), ui_scale()
     x, y, lines = low.x - 10 * scale, (low.y + high.y) / 2, imgui.get_window_draw_list()
     if not first:

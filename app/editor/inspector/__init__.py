@@ -1,3 +1,3 @@
-"""Panel of what is selected: its values, links and descriptions, and the fields to edit them."""
+"""The Inspector: the values, links and description of the selection, with fields to edit them."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What an edit of a field does to the values of one or several nodes. Nothing here draws."""
+"""Applies the edit of a field to the values of one or several nodes. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Ports = tuple[Port, ...]
 
 
 def apply(session: Session, ports: Ports, declaration: Value, edit: Edit) -> None:
-    """Put an edit into the value of every port, as one step; a number typed relative to the old one counts for each."""
+    """Apply an edit to the value of every port, as one step; a relative number (`+1`) applies to each old value."""
     if len(ports) == 1:
         session.apply(SetValue(ports[0], edit.value, merge=edit.merge))
         return
@@ -40,12 +40,12 @@ def reset(session: Session, ports: Ports) -> None:
 
 
 def default_of(graph: Graph, port: Port) -> Plain:
-    """What a value is in a new node."""
+    """The default of a value: its number in a new node."""
     return signature(graph.node(port.node)).values[port.socket].default
 
 
 def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
-    """The values that all nodes have under one name and of one type, as the first declares them."""
+    """The values that all nodes have in common by name and type, as the first node declares them."""
     faces = [signature(item) for id in ids if not isinstance(item := graph.nodes[id], Unknown)]
     if len(faces) < len(ids) or not faces:
         return ()

@@ -1,4 +1,4 @@
-"""How a graph manages color: its config and its working space; and the color space of a file."""
+"""Rows for color management: the config and working space of a graph, and the color space of a file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..shared.dialogs import Browse
 from .rows import Rows
 
 FOUND = "detected"
-"""The choice that leaves the color space to the file."""
+"""The choice that detects the color space from the file."""
 
 _PATH = Value("config", "path", "")
 _FROM_FILE = "choose a file…"
@@ -35,7 +35,7 @@ def space_names(manager: ColorManager) -> tuple[str, ...]:
 
 @lru_cache(maxsize=8)
 def _linear(manager: ColorManager) -> tuple[str, ...]:
-    """The spaces that can be worked in."""
+    """The linear color spaces of a config, which can be working spaces."""
     kind = load_ocio().REFERENCE_SPACE_SCENE
     return tuple(
         name
@@ -45,7 +45,7 @@ def _linear(manager: ColorManager) -> tuple[str, ...]:
 
 
 def color_rows(rows: Rows, fields: Fields) -> None:
-    """The rows of the settings of a graph."""
+    """Draw the rows of a graph's color settings."""
     context = rows.context
     session = context.session
     color = session.root.settings.color
@@ -96,7 +96,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
 
 
 def space_field(rows: Rows, fields: Fields, key: str, current: str, width: float) -> Edit | None:
-    """Which color space something is in, from those of the config; empty stands for finding out."""
+    """Draw a choice of color spaces; "" stands for detecting it."""
     spaces = (FOUND, *space_names(find_color_manager(rows.context)))
     label = FOUND if current in ("", "auto") else current
     choices = spaces if label in spaces else (label, *spaces)

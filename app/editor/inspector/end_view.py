@@ -1,4 +1,4 @@
-"""Inputs and outputs of the graph."""
+"""The inspector of an input or output of the graph."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MISSING: tuple[Missing, ...] = get_args(Missing)
 
 
 def describe_binding(session: Session, name: str) -> str:
-    """What was given for an input of the graph in this window: a path, or that it is no file; "" if nothing was."""
+    """What an input of the graph is bound to in this window: a path, or a picture in memory; "" for nothing."""
     if session.place or name not in session.bindings:
         return ""
     file: object = session.bindings[name]
@@ -48,13 +48,13 @@ def describe_binding(session: Session, name: str) -> str:
 
 
 class EndView:
-    """The face of an input or output."""
+    """Shows and edits an input or output."""
 
     def __init__(self, fields: Fields, files: FileField) -> None:
         self._fields, self._files = fields, files
 
     def draw(self, rows: Rows, port: Port) -> None:
-        """The end that `port` names."""
+        """Draw the input or output that `port` names."""
         graph = rows.context.session.graph
         end = graph.inputs[port.socket] if port.node == INPUTS else graph.outputs[port.socket]
         width = str(end.width) if end.kind is Kind.VECTOR else ""
@@ -123,7 +123,7 @@ class EndView:
         )
 
     def _default(self, rows: Rows, name: str, end: Input, width: float) -> Edit | None:
-        """The default, with a button that takes it away; or a button that makes one."""
+        """Draw the default with a button that removes it, or a button that sets one."""
         session, key = rows.context.session, f"{Port(INPUTS, name)} default"
         channels = end.socket().channels
         if end.default is None:
@@ -192,7 +192,7 @@ def draw_text(
     hint: str = "",
     lines: int = 0,
 ) -> None:
-    """A row with a text."""
+    """Draw a row with a text field."""
     rows.name(key, label, doc=doc)
     edit = text_field(fields, key, text, _TEXT, rows.field(), hint=hint, lines=lines)
     rows.record(key)

@@ -1,4 +1,4 @@
-"""Files and their layers: path with a button to browse, what is in the file, layers with small pictures."""
+"""Fields for files and their layers: the path, a summary of the file, and layers with thumbnails."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ if TYPE_CHECKING:
 
 _TEXT = Value("path", "text", "")
 PICTURE = Value("file", "path", "")
-"""What a graph input takes."""
+"""The declaration of the file of a graph input."""
 
 FIRST = "first color layer"
 
 
 class FileField:
-    """The fields of files, and what is known of the files."""
+    """Draws the fields of files, and reads the files in a thread."""
 
     def __init__(self, fields: Fields, sandbox: Sandbox) -> None:
         self.fields = fields
@@ -45,14 +45,14 @@ class FileField:
         self._textures = Textures()
 
     def close(self) -> None:
-        """End what runs, give textures back."""
+        """Stop the threads and release textures."""
         self.known.close()
         self._textures.clear()
 
     def path(
         self, rows: Rows, key: str, value: str, declaration: Value, width: float, then: Callable[[str], object]
     ) -> Edit | None:
-        """The path, red if nothing is there, and a button that asks for one."""
+        """Draw the path, red if there is no such file, and a button to browse."""
         side = imgui.get_frame_height()
         missing = bool(value) and bool(self._fault(rows, value, declaration))
         edit = text_field(
@@ -79,7 +79,7 @@ class FileField:
         return edit
 
     def about(self, rows: Rows, value: str, declaration: Value, layer: str) -> None:
-        """One line on what is in the file, or a sentence on why nothing is."""
+        """Draw a summary of the file, or why it cannot be read."""
         if not value:
             return
         fault = self._fault(rows, value, declaration)
@@ -91,7 +91,7 @@ class FileField:
             rows.field_note(frames + describe_layer(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
     def space(self, rows: Rows, value: str, layer: str, chosen_space: str) -> None:
-        """One line on the color space of a layer, which is `chosen_space` or found out; nothing for data."""
+        """Draw the color space of a layer: `chosen_space`, or the detected one; nothing for data."""
         sentence, wrong = (
             ("", False)
             if not value
@@ -104,7 +104,7 @@ class FileField:
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
     ) -> Edit | None:
-        """The layer: a list of those in the file, or plain text while that is unknown; `first`: what "" stands for."""
+        """Draw the layer: a list of those in the file, or a text field if they are unknown. `first` stands for ""."""
         path = self._file(rows, file)
         header = self.known.header(path) if file else "no file"
         if not isinstance(header, ImageInfo):
@@ -134,7 +134,7 @@ class FileField:
         return edit
 
     def _choice(self, rows: Rows, path: Path, name: str, chosen: bool) -> bool:
-        """A layer in the list, with its picture as soon as that is ready."""
+        """Draw a layer in the list, with its thumbnail as soon as that is ready."""
         unit = imgui.get_font_size() / 16.0 * 0.66
         size = (WIDTH * unit, HEIGHT * unit)
         rect = place(max(imgui.get_content_region_avail().x, size[0] + imgui.get_font_size() * 7), size[1])
@@ -151,7 +151,7 @@ class FileField:
         return pressed
 
     def _fault(self, rows: Rows, value: str, declaration: Value) -> str:
-        """Why the file cannot be read, as far as is known."""
+        """Why the file cannot be read; "" if it can, or while that is unknown."""
         path = self._file(rows, value)
         if not declaration.pixels:
             return self.known.fault(path)
@@ -159,7 +159,7 @@ class FileField:
         return header if isinstance(header, str) else ""
 
     def _file(self, rows: Rows, value: str) -> Path:
-        """The file; of a sequence one that is there."""
+        """The path of the file; of a sequence, one frame that exists."""
         return representative_file(
             self._full(rows, value), rows.context.session.time.frames[0], sandbox=rows.context.session.sandbox
         )
@@ -169,7 +169,7 @@ class FileField:
 
 
 def _frames(path: Path, sandbox: Sandbox) -> str:
-    """Which frames a sequence has; nothing for a single picture."""
+    """The frames of a sequence as text; "" for a single picture."""
     try:
         sequence = find_sequence(str(path), sandbox=sandbox)
     except HalationError:

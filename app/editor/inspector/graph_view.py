@@ -1,4 +1,4 @@
-"""The graph itself: size, ends and controls. Also frames and comments."""
+"""The inspector of the graph: size, time, inputs, outputs and controls. Also of frames and comments."""
 
 from __future__ import annotations
 
@@ -59,13 +59,13 @@ FULL_HD = (1920, 1080)
 
 
 class GraphView:
-    """What is shown while nothing is selected, and the decor of the canvas."""
+    """Shows and edits the graph while nothing is selected, and frames and comments."""
 
     def __init__(self, fields: Fields, values: ValueRows) -> None:
         self._fields, self._values = fields, values
 
     def draw(self, rows: Rows) -> None:
-        """The graph that the canvas shows."""
+        """Draw the graph that the canvas shows."""
         session = rows.context.session
         inside = session.place[-1] if session.place else ""
         draw_heading(
@@ -81,7 +81,7 @@ class GraphView:
         self._controls(rows)
 
     def frame(self, rows: Rows, frame: ElementId) -> None:
-        """A frame: its title and color."""
+        """Draw the title and color of a frame."""
         session = rows.context.session
         facts = entry(session.graph, frame)
         draw_heading(rows, "Frame", rows.palette.accent)
@@ -110,7 +110,7 @@ class GraphView:
             )
 
     def comment(self, rows: Rows, comment: ElementId) -> None:
-        """A comment: its text."""
+        """Draw the text of a comment."""
         session = rows.context.session
         draw_heading(rows, "Comment", rows.palette.accent)
         text = str(entry(session.graph, comment).get("text", ""))
@@ -157,7 +157,7 @@ class GraphView:
             rows.act(lambda: session.apply(SetCanvasSize((int(wide), int(high)), merge=edit.merge)))
 
     def _time(self, rows: Rows) -> None:
-        """Range, rate and pre-roll."""
+        """Draw the frame range, the frame rate and the pre-roll."""
         session = rows.context.session
         settings, (first, last) = session.root.settings, session.time.frames
         rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
@@ -313,7 +313,7 @@ class GraphView:
             imgui.end_popup()
 
     def _candidates(self, rows: Rows) -> None:
-        """Every value that is no control yet, by node."""
+        """The values that are not controls yet, by node."""
         session = rows.context.session
         exposed = {control.target for control in session.graph.controls.values()}
         has_candidates = False
@@ -336,7 +336,7 @@ class GraphView:
 
 
 def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
-    """What an input of the graph brings in as things are, and the color to say it in."""
+    """What an input of the graph reads now, as text, and the color of that text."""
     session, palette = rows.context.session, rows.palette
     end = session.graph.inputs[name]
     bound = describe_binding(session, name)

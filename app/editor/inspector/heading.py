@@ -1,4 +1,4 @@
-"""The top of the panel: what it is, its name, what it does, what is wrong with it."""
+"""The top of the inspector: kind, name, description and problems of an element."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _NAME = Value("name", "text", "")
 def draw_heading(
     rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | None = None, count: int = 0
 ) -> None:
-    """A line with the kind of thing, in the color that it has on the canvas, and room for `count` buttons."""
+    """Draw the kind of element in its color on the canvas, with space for `count` buttons."""
     room = rows.width - count * (imgui.get_frame_height() + 2.0 * ui_scale())
     rect = place(room)
     imgui.dummy((max(room, 1.0), rect[3] - rect[1]))
@@ -49,7 +49,7 @@ def draw_heading(
 def draw_name_field(
     rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], doc: str = ""
 ) -> None:
-    """The editable name of an element."""
+    """Draw the editable name of an element."""
     rows.name(f"{key} name", "name", doc=doc)
     edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
     rows.record(f"{key} name")
@@ -58,7 +58,7 @@ def draw_name_field(
 
 
 def draw_explanation(rows: Rows, doc: str, open: bool) -> bool:
-    """The first line of a docstring; a click shows the rest. True while all of it is shown."""
+    """Draw the first line of a docstring; a click shows the rest. True while all of it is shown."""
     if not doc:
         return False
     first, _, rest = doc.partition("\n")
@@ -75,7 +75,7 @@ def draw_explanation(rows: Rows, doc: str, open: bool) -> bool:
 
 
 def draw_faults(rows: Rows, element: ElementId) -> None:
-    """What is wrong with an element: what the graph says, and what happened while rendering."""
+    """Draw the problems of an element: those of the graph, and errors while rendering."""
     context = rows.context
     path = "/".join((*context.session.place, element))
     problems = context.session.problems.get(element, ())
@@ -88,7 +88,7 @@ def draw_faults(rows: Rows, element: ElementId) -> None:
 
 
 def title_of(item: Item) -> str:
-    """What kind of node it is, in words."""
+    """The title of a node's type."""
     if isinstance(item, Node):
         return " ".join(word[:1].upper() + word[1:] for word in item.title.split())
     return "Group" if isinstance(item, Group) else LANGUAGES.get(item.type, item.type)

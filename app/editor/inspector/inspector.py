@@ -1,4 +1,4 @@
-"""The panel that shows what is selected."""
+"""The Inspector panel."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Inspector:
         self._context.interface.dragging |= fields.dragging
 
     def close(self) -> None:
-        """End what runs, give back what is on the graphics card."""
+        """Stop the threads and release textures."""
         self._files.close()
 
     def _draw(self, rows: Rows) -> None:

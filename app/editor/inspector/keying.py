@@ -1,4 +1,4 @@
-"""Values that change over time: the diamond beside them, the field of an expression, and the menu of both."""
+"""Animated values in the inspector: the diamond for keys, the field of an expression, and their menu."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 Look = Literal["still", "keys", "key", "expression"]
 
 WIDTH = 16.0
-"""Of a diamond with the room around it, at UI scale 1."""
+"""The width of a diamond with its margin, at UI scale 1."""
 
 _DOCS: dict[Look, str] = {
     "still": "Not animated. Click to set a key at this frame",
@@ -42,7 +42,7 @@ _DOCS: dict[Look, str] = {
 
 
 def look_of(session: Session, port: Port) -> Look:
-    """How a value changes over time, as seen from the frame that is looked at."""
+    """How a value is animated, at the current frame: not, by keys, with a key here, or by an expression."""
     animation = session.graph.animation.get(port)
     if animation is None:
         return "still"
@@ -52,14 +52,14 @@ def look_of(session: Session, port: Port) -> Look:
 
 
 def color_of(palette: Palette, look: Look) -> RGB:
-    """What says so."""
+    """The color of a diamond."""
     if look == "expression":
         return next(color for kind, color in palette.kinds.items() if kind.value.casefold() == "vector")
     return {"keys": palette.good, "key": palette.warning}.get(look, palette.dim)
 
 
 def value_now(session: Session, port: Port) -> tuple[Plain, str]:
-    """What a value is at the frame that is looked at; why an expression has none, with a caret below it."""
+    """The value at the current frame, and why an expression has none, with a caret below it."""
     try:
         return session.time.evaluate(port), ""
     except GraphError as error:
@@ -67,14 +67,14 @@ def value_now(session: Session, port: Port) -> tuple[Plain, str]:
 
 
 def spoken(value: Plain) -> str:
-    """A value as people read it."""
+    """A value as text for the user."""
     if isinstance(value, bool | str):
         return value if isinstance(value, str) else "on" if value else "off"
     return "  ".join(f"{part:.5g}" for part in (value if isinstance(value, tuple) else (value,)))
 
 
 def toggle(session: Session, ports: Ports) -> None:
-    """Set a key in all values, or remove those of all, as the first one asks for."""
+    """Toggle the key of all values: set them, or remove them if the first value has one."""
     if len(ports) == 1:
         session.apply(ToggleKey(ports[0]))
         return
@@ -93,15 +93,15 @@ def toggle(session: Session, ports: Ports) -> None:
 
 
 class Keying:
-    """One panel's diamonds and expressions."""
+    """The diamonds and expression fields of one panel."""
 
     def __init__(self, fields: Fields) -> None:
         self._fields = fields
         self._drafts: dict[str, str] = {}
-        """Expressions that cannot be, or are still to be typed, by value."""
+        """Expressions that are invalid, or still being typed, by value."""
 
     def diamond(self, rows: Rows, ports: Ports) -> None:
-        """The button at the end of a name: no keys, keys elsewhere, a key here."""
+        """Draw the diamond beside a name: empty, with keys elsewhere, or with a key here."""
         session, port, scale = rows.context.session, ports[0], ui_scale()
         look = look_of(session, port)
         imgui.same_line(0.0, 0.0)
@@ -119,14 +119,14 @@ class Keying:
             rows.act(lambda: toggle(session, ports))
 
     def begin(self, session: Session, port: Port, text: str = "") -> None:
-        """Type an expression."""
+        """Start to type an expression."""
         key, animation = str(port), session.graph.animation.get(port)
         current_text = animation.text if isinstance(animation, Expression) else text
         self._drafts[key] = current_text
         self._fields.next_field = f"{key} expression"
 
     def take_expression(self, session: Session, port: Port, text: str) -> None:
-        """An expression was typed where a number stood: one that cannot be stays to be mended."""
+        """Apply an expression that was typed into a number field; an invalid one stays in the field."""
         if find_expression_fault(session.graph, port, text):
             self._drafts[str(port)] = text.strip().removeprefix("=").strip()
         else:
@@ -134,7 +134,7 @@ class Keying:
             session.apply(SetExpression(port, text))
 
     def field(self, rows: Rows, port: Port, width: float) -> bool:
-        """The expression of a value in place of its field; False if it has none."""
+        """Draw the expression of a value in place of its field; False if it has none."""
         context, fields, key = rows.context, self._fields, str(port)
         session = context.session
         animation, id = session.graph.animation.get(port), f"{key} expression"
@@ -162,7 +162,7 @@ class Keying:
         return True
 
     def note(self, rows: Rows, port: Port, field_text: str) -> None:
-        """Below the field: what the expression comes to, or what is wrong with it."""
+        """Draw the result of the expression below the field, or why it is invalid."""
         session, key = rows.context.session, str(port)
         animation = session.graph.animation.get(port)
         text = self._drafts.get(key, animation.text if isinstance(animation, Expression) else "")
@@ -177,7 +177,7 @@ class Keying:
             rows.field_note(f"= {field_text}")
 
     def tint(self, rows: Rows, port: Port, rect: Rect) -> None:
-        """Color the field of a value that changes over time."""
+        """Outline the field of an animated value in its color."""
         look = look_of(rows.context.session, port)
         if look in ("keys", "key"):
             color, lines = color_of(rows.palette, look), imgui.get_window_draw_list()
@@ -185,7 +185,7 @@ class Keying:
             lines.add_rect(rect[:2], rect[2:], u32(color, 0.6), imgui.get_style().frame_rounding)
 
     def menu(self, rows: Rows, ports: Ports, field_text: str) -> None:
-        """Entries of the menu that is open."""
+        """Draw the entries for keys and expressions in the open menu."""
         context, port = rows.context, ports[0]
         session, look = context.session, look_of(context.session, ports[0])
         is_single, keyed = len(ports) == 1, look in ("keys", "key")
@@ -234,7 +234,7 @@ class Keying:
         entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, context.clipboard.get()))
 
     def _draw_typing(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
-        """The field while it is typed in."""
+        """Draw the expression field while the user types in it."""
         fields, context = self._fields, rows.context
         session = context.session
         edit = text_entry(fields, width)
@@ -267,7 +267,7 @@ def as_text(session: Session, port: Port) -> str:
 
 
 def paste(session: Session, ports: Ports, text: str) -> None:
-    """Let values change over time as the clipboard says. Raises UsageError."""
+    """Paste an animation from the clipboard into values. Raises UsageError."""
     try:
         raw = json.loads(text)["animation"]
     except (ValueError, TypeError, KeyError):
@@ -289,7 +289,7 @@ def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
 
 
 def _draw_colored(palette: Palette, rect: Rect, text: str) -> bool:
-    """The words of an expression, each in the color of what it is; True if there is no room for all of them."""
+    """Draw an expression with syntax colors; True if it does not fit."""
     colors = {
         "number": palette.good,
         "name": palette.text,

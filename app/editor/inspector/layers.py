@@ -1,4 +1,4 @@
-"""Headers and small pictures of the layers of files, read in a thread. Nothing here draws."""
+"""Headers of files and thumbnails of their layers, read in a thread. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from ...watch.versions import FileVersions
 WIDTH, HEIGHT = 96, 54
 _KEPT = 300
 _NOTHING = 1e9
-"""From this depth on nothing is there."""
+"""The depth from which on there is only background."""
 
 Key = tuple[str, str, str | None]
-"""Path, version of the file, layer; a layer of None stands for the header."""
+"""Path, version of the file, layer; None for the header."""
 SpaceKey = tuple[str, str, ColorManager, str]
-"""Path, version of the file, how colors are managed, what the color is said to be."""
+"""Path, version of the file, color manager, and the color space that the user chose."""
 
 
 class Layers:
-    """What is in files: never waits for one. What was asked for last is read first."""
+    """The headers and thumbnails of files. Never waits for a file; the last requested one is read first."""
 
     def __init__(self, sandbox: Sandbox) -> None:
         self._sandbox, self._versions = sandbox, FileVersions(sandbox)
@@ -47,17 +47,17 @@ class Layers:
         return header if isinstance(header, ImageInfo | str) else None
 
     def fault(self, path: Path) -> str:
-        """Why there is no such file, or ""."""
+        """Why a file does not exist, or ""."""
         return self._versions.of(path)[1]
 
     def picture(self, path: Path, layer: str) -> Array | None:
-        """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
+        """A thumbnail of a layer, [h, w, 3] of uint8, at most 96 x 54; None while it is read, or if that fails."""
         version, fault = self._versions.of(path)
         picture = None if fault else self._made.get((str(path), version, layer))
         return picture if isinstance(picture, np.ndarray) else None
 
     def space(self, path: Path, layer: str, manager: ColorManager, chosen_space: str) -> tuple[str, bool]:
-        """What the color of a layer is in and how that is known, and whether that is a fault; "" while it is read."""
+        """The color space of a layer and how it was detected, and whether that is an error; "" while it is read."""
         version, fault = self._versions.of(path)
         spaces = None if fault else self._spaces.get((str(path), version, manager, chosen_space))
         header = self.header(path)
@@ -70,7 +70,7 @@ class Layers:
         return (f"{space.name}: {space.reason}", False) if space else ("", False)
 
     def version(self, path: Path) -> str:
-        """Changes when the file does."""
+        """A number that changes when the file changes."""
         return self._versions.of(path)[0]
 
     @property
@@ -106,7 +106,7 @@ class Layers:
 
 
 def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) -> Array:
-    """A layer at most 96 x 54 pixels large, [h, w, 3] of uint8: every n-th pixel, data from its lowest to its highest.
+    """A thumbnail of a layer, [h, w, 3] of uint8, at most 96 x 54: every n-th pixel; data from lowest to highest.
 
     Raises InputError.
     """
@@ -123,7 +123,7 @@ def small_picture(path: str, layer: str, header: ImageInfo, sandbox: Sandbox) ->
 
 
 def describe_layer(header: ImageInfo, layer: str) -> str:
-    """One line about a file: size, the channels of a layer, how they are stored."""
+    """A summary of a file: size, the channels of a layer, and their format."""
     try:
         named_layer = find_layer(header, layer)
     except HalationError as fault:

@@ -1,4 +1,4 @@
-"""What the selected one of a list of lights is like: a row for each thing that its kind has."""
+"""The rows of the selected light: one for each property of its kind."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _KIND = Value("kind", "choice", KINDS[0], choices=KINDS, doc="What shines: a poi
 
 
 def light_rows(rows: Rows, id: str, value: Numbers, put: Put) -> None:
-    """The rows; `put` sets the whole list. Fields have the light's number in their ids: what is typed stays there."""
+    """Draw the rows; `put` sets the whole list. Ids of fields contain the light's index: typed text stays with it."""
     index = find_selected(rows.fields, id, value)
     if index < 0:
         return
@@ -56,7 +56,7 @@ def _kind(rows: Rows, key: str, light: Light, put: Callable[[Light], object]) ->
 
 
 class _Row:
-    """One of them."""
+    """One row: a property of the light."""
 
     def __init__(
         self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: LightProperty, put: Put
@@ -65,7 +65,7 @@ class _Row:
         self.key, self.plain, self.put = f"{id} {index} {part.name}", part.read_from(light), put
 
     def draw(self) -> None:
-        """Name, field, and a menu for both."""
+        """Draw the name, the field, and their menu."""
         rows, part, declaration = self.rows, self.part, self.part.declaration
         doc = f"{describe_value(declaration, describe_default(declaration))}\nDouble click: reset. Right click: more."
         rows.name(self.key, declaration.name, doc=doc, changed=self.plain != declaration.default)
@@ -116,7 +116,7 @@ class _Row:
         return plain
 
     def _whole(self, edit: Edit) -> Edit | None:
-        """An edit of this as one of the list; what it does to other parts is undone as far as a drag goes back."""
+        """An edit of the property as an edit of the whole list, based on the light before the drag."""
         fields, before = self.rows.fields, self.value
         if edit.merge and edit.merge == fields.merge:
             if fields.lights_gesture != edit.merge:

@@ -1,4 +1,4 @@
-"""Names of a cryptomatte: a list to pick from, searched by typing."""
+"""The rows of a cryptomatte node: a list of names to pick from, with a search field."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ if TYPE_CHECKING:
     from .rows import Rows
 
 ROWS = 9
-"""Names that can be seen at once; the others are scrolled to."""
+"""The most visible names; longer lists scroll."""
 
 SEARCHED = 6
-"""From this many names on there is a field to find one in."""
+"""The number of names from which on the list has a search field: more do not fit at one glance."""
 
 
 class MatteRows:
-    """The list below the field where names and wildcards are typed."""
+    """The list of names below the field for names and wildcards."""
 
     def __init__(self, fields: Fields) -> None:
         self._fields = fields
@@ -36,11 +36,11 @@ class MatteRows:
         self._known: tuple[object, ...] = ()
         self._picked = frozenset[str]()
         self._seek = ""
-        """The name that was picked last, which the list scrolls to."""
+        """The last picked name, to which the list scrolls."""
         self._sorted: tuple[object, list[str]] = (None, [])
 
     def draw(self, rows: Rows, port: Port) -> None:
-        """Everything about the names of one node; a click picks a name or no longer."""
+        """Draw the names of one node; a click picks a name, or unpicks it."""
         matte, key = matte_at(rows.context, port.node), str(port)
         if not isinstance(matte, Matte):
             if matte and matte != "no file":
@@ -64,7 +64,7 @@ class MatteRows:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _of(self, pick: str, matte: Matte) -> frozenset[str]:
-        """The names that are picked, until something changes."""
+        """The picked names; cached until something changes."""
         if not self._known or self._known[0] != pick or self._known[1] is not matte.ids:
             before, same = self._picked, bool(self._known) and self._known[1] is matte.ids
             self._known, self._picked = (pick, matte.ids), pick_names(pick, matte.ids)
@@ -73,7 +73,7 @@ class MatteRows:
         return self._picked
 
     def _find_names(self, rows: Rows, key: str, matte: Matte) -> list[str]:
-        """The names that the search field asks for, in the order of the alphabet."""
+        """The names that match the search field, in alphabetical order."""
         if self._sorted[0] is not matte.ids:
             self._sorted = matte.ids, sorted(matte.ids, key=str.casefold)
         names = self._sorted[1]
@@ -114,7 +114,7 @@ class MatteRows:
         rows.context.places[f"names {key}"] = item_rect()
 
     def _name(self, rows: Rows, key: str, name: str, on: bool, height: float) -> bool:
-        """A box to tick, and a name; True if it was clicked."""
+        """Draw a checkbox with a name; True if it was clicked."""
         palette, scale = rows.palette, ui_scale()
         rect = place(imgui.get_content_region_avail().x, height)
         pressed = imgui.invisible_button(f"##{key} {name}", (rect[2] - rect[0], height))
@@ -139,7 +139,7 @@ class MatteRows:
         return pressed
 
     def _buttons(self, rows: Rows, port: Port) -> None:
-        """Everything, or nothing."""
+        """Draw the buttons that pick all names or none."""
         session = rows.context.session
         rows.indent()
         width = (rows.field_width - rows.gap) / 2

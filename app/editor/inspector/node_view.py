@@ -1,4 +1,4 @@
-"""A node, or what several nodes have in common."""
+"""The inspector of a node, or of several nodes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class NodeView:
-    """The face of the active node."""
+    """Shows and edits the selected nodes."""
 
     def __init__(self, fields: Fields, values: ValueRows) -> None:
         self._fields, self._values = fields, values
@@ -37,7 +37,7 @@ class NodeView:
         self._explained = False
 
     def draw(self, rows: Rows, id: str) -> None:
-        """One node: header, values, inputs."""
+        """Draw one node: header, values, inputs."""
         session = rows.context.session
         item = session.graph.nodes[id]
         face = signature(item)
@@ -77,7 +77,7 @@ class NodeView:
             _input(rows, Port(id, name), socket)
 
     def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
-        """The values that several nodes share; the first one is the active one."""
+        """Draw the values that several nodes have in common; the first node is the active one."""
         session = rows.context.session
         items = [session.graph.nodes[id] for id in ids]
         kinds = {title_of(item) for item in items}
@@ -153,7 +153,7 @@ class NodeView:
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:
-    """A socket: what is linked to it, or what it does without a link."""
+    """Draw a socket: its link, or what it does without one."""
     doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
     rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
     source = rows.context.session.graph.links.get(port)

@@ -1,4 +1,4 @@
-"""A node that reads a render: what is in the file, what each layer is taken for and why, what is left over."""
+"""The rows of a node that reads a render: the file, the role of each layer and why, and unused layers."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
 
 _USE_AS = "use as"
 _LONGEST = 200
-"""Letters that are shown of what a header says."""
+"""The most letters that are shown of a header entry."""
 
 
 class RenderRows:
-    """The values of such a node, with everything that helps to set them."""
+    """Draws the values of such a node, with facts of the file."""
 
     def __init__(self, values: ValueRows) -> None:
         self._values = values
         self._mattes = MatteRows(values.fields)
 
     def draw(self, rows: Rows, id: str, item: Node) -> None:
-        """The values, then what there is to know."""
+        """Draw the values, then the facts of the file."""
         context, path = rows.context, render_path(item)
         overview = overview_of(context, id)
         plain_values = [value for value in item.values.values() if not value.role]
@@ -68,7 +68,7 @@ class RenderRows:
     def _layers(
         self, rows: Rows, id: str, item: Node, roles: Sequence[Value], overview: RenderOverview | str | None
     ) -> None:
-        """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
+        """Draw a field for the layer of every output and for its convention; missing layers come last."""
         uses = overview.uses if isinstance(overview, RenderOverview) else {}
         there = {role for role, use in uses.items() if use.layer or use.is_open or use.fault}
         there |= {Role(value.role) for value in roles if item.setting(value.name) != value.default}
@@ -87,7 +87,7 @@ class RenderRows:
                 self._role(rows, id, item, value, None)
 
     def _role(self, rows: Rows, id: str, item: Node, value: Value, use: RoleUse | None) -> None:
-        """One value, and what there is to say of it."""
+        """Draw one value, and a note on its layer."""
         socket = _socket(item, value)
         color = rows.palette.kinds[socket.kind] if socket and value.type == "text" else None
         self._values.draw(rows, (Port(id, value.name),), value, _label(value), color)
@@ -108,7 +108,7 @@ class RenderRows:
             rows.field_note(words, rows.palette.warning if unsure else None)
 
     def _others(self, rows: Rows, id: str, roles: Sequence[Value], overview: RenderOverview) -> None:
-        """Layers that no output shows, each with a list of what to use it for."""
+        """Draw the layers that no output uses, each with a menu of possible uses."""
         if overview.mattes:
             self._offer_mattes(rows, id, overview)
         if not overview.other_passes:
@@ -145,7 +145,7 @@ class RenderRows:
             draw_wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
 
     def _offer_mattes(self, rows: Rows, id: str, overview: RenderOverview) -> None:
-        """What cryptomattes there are, and a button for a node that cuts out."""
+        """Draw the cryptomattes of the file, and a button that adds a cryptomatte node."""
         rows.draw_heading("Cryptomatte")
         words = [
             f"{matte.kind or 'unnamed'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
@@ -158,7 +158,7 @@ class RenderRows:
 
 
 def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
-    """What the file is, below its path."""
+    """Draw a summary of the file below its path."""
     if overview is None:
         rows.field_note("reading the file…")
     elif isinstance(overview, RenderOverview):
@@ -168,7 +168,7 @@ def _about(rows: Rows, overview: RenderOverview | str | None) -> None:
 
 
 def _camera(rows: Rows, id: str, overview: RenderOverview) -> None:
-    """Whether there is one, and how exactly it was found."""
+    """Draw whether the file has a camera, and how exact it is."""
     rows.draw_heading("Camera")
     facts = dict(list_camera(overview.camera))
     for name in ("found", "none", "residual", "field of view"):
@@ -178,7 +178,7 @@ def _camera(rows: Rows, id: str, overview: RenderOverview) -> None:
 
 
 def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
-    """What `halation info` shows besides: parts, the whole camera, metadata."""
+    """Draw what `halation info` shows besides: parts, the whole camera, metadata."""
     rows.draw_heading("File")
     if _draw_fold(rows, f"Parts ({len(overview.parts)})###parts {id}", f"more {id} parts"):
         names = [part[1] or f"part {part[0]}" for part in overview.parts]
@@ -207,7 +207,7 @@ def _file(rows: Rows, id: str, overview: RenderOverview) -> None:
 
 
 def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
-    """Small rows whose names have the room that they ask for, as far as there is some."""
+    """Draw small rows of a name and a text."""
     with font(rows.context, "text", SMALL):
         longest = max(imgui.calc_text_size(name).x for name, _ in facts)
     width = min(max(longest, rows.name_width), rows.width * 0.42)
@@ -216,7 +216,7 @@ def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
 
 
 def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: float = 0.0) -> None:
-    """A small row of two words: the name at the left, without its middle where it is too long."""
+    """Draw a small row: a name (shortened in the middle) and a text."""
     with font(rows.context, "text", SMALL):
         rect = place(width or rows.name_width, imgui.get_text_line_height())
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
@@ -227,7 +227,7 @@ def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: fl
 
 
 def _draw_fold(rows: Rows, label: str, key: str) -> bool:
-    """A part that is folded at first."""
+    """Draw a section that is collapsed at first; True if it is open."""
     imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
     opened = imgui.tree_node_ex(label, int(imgui.TreeNodeFlags_.no_tree_push_on_open))
     imgui.pop_style_color()
@@ -236,7 +236,7 @@ def _draw_fold(rows: Rows, label: str, key: str) -> bool:
 
 
 def _output(value: Value) -> str:
-    """The output that a value is about."""
+    """The output that a value belongs to."""
     return value.name.removesuffix("_layer").removesuffix("_is")
 
 

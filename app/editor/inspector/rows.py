@@ -1,4 +1,4 @@
-"""The two columns of the panel: names at the left, fields at the right."""
+"""The two columns of the inspector: names at the left, fields at the right."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Rows:
-    """Where names and fields go in this frame."""
+    """The layout of names and fields in this frame."""
 
     def __init__(self, context: InspectorContext, fields: Fields) -> None:
         self.context, self.fields, self.palette = context, fields, context.palette
@@ -30,22 +30,22 @@ class Rows:
         self.fit(())
 
     def act(self, act: Callable[[], object]) -> None:
-        """Do something once everything is drawn: until then the document stays as it is."""
+        """Run an action after everything is drawn: the document must not change before."""
         self._acts.append(act)
 
     def finish(self) -> None:
-        """Do what was asked for."""
+        """Run the actions of `act`."""
         for act in self._acts:
             self.context.log.attempt(act)
 
     def inset(self) -> Rows:
-        """Rows for what is left of the width after an indent."""
+        """Rows for the width that is left after an indent."""
         inner = Rows(self.context, self.fields)
         inner._acts = self._acts
         return inner
 
     def fit(self, labels: Iterable[str], least: float = 0.3) -> None:
-        """Make the left column as wide as these names ask for: from a `least` part up to half of the panel."""
+        """Fit the left column to these names: from a fraction `least` up to half of the panel."""
         scale = ui_scale()
         longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
         needed_width = max(self.width * least, longest + 26.0 * scale)
@@ -82,20 +82,20 @@ class Rows:
         tip(doc)
 
     def field(self) -> float:
-        """Go on to the field of the row; its width."""
+        """Move the cursor to the field of the row; returns its width."""
         imgui.same_line(0.0, self.gap)
         return self.field_width
 
     def indent(self) -> None:
-        """Go to where fields begin, on a line of its own."""
+        """Move the cursor to the left edge of fields, on a new line."""
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + self.name_width + self.gap)
 
     def record(self, key: str) -> None:
-        """Note where the field of a row is: the last item."""
+        """Record the place of a row's field: that of the last item."""
         self.context.places[f"field {key}"] = item_rect()
 
     def draw_heading(self, text: str) -> None:
-        """The title of a section."""
+        """Draw the title of a section."""
         imgui.spacing()
         with font(self.context, "bold", SMALL):
             rect = place(self.width, imgui.get_text_line_height() * 1.3)
@@ -107,21 +107,21 @@ class Rows:
         )
 
     def note(self, text: str, color: RGB | None = None, *, icon: str = "") -> None:
-        """A sentence over the whole width."""
+        """Draw a sentence over the whole width."""
         draw_wrapped(color or self.palette.dim, f"{icon}  {text}" if icon else text)
 
     def field_note(self, text: str, color: RGB | None = None) -> None:
-        """A sentence below a field."""
+        """Draw a sentence below a field."""
         self.indent()
         with font(self.context, "text", SMALL):
             draw_wrapped(color or self.palette.dim, text)
 
     def icon(self, glyph: str, key: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
-        """A quiet square button."""
+        """Draw a quiet square button; True if it was clicked."""
         return quiet_button(self.context, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
 
     def chip(self, text: str, key: str, width: float, color: RGB, doc: str) -> bool:
-        """A link or the like, as a button cut to a width."""
+        """Draw a link as a button of a width; True if it was clicked."""
         rect = place(width)
         pressed = imgui.invisible_button(f"##chip {key}", (rect[2] - rect[0], rect[3] - rect[1]))
         hovered, pad, lines = imgui.is_item_hovered(), imgui.get_style().frame_padding.x, imgui.get_window_draw_list()
@@ -133,7 +133,7 @@ class Rows:
         return pressed
 
     def wide_button(self, label: str, key: str, doc: str = "") -> bool:
-        """A button over the whole width."""
+        """Draw a button over the whole width; True if it was clicked."""
         pressed = imgui.button(f"{label}##{key}", (self.width, 0.0))
         self.context.places[f"button {key}"] = item_rect()
         tip(doc)

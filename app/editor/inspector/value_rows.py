@@ -1,4 +1,4 @@
-"""A row for every value: name, field or link, what belongs to a file, and the menu of it all."""
+"""The rows of values: name, field or link, notes on files, and a menu."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _MENU = "value menu"
 
 @dataclass
 class ValueRows:
-    """The values of one node, or those that several have in common."""
+    """Draws the values of one node, or those that several nodes have in common."""
 
     fields: Fields
     files: FileField
@@ -48,7 +48,7 @@ class ValueRows:
         self._keying = Keying(self.fields)
 
     def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None) -> None:
-        """One row; `ports` are the same value of several nodes, the active one first."""
+        """Draw one row; `ports` are the same value of several nodes, the active one first."""
         context, port = rows.context, ports[0]
         session, key = context.session, str(port)
         graph = session.graph
@@ -113,7 +113,7 @@ class ValueRows:
             imgui.end_popup()
 
     def take_abandoned(self, context: InspectorContext, abandoned: tuple[str, Edit]) -> None:
-        """What was typed in a field before something else was selected goes where it belongs."""
+        """Apply text that was typed in a field before the selection changed."""
         id, edit = abandoned
         graph = context.session.graph
         ports, declaration = self._targets.get(id, ((), None))
@@ -128,7 +128,7 @@ class ValueRows:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _take(self, rows: Rows, ports: Ports, declaration: Value, edit: Edit) -> None:
-        """Put an edit where it belongs."""
+        """Apply an edit to the values of a row."""
         session = rows.context.session
         if edit.expression:
             self._keying.take_expression(session, ports[0], edit.expression)
@@ -163,7 +163,7 @@ class ValueRows:
         return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
 
     def _about_space(self, rows: Rows, port: Port, value: str) -> None:
-        """The color space of what a reader reads."""
+        """Draw the color space of the file that a node reads."""
         item = rows.context.session.graph.nodes.get(port.node)
         file, layer = (getattr(item, name, None) for name in ("path", "layer"))
         if isinstance(file, str):
@@ -172,7 +172,7 @@ class ValueRows:
     def _of_layer(
         self, rows: Rows, port: Port, declaration: Value, value: str, width: float, mixed: bool
     ) -> Edit | None:
-        """The field of what is said about a layer of a render: which it is, or what it holds."""
+        """Draw the field for the layer of a render, or for its convention."""
         use, key = use_of(rows.context, port, declaration), str(port)
         if declaration.type == "choice":
             words = convention_words(declaration, use)
@@ -184,7 +184,7 @@ class ValueRows:
         return self.files.layer(rows, key, file, value, width, first_words(use), bool(use and use.fault))
 
     def _mark(self, rows: Rows, port: Port, control: str) -> None:
-        """A sign that a value is a control; a click renames that."""
+        """Draw the mark of a control; a click renames the control."""
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_SLIDERS, f"control {port}", f"Shown as the control '{control}'; click to rename"):
             self._renaming = control
@@ -235,7 +235,7 @@ class ValueRows:
 
 
 def _crosshair(rows: Rows, key: str) -> None:
-    """A switch: the next click on the picture says where."""
+    """Draw the switch that picks a position with the next click in the viewer."""
     viewer = rows.context.viewer
     imgui.same_line(0.0, 0.0)
     lit = viewer.picking == key
@@ -244,7 +244,7 @@ def _crosshair(rows: Rows, key: str) -> None:
 
 
 def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
-    """Where a value or input comes from; a click goes there, the cross unlinks."""
+    """Draw the source of a link; a click goes there, the cross unlinks."""
     context, side = rows.context, imgui.get_frame_height()
     start = context.session.graph.source(source)
     color = rows.palette.kinds[start.kind] if start else rows.palette.dim
@@ -267,7 +267,7 @@ def go_to(context: InspectorContext, port: Port) -> None:
 
 
 def _file_of(graph: Graph, port: Port) -> str | None:
-    """The path whose layer a value picks, if it does."""
+    """The path value whose layer a value chooses, if any."""
     for name, declaration in signature(graph.node(port.node)).values.items():
         if declaration.layer_by == port.socket:
             path = graph.value(Port(port.node, name))

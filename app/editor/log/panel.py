@@ -1,4 +1,4 @@
-"""What happened since the editor was opened."""
+"""The Log panel."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _ORDER: tuple[Level, ...] = ("info", "warning", "error")
 
 
 class LogPanel:
-    """Sentences with their time, oldest first."""
+    """The messages since the editor was opened, with their time, oldest first."""
 
     def __init__(self, context: LogContext) -> None:
         self._context = context

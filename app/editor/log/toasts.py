@@ -1,4 +1,4 @@
-"""What was said just now, in the corner."""
+"""Toasts: new messages in the corner of the window."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _TOAST = (
 
 
 class Toasts:
-    """The newest sentences, stacked upwards from the bottom right; each fades after a while, a click ends it."""
+    """The newest messages, stacked upwards from the bottom right; each fades after a while, or after a click."""
 
     def __init__(self, context: LogContext) -> None:
         self._context = context
         self._dismissed = frozenset[float]()
 
     def draw(self) -> None:
-        """Draw over everything."""
+        """Draw the toasts over everything."""
         entries = [entry for entry in self._context.log.toasts() if entry.at not in self._dismissed][-_MOST:]
         self._dismissed &= {entry.at for entry in self._context.log.toasts()}
         view, scale = imgui.get_main_viewport(), ui_scale()
@@ -41,7 +41,7 @@ class Toasts:
             bottom -= self._draw_toast(entry, index, ImVec2(right, bottom)) + _GAP * scale
 
     def _draw_toast(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
-        """Draw with the lower right corner there; the height."""
+        """Draw a toast with its lower right corner at a point; returns its height."""
         scale = ui_scale()
         left = TOAST_SECONDS - self._context.log.age(entry)
         opacity = min(max(left / _FADE, 0.05), 1.0)

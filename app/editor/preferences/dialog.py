@@ -30,7 +30,7 @@ _PAGES = ("Interface", "Shortcuts", "System")
 
 
 class PreferencesDialog:
-    """Changes hold at once; there is nothing to confirm."""
+    """The Preferences dialog. Changes apply at once."""
 
     def __init__(self, context: PreferencesContext) -> None:
         self._context = context
@@ -40,7 +40,7 @@ class PreferencesDialog:
         self._folder = ""
 
     def draw(self) -> None:
-        """Draw over everything, if it is open."""
+        """Draw the dialog, if it is open."""
         if "preferences" not in self._context.dialogs.open:
             self._shortcuts.stop()
             return
@@ -123,7 +123,7 @@ class PreferencesDialog:
         record(self._context, "reset preferences")
 
     def _draw_folders(self) -> None:
-        """Where shaders in the Interactive Shader Format are looked for."""
+        """Draw the folders of ISF shaders."""
         folders = self._context.store.current.isf_folders
         draw_wrapped(
             self._context.palette.dim,
@@ -160,7 +160,7 @@ class PreferencesDialog:
         high: float,
         logarithmic: bool = False,
     ) -> None:
-        """A slider that takes effect when it is let go."""
+        """Draw a slider that applies when the mouse button is released."""
         whole = isinstance(getattr(self._context.store.current, name), int)
         value = self._edited.get(name, float(getattr(self._context.store.current, name)))
         imgui.set_next_item_width(220 * ui_scale())

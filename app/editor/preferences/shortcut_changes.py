@@ -1,4 +1,4 @@
-"""Changes of shortcuts."""
+"""Assigns and resets shortcuts in the preferences."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def assign_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
 
 
 def take_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
-    """Give an action a shortcut that others have: they have none then."""
+    """Assign a shortcut that other actions have; these lose it."""
     for conflict in context.actions.conflicts(id, keys):
         assign_shortcut(context, conflict.id, "")
     assign_shortcut(context, id, keys)
 
 
 def reset_shortcut(context: PreferencesContext, id: str) -> None:
-    """Give an action the shortcut that it came with; who has it meanwhile loses it."""
+    """Reset an action to its default shortcut; another action that has it loses it."""
     take_shortcut(context, id, context.actions[id].shortcut)

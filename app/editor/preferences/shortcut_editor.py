@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class ShortcutEditor:
-    """A list of actions: click a shortcut, then press the keys that shall set it off."""
+    """The list of actions: click a shortcut, then press the new keys."""
 
     def __init__(self, context: PreferencesContext) -> None:
         self._context = context
@@ -59,7 +59,7 @@ class ShortcutEditor:
         imgui.end_child()
 
     def stop(self) -> None:
-        """Listen no more."""
+        """Stop listening for keys."""
         self._waiting, self._offered = "", None
 
     def _draw_row(self, action: ListedAction) -> None:
@@ -104,7 +104,7 @@ class ShortcutEditor:
             self._context.log.attempt(lambda: assign_shortcut(self._context, id, keys))
 
     def _ask(self) -> None:
-        """Say who has a shortcut already, and offer to take it over."""
+        """Draw which actions have the shortcut already, and offer to reassign it."""
         if self._waiting:
             draw_dim(self._context, "Press the new keys. Escape cancels, Delete removes the shortcut.")
             return

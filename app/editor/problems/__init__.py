@@ -1,1 +1,1 @@
-"""The Problems panel: what is wrong now, and where."""
+"""The Problems panel: all errors and warnings."""

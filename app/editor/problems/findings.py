@@ -1,4 +1,4 @@
-"""Everything that is wrong right now, as one list."""
+"""Collects all current problems in one list."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ListedProblem:
-    """One thing that is wrong. `where` is the path of a node, such as `glow/blur` or `inputs.beauty`, or ""."""
+    """One problem. `where` is the path of a node, such as `glow/blur` or `inputs.beauty`, or ""."""
 
     level: Level
     where: str
@@ -31,10 +31,7 @@ def list_problems(context: ProblemsContext) -> tuple[ListedProblem, ...]:
 
 
 def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
-    """What the preview says about a node that the graph itself has a problem with is the same thing in other words.
-
-    Only an error in code is another thing.
-    """
+    """Collect the problems. Errors of the preview only repeat those of the graph, unless they are in code."""
     inside = "/".join(context.session.place)
     for node, problems in context.session.problems.items():
         for problem in problems:
@@ -46,11 +43,11 @@ def _collect(context: ProblemsContext) -> Iterator[ListedProblem]:
     for sentence in service_faults(context):
         yield ListedProblem("warning", "", sentence)
     for name, detail in context.faults.items():
-        yield ListedProblem("error", "", f"the panel '{name}' failed; the document is safe", detail)
+        yield ListedProblem("error", "", f"the panel {name} failed; the document is safe", detail)
 
 
 def service_faults(context: ProblemsContext) -> Iterable[str]:
-    """What recovery, file watching and preferences cannot do at present, and who else edits the document."""
+    """The current problems of recovery, file watching and preferences, and other editors of the same document."""
     recovery = context.recovery
     return filter(None, (recovery.fault, recovery.find_rivals(), context.watcher.fault, *context.store.faults))
 

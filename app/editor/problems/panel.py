@@ -1,4 +1,4 @@
-"""What is wrong, and where."""
+"""The Problems panel."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _COPY = f"{icons.ICON_FA_COPY} Copy"
 
 
 class ProblemsPanel:
-    """Sentences that say what is wrong; a click leads to the node."""
+    """The list of problems; a click goes to the node."""
 
     def __init__(self, context: ProblemsContext) -> None:
         self._context = context
@@ -84,7 +84,7 @@ class ProblemsPanel:
 
 
 def _draw_detail(context: ProblemsContext, detail: str, name: str) -> None:
-    """A traceback, for whoever reports it."""
+    """Draw a traceback, to copy it into a bug report."""
     opened = imgui.tree_node("Details for a bug report")
     record(context, name)
     if not opened:

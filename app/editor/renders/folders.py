@@ -1,4 +1,4 @@
-"""Folders shown by the system's own file manager, where there is one."""
+"""Opens folders in the file manager of the system."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 
 
 def command(folder: Path) -> list[str] | None:
-    """The program that shows a folder, None if this system has none that is known."""
+    """The command that shows a folder, None if there is no known one."""
     name = {"darwin": "open", "win32": "explorer"}.get(sys.platform, "xdg-open")
     program = shutil.which(name)
     display = sys.platform in ("darwin", "win32") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
@@ -18,7 +18,7 @@ def command(folder: Path) -> list[str] | None:
 
 
 def show_folder(folder: Path) -> bool:
-    """Show a folder; False if there is no program for it."""
+    """Open a folder in the file manager; False if there is none."""
     words = command(folder)
     if words is None:
         return False

@@ -1,4 +1,4 @@
-"""What a render to files shall be: the form's state and what it asks for. Draws nothing."""
+"""The state of the render form, and the render that it describes. Draws nothing."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ DEPTHS: tuple[tuple[Depth, str], ...] = (
 PICTURES = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
 VIDEOS = (".mp4", ".mov", ".mkv", ".webm")
 VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", *VIDEOS})
-"""Formats that show a picture as a display does."""
+"""Formats for display-referred pictures, which need a view."""
 
 _FRESH = 1.0
-"""Seconds for which what was found on the disk counts."""
+"""Seconds for which the last look at the disk is reused."""
 
 
 @dataclass(frozen=True)
 class RenderTargets:
-    """What a render would write: so many files, of which some `exist`, or why it cannot be."""
+    """The files that a render would write, how many of them `exist`, or why it is impossible."""
 
     files: int = 0
     first: str = ""
@@ -61,7 +61,7 @@ class RenderTargets:
 
 @dataclass
 class RenderForm:
-    """What was chosen. `files` are the paths that were typed, by output; "" takes the suggestion."""
+    """The choices of the form. `files` are the typed paths by output; "" takes the suggestion."""
 
     context: RendersContext
     chosen: dict[str, bool] = field(default_factory=dict[str, bool])
@@ -73,9 +73,9 @@ class RenderForm:
     precision: Depth = ""
     view: str = ""
     extent: Extent | None = None
-    """None is all frames, where there are several."""
+    """The chosen frames; None for all frames if there are several."""
     listed: str = ""
-    """The frames that were typed."""
+    """The typed frames."""
     jobs: int = 1
     resume: bool = False
     _seen: tuple[object, float, RenderTargets] = (None, 0.0, RenderTargets())
@@ -83,7 +83,7 @@ class RenderForm:
     # --- frames ------------------------------------------------------------------------------------------------------
 
     def extents(self) -> dict[Extent, tuple[int, ...]]:
-        """The frames that can be chosen. Typed ones are none while they make no sense."""
+        """The choices of frames. Listed frames are empty while the text is invalid."""
         session = self.context.session
         first, last = session.time.frames
         extents: dict[Extent, tuple[int, ...]] = {"this frame": (session.time.frame,)}
@@ -96,17 +96,17 @@ class RenderForm:
         return extents
 
     def extent_of(self) -> Extent:
-        """Which of them are to be rendered."""
+        """The chosen one of the `extents`."""
         offered = self.extents()
         usual: Extent = "all frames" if "all frames" in offered else "this frame"
         return self.extent if self.extent in offered else usual
 
     def frames(self) -> tuple[int, ...]:
-        """The frames to render; none while those that are typed make no sense."""
+        """The frames to render; none while the typed text is invalid."""
         return self.extents()[self.extent_of()]
 
     def extend(self, extent: Extent) -> None:
-        """Render other frames. Names that were typed get a place for the number, where they need one."""
+        """Choose other frames. Typed file names get a frame number if they need one."""
         if extent == "listed frames" and not self.listed:
             self.listed = format_frames(self.frames())
         self.extent = extent
@@ -115,13 +115,13 @@ class RenderForm:
 
     @property
     def list_fault(self) -> str:
-        """What is wrong with the frames that were typed."""
+        """Why the typed frames are invalid, "" if they are valid."""
         return _parse_listed(self.listed)[1]
 
     # --- files -------------------------------------------------------------------------------------------------------
 
     def suggest_file(self, output: str) -> Path:
-        """Where an output goes if nothing else is said."""
+        """The suggested file of an output."""
         last = self.context.store.folder("export")
         session = self.context.session
         folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
@@ -130,29 +130,29 @@ class RenderForm:
         return folder / (plain if self.extent_of() == "this frame" else _add_number(plain))
 
     def file(self, output: str) -> Path:
-        """Where an output goes."""
+        """The file of an output."""
         typed = self.files.get(output, "")
         return Path(typed).expanduser() if typed else self.suggest_file(output)
 
     def list_chosen_outputs(self) -> tuple[str, ...]:
-        """The outputs that are chosen; at first those that are pictures."""
+        """The chosen outputs; at first all that are pictures."""
         kinds = {name: output.kind for name, output in self.context.session.root.outputs.items()}
         return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
 
     def reform(self, format: str) -> None:
-        """Another format for all files; a video has no place for the frame number."""
+        """Set the format of all files; the name of a video has no frame number."""
         self.format = format
         named = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
         self.files = {name: remove_frame_number(path) if is_video(path) else path for name, path in named.items()}
 
     def number(self) -> None:
-        """Give all files a place for the frame number."""
+        """Add a frame number to the names of all files."""
         self.files = {name: _add_number(str(self.file(name))) for name in self.list_chosen_outputs()}
 
     # --- all together ------------------------------------------------------------------------------------------------
 
     def targets(self, time_now: float) -> RenderTargets:
-        """What would be written; the disk is read again after a second, or when the choices differ."""
+        """The files that would be written; the disk is read again after a second, or when the choices change."""
         frames = self.frames()
         paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.list_chosen_outputs()))
         key = paths, frames, self.list_fault if not frames else ""
@@ -161,7 +161,7 @@ class RenderForm:
         return self._seen[2]
 
     def options(self) -> RenderJob:
-        """The choices as the exporter wants them."""
+        """The choices as options of the render."""
         frames = self.frames()
         job = RenderJob(
             sandbox=self.context.session.sandbox,
@@ -176,7 +176,7 @@ class RenderForm:
         return replace(job, size=self.size) if self.sizing == "size" else job
 
     def start(self) -> QueuedRender:
-        """Put it into the queue. Raises UsageError or GraphError."""
+        """Add the render to the queue. Raises UsageError or GraphError."""
         files = [(name, self.file(name)) for name in self.list_chosen_outputs()]
         if not self.frames():
             raise UsageError(self.list_fault)
@@ -190,13 +190,13 @@ class RenderForm:
 
 
 def formats() -> tuple[str, ...]:
-    """The endings to choose from: those of videos where PyAV is installed."""
+    """The formats to choose from; those of videos only if PyAV is installed."""
     return (*PICTURES, *VIDEOS) if load_pyav() is not None else PICTURES
 
 
 @lru_cache(maxsize=8)
 def _parse_listed(text: str) -> tuple[tuple[int, ...], str]:
-    """The frames of a text, or what is wrong with it."""
+    """The frames in a text, and why it is invalid."""
     try:
         return parse_frames(text), ""
     except UsageError as fault:
@@ -204,7 +204,7 @@ def _parse_listed(text: str) -> tuple[tuple[int, ...], str]:
 
 
 def _add_number(path: str) -> str:
-    """The path with a place for the number, unless it has one, or needs none."""
+    """The path with a frame number, unless it has one or needs none."""
     try:
         return path if is_video(path) or Pattern.parse(path) else add_frame_number(path)
     except UsageError:
@@ -212,7 +212,7 @@ def _add_number(path: str) -> str:
 
 
 def find_targets(paths: tuple[str, ...], frames: tuple[int, ...], fault: str, sandbox: Sandbox) -> RenderTargets:
-    """The files that a render would write, and how many of them are there already."""
+    """The files that a render would write, and how many of them exist."""
     if fault or not paths:
         return RenderTargets(fault=fault or "Choose an output to render.")
     try:
@@ -232,7 +232,7 @@ def _at(path: str, frame: int) -> str:
 
 
 def _count_existing(path: str, frames: tuple[int, ...], sandbox: Sandbox) -> int:
-    """How many of the files are there."""
+    """The number of files that exist."""
     if Pattern.parse(path) is None or len(frames) == 1:
         return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows
     sequence = find_sequence(path, sandbox=sandbox)

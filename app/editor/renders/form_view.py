@@ -31,7 +31,7 @@ _LONGEST = 24
 
 
 def draw_form(context: RendersContext, form: RenderForm) -> None:
-    """Everything that can be chosen, what would be written, and the button."""
+    """Draw the form: the choices, the files that would be written, and the button."""
     _draw_files(context, form)
     _draw_frames(context, form)
     _draw_options(context, form)
@@ -105,7 +105,7 @@ def _extent_text(extent: Extent, frames: tuple[int, ...]) -> str:
 
 
 def _short(frames: tuple[int, ...]) -> str:
-    """The frames in few words."""
+    """The frames as a short text."""
     if len(frames) > 2 and frames == tuple(range(frames[0], frames[-1] + 1)):
         return f"{frames[0]}-{frames[-1]}"
     text = format_frames(frames[:100])
@@ -113,7 +113,7 @@ def _short(frames: tuple[int, ...]) -> str:
 
 
 def _draw_frame_list(context: RendersContext, form: RenderForm) -> None:
-    """Frames that are typed, checked while they are."""
+    """Draw the field for a list of frames, checked while the user types."""
     label("", _LABELS)
     imgui.set_next_item_width(-1)
     wrong = bool(form.list_fault)
@@ -165,7 +165,7 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
 
 
 def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTargets) -> None:
-    """What would be written, and what is in the way."""
+    """Draw the files that would be written, and what prevents the render."""
     palette = context.palette
     if aim.fault:
         if aim.fault != form.list_fault:
@@ -194,6 +194,6 @@ def _draw_consequences(context: RendersContext, form: RenderForm, aim: RenderTar
 
 
 def choose(context: RendersContext, title: str, current: str, choices: tuple[str, ...]) -> str:
-    """A labelled choice; what was chosen in this frame, or ""."""
+    """Draw a labelled choice; returns what was chosen in this frame, or ""."""
     label(title, _LABELS)
     return combo(context, title, current, choices)

@@ -1,4 +1,4 @@
-"""Renders to files: what to make, and how far those under way are."""
+"""The Renders panel: a form for a new render, and the queue."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from .context import RendersContext
 
 _FORM, _WIDE = 420.0, 760.0
-"""Width of the form, and from which width on the queue is beside it."""
+"""The width of the form, and the panel width from which on the queue is beside it."""
 
 
 class RendersPanel:
-    """A form and a queue. Rendering runs beside the editor, on the graph as it was when it was asked for."""
+    """The form and the queue. A render uses the graph as it was when the render was added."""
 
     def __init__(self, context: RendersContext) -> None:
         self._context = context
         self._forms: dict[Path | None, RenderForm] = {}
-        """What was chosen last, by document."""
+        """The form of each document."""
         self._queue = RenderQueueView(context)
 
     def close(self) -> None:
-        """Give back what the window holds."""
+        """Release textures."""
         self._queue.close()
 
     def draw(self) -> None:

@@ -1,4 +1,4 @@
-"""The queue of renders to files: one block for each."""
+"""Draws the queue of renders: one block for each."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _WIDTH, _HEIGHT = 92.0, 56.0
 _PAUSE = 1.5
-"""Seconds between two small pictures of a render that runs."""
+"""Seconds between two thumbnails of a running render: a choice, for decoding takes time."""
 
 _COLORS: dict[RenderState, str] = {
     "done": "good",
@@ -54,20 +54,20 @@ class _Button(NamedTuple):
 
 
 class RenderQueueView:
-    """What runs is on top, then what waits, then what has ended, the last one first."""
+    """The queue: running renders on top, then waiting ones, then ended ones, the last one first."""
 
     def __init__(self, context: RendersContext) -> None:
         self._context = context
         self._open: set[QueuedRender] = set()
-        """Those whose notes are shown."""
+        """The renders whose messages are shown."""
         self._pictures: FileThumbnails | None = None
         self._textures = Textures()
         self._seen: dict[QueuedRender, tuple[Path, float, float]] = {}
-        """The file that stands for a render, when that was written, and when it was chosen."""
+        """The file of each render's thumbnail, when it was written, and when it was chosen."""
         self._shown: dict[QueuedRender, tuple[Path, float]] = {}
 
     def close(self) -> None:
-        """Give small pictures back."""
+        """Release the thumbnails."""
         if self._pictures is not None:
             self._pictures.close()
         self._textures.clear()
@@ -181,7 +181,7 @@ class RenderQueueView:
         return buttons
 
     def _draw_compare_menu(self, index: int, export: QueuedRender) -> None:
-        """What it can be compared with."""
+        """Draw the menu of renders to compare with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
         candidates = [render for render in self._context.exports.all if render is not export and render.written_files]
@@ -203,7 +203,7 @@ class RenderQueueView:
         imgui.end_popup()
 
     def _draw_details(self, export: QueuedRender) -> None:
-        """What is computed, and the file that was written last."""
+        """Draw what is computed now, and the last written file."""
         last = export.written_files[-1] if export.written_files else None
         parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
         if last is not None and export.state == "running":
@@ -214,7 +214,7 @@ class RenderQueueView:
     # --- small pictures ----------------------------------------------------------------------------------------------
 
     def _draw_picture(self, export: QueuedRender, start: ImVec2) -> None:
-        """The last file that it wrote, or what stands for it."""
+        """Draw a thumbnail of the last written file, or an icon."""
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         width, height = _WIDTH * scale, _HEIGHT * scale
         corner = ImVec2(start.x + width, start.y + height)
@@ -244,7 +244,7 @@ class RenderQueueView:
         )
 
     def _choose_picture(self, export: QueuedRender) -> tuple[Path, float] | None:
-        """The file that stands for it: a new one only now and then, for decoding takes time too."""
+        """The file to show as a thumbnail; a new one only every `_PAUSE` seconds, for decoding takes time."""
         if not export.written_files:
             return None
         path, time_now, before = export.written_files[-1], imgui.get_time(), self._seen.get(export)

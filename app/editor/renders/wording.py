@@ -1,4 +1,4 @@
-"""What is said of renders to files."""
+"""Texts about renders to files."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from .form import RenderTargets
 
 
 def title(export: QueuedRender) -> str:
-    """What a render is called: its files."""
+    """The title of a render: its files."""
     first = export.destinations[0][1].name
     more = len(export.destinations) - 1
     return f"{first} and {more} more" if more else first
 
 
 def progress_text(export: QueuedRender) -> str:
-    """How far a render is that runs."""
+    """The progress of a running render."""
     computed, total = export.passes
     if export.total > 1:
         return f"{export.done} of {export.total} frames" if export.done or total else "starting"
@@ -26,7 +26,7 @@ def progress_text(export: QueuedRender) -> str:
 
 
 def under_way(export: QueuedRender) -> str:
-    """What of a render is computed now, and how long it still takes."""
+    """What a render computes now, and the remaining time."""
     parts: list[str] = []
     if export.total > 1 and export.job.order.processes > 1 and not export.node:
         parts.append(f"{export.job.order.processes} processes")
@@ -39,7 +39,7 @@ def under_way(export: QueuedRender) -> str:
 
 
 def state_text(export: QueuedRender, turn: int = 0) -> str:
-    """How a render ended, or the turn that it waits for."""
+    """How a render ended, or its position in the queue."""
     if export.state == "waiting":
         return "next" if turn == 0 else f"{turn} before this one"
     many = export.total > 1
@@ -72,7 +72,7 @@ def aim_text(aim: RenderTargets) -> str:
 
 
 def exist_text(aim: RenderTargets, resume: bool) -> str:
-    """What happens to files that are there already."""
+    """What happens to files that exist already."""
     if aim.files == 1:
         return "It exists. It is kept if it is up to date." if resume else "It exists and will be replaced."
     which = "All of them" if aim.exist == aim.files else f"{aim.exist:,} of them"

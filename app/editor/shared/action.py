@@ -1,4 +1,4 @@
-"""What an action is, and how actions are found."""
+"""Actions: what menus, shortcuts and the command palette run."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Generic, Literal, Never, TypeVar
 from ...authoring.log import Log
 
 Scope = Literal["", "graph", "viewer", "animation"]
-"""Where a shortcut works: everywhere, or while the mouse is over that panel."""
+"""Where a shortcut works: everywhere (""), or while the mouse is over a panel."""
 
 C = TypeVar("C", contravariant=True)
 """What an action works on: the frozen context of its panel."""
 
 
 def always(context: object) -> bool:
-    """For what can be done at any time."""
+    """True: for actions that are always enabled."""
     return True
 
 
@@ -40,9 +40,9 @@ class Action(Generic[C]):
     contexts: frozenset[str] = frozenset()
     doc: str = ""
     separated: bool = False
-    """True draws a line above it in menus."""
+    """True draws a line above the action in menus."""
     repeats: bool = False
-    """True does it again and again while its keys are held."""
+    """True repeats the action while its keys are held."""
 
 
 ListedAction = Action[Never]
@@ -81,7 +81,7 @@ class Actions:
             self._by_id[action.id] = action, bind_action(action, context)
 
     def shortcut(self, id: str) -> str:
-        """The shortcut that is in force."""
+        """The current shortcut of an action."""
         return self.overrides().get(id, self[id].shortcut)
 
     def in_menu(self, name: str) -> Iterator[ListedAction]:
@@ -89,21 +89,21 @@ class Actions:
         return (action for action in self.all if name in action.contexts)
 
     def is_enabled(self, action: ListedAction) -> bool:
-        """True if it can be done now."""
+        """True if an action is enabled now."""
         return self._by_id[action.id][1].is_enabled()
 
     def is_checked(self, action: ListedAction) -> bool:
-        """True if it is a switch that is on."""
+        """True if an action is a switch that is on."""
         return self._by_id[action.id][1].is_checked()
 
     def run(self, id: str) -> None:
-        """Do it, if it can be done now."""
+        """Run an action, if it is enabled."""
         bound = self._by_id[id][1]
         if bound.is_enabled():
             self._log.attempt(bound.run)
 
     def conflicts(self, id: str, shortcut: str) -> tuple[ListedAction, ...]:
-        """Other actions that this shortcut would set off too."""
+        """Other actions with the same shortcut."""
         scope = self[id].scope
         return tuple(
             action
@@ -116,7 +116,7 @@ class Actions:
 
 
 def bind_action(action: Action[C], context: C) -> BoundAction:
-    """An action together with what it works on."""
+    """Bind an action to its context."""
     checked = action.checked
     return BoundAction(
         lambda: action.run(context),

@@ -23,5 +23,5 @@ class ColorContext(Protocol):
 
 
 def find_color_manager(context: ColorContext) -> ColorManager:
-    """How colors are managed in the document; by the built-in config where its own cannot be read."""
+    """The color manager of the document; the built-in one if its config cannot be read."""
     return context.coloring.resolve(color_settings(context.session.root))

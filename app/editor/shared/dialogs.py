@@ -1,4 +1,4 @@
-"""What the window asks the user: for a file, or a question; and which dialogs are open. Panels draw it."""
+"""The open dialogs, the file that is asked for, and the open question. Panels draw them."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from typing import Literal
 from halation.nodes import Value
 
 Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
-"""What kind of file is wanted: it decides what is listed and which folder is remembered."""
+"""The kind of file: it decides which files are listed and which folder is remembered."""
 
 
 @dataclass(frozen=True)
 class Browse:
-    """A file is wanted; `then` gets it. `saving` asks for a new name, starting from `name`."""
+    """A request for a file, which `then` gets. `saving` asks for a new name, starting from `name`."""
 
     title: str
     purpose: Purpose
@@ -25,7 +25,7 @@ class Browse:
 
 
 def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
-    """The question for a file of the kind that a value takes."""
+    """A request for a file of the kind that a value takes."""
     match declaration.holds:
         case "table":
             return Browse("Choose a Color Table", "table", then)
@@ -46,7 +46,7 @@ class Question:
 
 @dataclass
 class Dialogs:
-    """What is open on top of the panels; at most one of each."""
+    """What is open on top of the panels: at most one dialog of each kind."""
 
     browse: Browse | None = None
     question: Question | None = None
@@ -58,11 +58,11 @@ class Dialogs:
         self.open ^= {name}
 
     def close(self) -> None:
-        """Nothing is asked any more."""
+        """Close everything."""
         self.browse = self.question = None
         self.open.clear()
 
     @property
     def any(self) -> bool:
-        """True if something asks for an answer."""
+        """True if a dialog, a question or a request for a file is open."""
         return self.browse is not None or self.question is not None or bool(self.open)

@@ -1,4 +1,4 @@
-"""What can be added to a graph, and how it is found by a few letters."""
+"""The catalog of what can be added to a graph, and the search in it."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ _MODE_ALIASES: Mapping[str, tuple[str, ...]] = MappingProxyType(
 
 @dataclass(frozen=True)
 class CatalogEntry:
-    """Something to add. `id` is a node type, a path (of presets) or a word such as `frame`, by category."""
+    """One entry of the catalog. `id` is a node type, a path (of presets) or a word such as `frame`, by category."""
 
     id: str
     title: str
     category: str
     doc: str = ""
     kind: str = ""
-    """The category whose color it has, if not its own."""
+    """The category that gives the color, if not its own."""
     aliases: tuple[str, ...] = ()
     """What other programs call it."""
     values: tuple[tuple[str, Plain], ...] = ()
@@ -75,7 +75,7 @@ class CatalogEntry:
 
 
 def spell_out(name: str) -> str:
-    """A name with spaces, as people read it."""
+    """An id with spaces in place of underscores, for the user."""
     return name.replace("_", " ")
 
 
@@ -108,13 +108,13 @@ def mode_entries(types: Mapping[str, type[Node]]) -> tuple[CatalogEntry, ...]:
 
 
 def code_entries() -> tuple[CatalogEntry, ...]:
-    """What is made by writing it."""
+    """Nodes of new code."""
     doc = "GLSL of your own: the function's signature declares sockets and values."
     return (CatalogEntry(CODE, "code", make_starter_node().category, doc),)
 
 
 def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
-    """Shaders of this machine, under what they say they are."""
+    """ISF shaders of this machine, by the categories that they state."""
     return tuple(
         CatalogEntry(str(file.path), spell_out(file.path.stem), f"ISF {file.category.lower()}", file.doc, SHADER)
         for file in files
@@ -122,7 +122,7 @@ def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
 
 
 def preset_entries(files: Iterable[Path]) -> tuple[CatalogEntry, ...]:
-    """The graphs that come with the program."""
+    """The presets."""
     return tuple(
         CatalogEntry(str(path), spell_out(path.stem), GROUP, "A preset: a ready graph, added as a group.")
         for path in files
@@ -130,7 +130,7 @@ def preset_entries(files: Iterable[Path]) -> tuple[CatalogEntry, ...]:
 
 
 def graph_entries() -> tuple[CatalogEntry, ...]:
-    """What is no node."""
+    """Inputs, outputs, frames and comments."""
     ends = [
         CatalogEntry(f"{side}:{kind}", f"{kind} {side}".lower(), GRAPH, doc)
         for side, doc in (
@@ -155,7 +155,7 @@ class Section:
 
 
 def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequence[str] = ()) -> tuple[Section, ...]:
-    """What the list shows: the best matches of `query`, or without one the recent ones and then all by category."""
+    """The sections of the list: the best matches of `query`; without one, the recent entries, then all by category."""
     if query.strip():
         return (Section("", rank_entries(entries, query)),)
     entries = [entry for entry in entries if not entry.values]
@@ -169,7 +169,7 @@ def arrange_entries(entries: Sequence[CatalogEntry], query: str, recent: Sequenc
 
 
 def keep_fitting(entries: Collection[CatalogEntry], fitting: Collection[str]) -> tuple[CatalogEntry, ...]:
-    """Those that a link fits."""
+    """The entries that fit a link."""
     fitting_ids = set(fitting)
     return tuple(entry for entry in entries if entry.id in fitting_ids)
 

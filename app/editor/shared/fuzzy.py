@@ -1,4 +1,4 @@
-"""Finding by a few letters: every search of the editor ranks with the same function."""
+"""Fuzzy search: every search of the editor ranks with the same function."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _LETTER, _WORD_START, _FIRST, _NEXT, _GAP, _SHORT = 1.0, 8.0, 2.0, 8.0, 0.3, 0.0
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """A candidate that holds the query: where it is in the list, how good it is, which letters matched."""
+    """A matching candidate: its index in the list, its score, and the letters that matched."""
 
     index: int
     score: float

@@ -1,4 +1,4 @@
-"""What one panel needs of another: the few attributes that it uses, so that neither imports the other."""
+"""Protocols: the few attributes that one panel uses of another, so that neither imports the other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the inspector knows of the renders that nodes read. Nothing here draws."""
+"""Facts about the renders that nodes read, for panels. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -30,17 +30,17 @@ class RenderContext(Protocol):
 
 
 FOUND = "found"
-"""The choice that leaves a convention to what the file shows."""
+"""The choice that detects a convention from the file."""
 
 
 def render_path(item: object) -> str:
-    """The value of a node that is the path of a render, "" for nodes that read none."""
+    """The name of the value with the path of a render, "" for nodes that read none."""
     values = item.values.values() if isinstance(item, Node) else ()
     return next((value.name for value in values if value.type == "path" and value.holds == "render"), "")
 
 
 def render_file(graph: Graph, id: str) -> Path | None:
-    """The render that a node reads, if it names one."""
+    """The file of the render that a node reads, if any."""
     item = graph.nodes.get(id)
     name = render_path(item)
     path = str(getattr(item, name)) if name else ""
@@ -48,14 +48,14 @@ def render_file(graph: Graph, id: str) -> Path | None:
 
 
 def overview_of(context: RenderContext, id: str) -> RenderOverview | str | None:
-    """What the render of a node holds, a sentence if it cannot be read or none is named, None while it is read."""
+    """The contents of a node's render; a sentence if it is missing or unreadable, None while it is being read."""
     graph = context.session.graph
     file = render_file(graph, id)
     return "no file" if file is None else context.renders.overview(file, find_named_layers(graph.nodes[id]))
 
 
 def find_named_layers(item: object) -> Mapping[str, str]:
-    """The layers that a node names, by the roles that they are to have."""
+    """The layers that the user chose for a node, by role."""
     if not isinstance(item, Node):
         return {}
     values = item.values.values()
@@ -63,26 +63,26 @@ def find_named_layers(item: object) -> Mapping[str, str]:
 
 
 def use_of(context: RenderContext, port: Port, declaration: Value) -> RoleUse | None:
-    """What is known of the layer that a value is about."""
+    """The use of the layer that a value chooses."""
     overview = overview_of(context, port.node) if declaration.role else None
     return overview.uses.get(Role(declaration.role)) if isinstance(overview, RenderOverview) else None
 
 
 def first_words(use: RoleUse | None) -> str:
-    """What a field says that leaves the layer to what the file shows."""
+    """The text of a layer field that is left to detection."""
     if use is None:
         return FOUND
     return f"{FOUND}: {use.found_layer}" if use.found_layer else "choose a layer" if use.is_open else "not found"
 
 
 def convention_words(declaration: Value, use: RoleUse | None) -> tuple[str, ...]:
-    """The choices of a convention; the first says what was found."""
+    """The choices of a convention; the first one names the detected convention."""
     rule = use.rule if use else None
     return (f"{FOUND}: {rule.words}" if rule else FOUND, *declaration.choices[1:])
 
 
 def rule_words(rule: Convention, *, kind_shown: bool) -> str:
-    """How a convention is known; `told` that the kind is shown elsewhere."""
+    """How a convention was detected; `kind_shown` leaves out the convention, which is shown elsewhere."""
     return (
         f"{describe_certainty(rule)}: {rule.reason}"
         if kind_shown

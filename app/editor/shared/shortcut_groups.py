@@ -1,4 +1,4 @@
-"""Shortcuts by what they are for."""
+"""Shortcuts grouped by menu, for the sheet of shortcuts and for Preferences."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def group_actions(actions: Actions, every: bool = False) -> Iterator[tuple[str, 
 
 
 def condense_rows(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
-    """Keys and labels, where a row that only counts up is one line: `1 - 9`, `View 1 - 9`."""
+    """Keys and labels, with rows that only count up merged: `1 - 9`, `View 1 - 9`."""
     rows: list[tuple[str, str]] = []
     for keys, label in lines:
         before = (re.sub(r"\d", "#", keys), re.sub(r"\d", "#", label))

@@ -1,4 +1,4 @@
-"""What panels and actions ask the window to do; it does so before the next frame."""
+"""Requests of panels and actions to the window, which serves them before the next frame."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class PanelTitle(StrEnum):
-    """Titles of the panels that can be docked, as they stand on their tabs."""
+    """The titles of the panels, as on their tabs."""
 
     VIEWER = "Viewer"
     GRAPH = "Graph"
@@ -23,7 +23,7 @@ class PanelTitle(StrEnum):
 
 @dataclass
 class WindowCommands:
-    """What the window is asked to do. Whoever serves a command takes it back."""
+    """The open requests to the window, which removes each when it is served."""
 
     closing: bool = False
     """True lets the window close."""
@@ -37,7 +37,7 @@ class WindowCommands:
         self.panels.append(title)
 
     def reset_layout(self) -> None:
-        """Show all panels where they are at first."""
+        """Reset all panels to their first places."""
         self.resets_layout = True
 
     def save_screenshot(self) -> None:

@@ -1,4 +1,4 @@
-"""Where to begin: presets, recent files, unsaved work."""
+"""The start screen: presets, recent files, unsaved work."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ HINTS = (
 
 
 class StartScreen:
-    """Shown when nothing is open, and from the File menu."""
+    """The start screen, which opens at the start and from the File menu."""
 
     def __init__(self, context: StartContext) -> None:
         self._context = context
@@ -48,11 +48,11 @@ class StartScreen:
         self._pictured = {path: picture(path).is_file() for path in preset_paths()}
 
     def close(self) -> None:
-        """Give pictures back."""
+        """Release textures."""
         self._textures.clear()
 
     def draw(self) -> None:
-        """Draw over everything, if it is open."""
+        """Draw the screen, if it is open."""
         if "start" not in self._context.dialogs.open:
             self._recovered = None
             return
@@ -79,7 +79,7 @@ class StartScreen:
             self._context.dialogs.open.discard("start")
 
     def _run_shortcuts(self) -> None:
-        """The shortcuts that make sense here."""
+        """Run the shortcuts that work on the start screen."""
         for id in ("file.new", "file.open", "file.quit", "help.shortcuts"):
             keys = self._context.actions.shortcut(id)
             if keys and imgui.is_key_chord_pressed(chord(keys)):

@@ -1,4 +1,4 @@
-"""Fonts: one for words, one for numbers, and icons within both."""
+"""The fonts of the window: for words, for numbers, and icons in both."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .style import EM
 
 @dataclass(frozen=True)
 class Fonts:
-    """What the window has loaded; any size can be asked of them."""
+    """The loaded fonts, in any size."""
 
     text: imgui.ImFont
     bold: imgui.ImFont

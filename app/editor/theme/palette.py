@@ -1,4 +1,4 @@
-"""Colors by their use. All are display-referred sRGB."""
+"""The color themes. All colors are display-referred sRGB."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ...media.comparison.category_colors import DARK_CATEGORIES, LIGHT_CATEGORIE
 
 @dataclass(frozen=True)
 class Palette:
-    """One theme."""
+    """The colors of one theme, by their use."""
 
     name: str
     window: RGB
     """Behind panels."""
     panel: RGB
     field: RGB
-    """Where something can be typed or dragged."""
+    """Behind fields."""
     fill: RGB
     """The part of a slider up to its value."""
     raised: RGB
@@ -31,7 +31,7 @@ class Palette:
     dim: RGB
     """Text of less weight: hints, units, disabled."""
     accent: RGB
-    """What is selected or active."""
+    """Selected or active things."""
     on_accent: RGB
     good: RGB
     warning: RGB
@@ -41,10 +41,10 @@ class Palette:
     node: RGB
     shadow: RGB
     surround: RGB
-    """Around the picture in the viewer: neutral, so that it does not tint what is judged."""
+    """Around the picture in the viewer: neutral, so that it does not change how colors look."""
     kinds: Mapping[Kind, RGB]
     categories: Mapping[str, RGB]
-    """The header of a node by its menu; "" for menus that have none of their own."""
+    """The header color of nodes by menu; "" for other menus."""
 
     def category(self, name: str) -> RGB:
         """The header color of a node of that menu."""

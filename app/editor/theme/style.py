@@ -1,4 +1,4 @@
-"""Dear ImGui's style, made from a palette."""
+"""Sets Dear ImGui's style from a palette."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ EM = 16.0
 
 
 def u32(color: RGB, alpha: float = 1.0) -> int:
-    """A color as draw lists want it."""
+    """A color as draw lists take it."""
     red, green, blue = (int(min(max(part, 0.0), 1.0) * 255 + 0.5) for part in color)
     return int(alpha * 255 + 0.5) << 24 | blue << 16 | green << 8 | red
 
 
 def vec4(color: RGB, alpha: float = 1.0) -> ImVec4:
-    """A color as widgets want it."""
+    """A color as widgets take it."""
     return ImVec4(*color, alpha)
 
 
 def mix(first: RGB, second: RGB, amount: float) -> RGB:
-    """Part way from one color to another."""
+    """A color between two colors."""
     red, green, blue = (a + (b - a) * amount for a, b in zip(first, second, strict=True))
     return red, green, blue
 
@@ -67,13 +67,13 @@ def apply(palette: Palette, scale: float) -> None:
 
 
 def measure_style() -> tuple[float, ...]:
-    """Sizes of the live style by which a change of its scale can be seen."""
+    """Sizes of the current style that show whether its scale has changed."""
     live = imgui.get_style()
     return live.frame_padding.x, live.window_padding.x, live.font_scale_main, live.font_scale_dpi
 
 
 def _assign(style: imgui.Style) -> None:
-    """Copy into the live style: there is only one, and it cannot be replaced."""
+    """Copy a style into the current one, which cannot be replaced."""
     live = imgui.get_style()
     for name in dir(style):
         if name.startswith("_") or callable(getattr(style, name)) or name in ("colors", "main_scale"):

@@ -1,4 +1,4 @@
-"""Actions on time: play, step, jump."""
+"""Actions of the timeline: play, step, jump."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def play(context: TimelineContext) -> None:
 
 
 def _step(by: int) -> Callable[[TimelineContext], object]:
-    """One frame on; within what is played, the other end comes after the last one."""
+    """Go one frame forwards or back; at the end of a played loop, go to its other end."""
 
     def step(context: TimelineContext) -> None:
         context.timeline.stop()

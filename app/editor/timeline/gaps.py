@@ -1,4 +1,4 @@
-"""Frames that sequences lack, looked for now and then."""
+"""Finds the missing frames of sequences, from time to time."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from ...media.sequences import find_sequence
 from ...resources.sandbox import Sandbox
 
 EVERY = 1.0
-"""Seconds between two looks at most, while the graph changes."""
+"""The least seconds between two checks while the graph changes: a choice, for listing folders takes time."""
 
 STALE = 5.0
-"""Seconds after which files are looked at again in any case."""
+"""Seconds after which files are checked again in any case: a choice."""
 
 Gaps = tuple[tuple[int, int], ...]
-"""The first and last frame of each."""
+"""The first and last frame of each gap."""
 
 
 @dataclass
 class MissingFrames:
-    """What is known of the gaps of one document."""
+    """The gaps in the sequences of one document; cached."""
 
     gaps: Gaps = ()
     _of: tuple[object, ...] = ()
     _at: float = field(default=float("-inf"))
 
     def update(self, session: Session, time_now: float) -> Gaps:
-        """The frames between the first and the last one of a sequence that have no file."""
+        """The gaps: frames between the first and the last file of a sequence that have no file."""
         of = session.root, dict(session.bindings)
         if time_now - self._at > STALE or (time_now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
             self._at, self._of = time_now, of
@@ -43,7 +43,7 @@ class MissingFrames:
 
 
 def find_gaps(graph: Graph, bindings: Mapping[str, object], sandbox: Sandbox) -> Gaps:
-    """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
+    """The gaps of every sequence that a graph reads; unreadable ones have none."""
     paths = [split_layer(str(file))[0] for file in bindings.values() if isinstance(file, str | Path)]
     with suppress(HalationError):
         paths += [

@@ -1,4 +1,4 @@
-"""Which frame is due while frames are played, and how well the machine keeps up. Nothing here draws or computes."""
+"""Playback: which frame is due, and how well the machine keeps up. Nothing here draws or renders."""
 
 from __future__ import annotations
 
@@ -11,30 +11,30 @@ Loop = Literal["loop", "once", "ping-pong"]
 LOOPS: tuple[Loop, ...] = ("loop", "once", "ping-pong")
 
 WINDOW = 1.5
-"""Seconds over which the rate is measured."""
+"""Seconds over which the rate is measured: long enough for a steady number."""
 
 FURTHEST = 12
-"""Frames that are skipped at most to find one that can be ready in time."""
+"""The most frames that are skipped to find one that can be ready in time: half a second at 24 fps."""
 
 
 @dataclass(frozen=True)
 class Course:
-    """The frames that are played, in which way, and at which rate."""
+    """The frames to play, how they loop, and the frame rate."""
 
     first: int
     last: int
     rate: float = 24.0
     loop: Loop = "loop"
     every: bool = False
-    """True shows every frame, however long that takes."""
+    """True shows every frame, even if playback is slower."""
 
     @property
     def length(self) -> int:
-        """How many frames there are."""
+        """The number of frames."""
         return self.last - self.first + 1
 
     def at(self, place: int) -> int:
-        """The frame at a place of the course, which may be far beyond its end."""
+        """The frame at a step of the course; steps go on beyond the end."""
         if self.loop == "once" or self.length == 1:
             return min(max(self.first + place, self.first), self.last)
         if self.loop == "loop":
@@ -43,39 +43,39 @@ class Course:
         return self.first + min(way, 2 * self.length - 2 - way)
 
     def place(self, frame: int) -> int:
-        """Where a frame comes first; one outside counts as the first one."""
+        """The first step that shows a frame; 0 for a frame outside of the course."""
         return frame - self.first if self.first <= frame <= self.last else 0
 
     def ends(self, place: int) -> bool:
-        """True if nothing comes after."""
+        """True if the course is over at a step."""
         return self.loop == "once" and place >= self.length - 1
 
 
 @dataclass
 class Playback:
-    """Playing, or not. Seconds come from outside, so that time can be made up."""
+    """The state of playback. Times are passed in, so that tests need no clock."""
 
     course: Course | None = None
     dropped: int = 0
-    """Frames since the beginning that were not shown because others were late."""
+    """The frames that were dropped since the start, because others were late."""
     _place: int = 0
     _origin: tuple[float, int] = (0.0, 0)
-    """A second, and the place that was due then."""
+    """A time in seconds, and the step that was due then."""
     _shown: deque[float] = field(default_factory=deque[float])
     _seen: int | None = None
 
     @property
     def playing(self) -> bool:
-        """True while frames go on by themselves."""
+        """True while playing."""
         return self.course is not None
 
     @property
     def frame(self) -> int:
-        """The frame that is shown, or is to be shown as soon as it is ready."""
+        """The frame that is shown, or will be as soon as it is ready."""
         return self.course.at(self._place) if self.course else 0
 
     def start(self, course: Course, frame: int, time_now: float) -> None:
-        """Play from a frame on; at the end of what is played once, from its beginning."""
+        """Start to play at a frame; at the last frame of a course that plays once, from its start."""
         self.course, self.dropped = course, 0
         self._shown.clear()
         self._seen = None
@@ -83,11 +83,11 @@ class Playback:
         self._go(0 if course.ends(place) else place, time_now)
 
     def stop(self) -> None:
-        """Stay where it is."""
+        """Stop at the current frame."""
         self.course = None
 
     def keep(self, course: Course, frame: int, time_now: float) -> None:
-        """Go on with another course, or from another frame, if either has changed."""
+        """Continue with a changed course, or from another frame."""
         if self.course is None:
             return
         if course != self.course or frame != self.frame:
@@ -95,7 +95,7 @@ class Playback:
             self._go(course.place(frame), time_now)
 
     def tick(self, time_now: float, busy: bool, under_way: int | None = None) -> int | None:
-        """The frame to show now, None if playing has come to its end.
+        """The frame to show now, None if playback has ended.
 
         A frame that is being computed is waited for: for now if `busy`, else `under_way` for later.
         """
@@ -126,7 +126,7 @@ class Playback:
         return self.frame
 
     def note(self, time_now: float) -> None:
-        """The frame has been shown."""
+        """Note that a frame was shown."""
         if self._seen != self._place:
             self._seen = self._place
             self._shown.append(time_now)
@@ -134,7 +134,7 @@ class Playback:
             self._shown.popleft()
 
     def ahead(self, seconds: float) -> int | None:
-        """The frame that can be ready when it is due, if one takes so many seconds; None if none is to come."""
+        """The next frame that can be ready when it is due, if one takes `seconds`; None if there is none."""
         course = self.course
         if course is None or course.ends(self._place):
             return None
@@ -143,7 +143,7 @@ class Playback:
 
     @property
     def rate(self) -> float:
-        """Frames per second that were really shown, as measured last."""
+        """The measured frames per second."""
         if len(self._shown) < 2:
             return 0.0
         took = self._shown[-1] - self._shown[0]
@@ -151,7 +151,7 @@ class Playback:
 
     @property
     def words(self) -> str:
-        """How well it goes: `12.4 of 24 fps, 31 dropped`."""
+        """The speed of playback as text: `12.4 of 24 fps, 31 dropped`."""
         if self.course is None:
             return ""
         text = f"{self.rate:.1f} of {self.course.rate:g} fps"

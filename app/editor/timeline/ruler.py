@@ -1,4 +1,4 @@
-"""The ruler: frames, keys, what is ready, what is missing, and the mouse on it."""
+"""The ruler of the timeline: frames, keys, cached and missing frames, and its mouse input."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Hold = Literal["", "now", "in", "out", "pan"]
 
 NEAR = 7.0
-"""Pixels from a handle within which the mouse takes it."""
+"""Pixels from a handle within which the mouse grabs it."""
 
 KEY = 4.2
 _BUTTONS = (
@@ -33,7 +33,7 @@ LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.M
 
 @dataclass
 class Ruler:
-    """Scrubbing, the part that is played, and the part that is seen."""
+    """Draws the ruler; the mouse scrubs, sets the playback range, pans and zooms."""
 
     context: TimelineContext
     missing: MissingFrames = field(default_factory=MissingFrames)
@@ -41,7 +41,7 @@ class Ruler:
     _played: bool = False
 
     def draw(self, rect: Rect) -> bool:
-        """Draw into a rectangle; True if its menu is asked for."""
+        """Draw into a rectangle; True if the user opens the menu."""
         session, timeline = self.context.session, self.context.timeline
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
@@ -92,7 +92,7 @@ class Ruler:
             timeline.set_part(session, low, high)
 
     def _edge(self, plane: Plane, x: float) -> None:
-        """Beyond the border of a part that is seen, go on to what lies there."""
+        """Scroll while the mouse is dragged beyond the border of a zoomed ruler."""
         left, _, right, _ = plane.rect
         if self.context.timeline.view is not None and not left <= x <= right:
             over = min(x - left, 0.0) + max(x - right, 0.0)
@@ -124,7 +124,7 @@ class Ruler:
         draw.pop_clip_rect()
 
     def _frames(self, plane: Plane) -> None:
-        """Lines and numbers."""
+        """Draw lines and frame numbers."""
         draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         _, top, _, bottom = plane.rect
         line, faint = u32(palette.dim, 0.5), u32(palette.dim, 0.22)
@@ -141,7 +141,7 @@ class Ruler:
                     draw.add_text((round(x - wide * 0.5), top + 3.0 * scale), u32(palette.dim), tick.label)
 
     def _ready(self, plane: Plane) -> None:
-        """What can be shown at once is green, what has no file is red."""
+        """Draw cached frames in green, and frames without a file in red."""
         draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         bottom = plane.rect[3]
         for frames, color in (
@@ -159,7 +159,7 @@ def _plane(context: TimelineContext, rect: Rect) -> Plane:
 
 
 def list_runs(frames: tuple[int, ...]) -> list[tuple[int, int]]:
-    """Frames in a row as their first and last."""
+    """Runs of consecutive frames, as their first and last frame."""
     runs: list[tuple[int, int]] = []
     for frame in frames:
         if runs and runs[-1][1] == frame - 1:
@@ -170,7 +170,7 @@ def list_runs(frames: tuple[int, ...]) -> list[tuple[int, int]]:
 
 
 def _keys(context: TimelineContext, plane: Plane) -> None:
-    """Keys of the selected nodes, else of all, as diamonds."""
+    """Draw the keys of the selected nodes, else of all, as diamonds."""
     draw, palette, session, size = imgui.get_window_draw_list(), context.palette, context.session, KEY * ui_scale()
     y = plane.rect[3] - 8.0 * ui_scale()
     edge = u32(palette.window, 0.9)
@@ -183,7 +183,7 @@ def _keys(context: TimelineContext, plane: Plane) -> None:
 
 
 def _handle(context: TimelineContext, plane: Plane, x: float, y: float) -> Hold:
-    """The handle under the mouse: only the upper half of the ruler has any."""
+    """The handle under the mouse; handles are in the upper half of the ruler."""
     if y > plane.rect[1] + (plane.rect[3] - plane.rect[1]) * 0.45:
         return ""
     low, high = context.timeline.span(context.session)
@@ -193,7 +193,7 @@ def _handle(context: TimelineContext, plane: Plane, x: float, y: float) -> Hold:
 
 
 def _handles(context: TimelineContext, plane: Plane, low: int, high: int) -> None:
-    """Where what is played begins and ends."""
+    """Draw the in and out points of playback."""
     draw, palette, scale = imgui.get_window_draw_list(), context.palette, ui_scale()
     top, size = plane.rect[1], 7.0 * scale
     lit = context.timeline.part is not None
@@ -204,7 +204,7 @@ def _handles(context: TimelineContext, plane: Plane, low: int, high: int) -> Non
 
 
 def _now(context: TimelineContext, plane: Plane, held: bool) -> None:
-    """The frame that is looked at."""
+    """Draw the current frame."""
     draw, palette, scale = imgui.get_window_draw_list(), context.palette, ui_scale()
     left, top, right, bottom = plane.rect
     frame = context.session.time.frame
@@ -225,7 +225,7 @@ def _now(context: TimelineContext, plane: Plane, held: bool) -> None:
 
 
 def _tell(context: TimelineContext, plane: Plane) -> None:
-    """What is at the frame under the mouse."""
+    """Draw the tooltip of the frame under the mouse."""
     frame = math.floor(plane.frame(imgui.get_mouse_pos().x) + 0.5)
     session = context.session
     seconds = (frame - session.time.frames[0]) / session.root.settings.rate

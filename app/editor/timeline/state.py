@@ -1,4 +1,4 @@
-"""What the timeline remembers of one window. Nothing here changes the document."""
+"""The state of the timeline. Nothing here changes the document."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
 
 LEAST_VIEW = 4.0
-"""Frames that are seen at least."""
+"""The least number of visible frames."""
 
 
 @dataclass
 class TimelineState:
-    """Playing, the part that is played, and the part that is seen."""
+    """Playback, the playback range, and the visible range."""
 
     playback: Playback = field(default_factory=Playback)
     loop: Loop = "loop"
@@ -25,13 +25,13 @@ class TimelineState:
     part: tuple[int, int] | None = None
     """The frames that are played; None for all."""
     view: tuple[float, float] | None = None
-    """The frames that are seen, at the borders of the ruler; None for all."""
+    """The frames at the borders of the ruler; None for all."""
     scrubbing: bool = False
     hovered: bool = False
     tapped: bool = False
-    """True while Space is held and nothing else was done meanwhile."""
+    """True while Space is held and nothing else was pressed."""
     report: str = ""
-    """How playing went last."""
+    """The speed of the last playback, as text."""
 
     @property
     def playing(self) -> bool:
@@ -39,7 +39,7 @@ class TimelineState:
         return self.playback.playing
 
     def span(self, session: Session) -> tuple[int, int]:
-        """The frames that are played: the chosen part as far as it lies in the range."""
+        """The first and last frame that are played: the chosen part within the range."""
         first, last = session.time.frames
         if self.part is None:
             return first, last
@@ -47,18 +47,18 @@ class TimelineState:
         return (low, high) if low <= high else (first, last)
 
     def set_part(self, session: Session, low: int, high: int) -> None:
-        """Play only some frames; all of them is no part."""
+        """Set the playback range; all frames clear it."""
         first, last = session.time.frames
         low, high = min(max(low, first), last), max(min(high, last), first)
         self.part = None if (min(low, high), max(low, high)) == (first, last) else (min(low, high), max(low, high))
 
     def course(self, session: Session, every: bool) -> Course:
-        """What is played as things are; a history cannot leave frames out."""
+        """The course to play; graphs with a history cannot drop frames."""
         first, last = self.span(session)
         return Course(first, last, session.root.settings.rate, self.loop, self.every or every)
 
     def play(self, session: Session, time_now: float, every: bool = False) -> None:
-        """Play from this second on, or stop."""
+        """Start playback, or stop it."""
         if self.playback.playing:
             self.stop()
         else:
@@ -66,12 +66,12 @@ class TimelineState:
             session.time.seek(self.playback.frame)
 
     def stop(self) -> None:
-        """Stay where it is; how it went is told until something else is done."""
+        """Stop at the current frame, and report the speed."""
         self.report = self.playback.words
         self.playback.stop()
 
     def next_loop(self) -> None:
-        """Another way to go on at the end."""
+        """Switch to the next loop mode."""
         self.loop = LOOPS[(LOOPS.index(self.loop) + 1) % len(LOOPS)]
 
     def visible_range(self, session: Session) -> tuple[float, float]:
@@ -82,7 +82,7 @@ class TimelineState:
         return self.view
 
     def zoom(self, session: Session, frame: float, factor: float) -> None:
-        """See so many times as much detail, with one frame staying where it is; all of it is what is seen at most."""
+        """Zoom about a frame; at most the whole range is visible."""
         low, high = self.visible_range(session)
         first, last = session.time.frames
         widest = max(last - first + 1.0, LEAST_VIEW) * 1.5
@@ -93,7 +93,7 @@ class TimelineState:
             self.view = None
 
     def pan(self, session: Session, frames: float) -> None:
-        """See what lies so many frames later; the range never leaves the ruler altogether."""
+        """Scroll by some frames; a part of the range always stays visible."""
         if self.view is None:
             return
         low, high = self.view

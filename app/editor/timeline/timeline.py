@@ -1,4 +1,4 @@
-"""The bar: transport, ruler, range and rate in one row."""
+"""The timeline: transport buttons, ruler, range and rate in one row."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .context import TimelineContext
 
 HEIGHT = 40.0
-"""Of the bar, at UI scale 1."""
+"""The height of the bar, at UI scale 1."""
 
 _LOOPS: dict[Loop, str] = {
     "loop": icons.ICON_FA_REPEAT,
@@ -31,11 +31,11 @@ _LOOPS: dict[Loop, str] = {
     "ping-pong": icons.ICON_FA_RIGHT_LEFT,
 }
 _ROOMY, _NARROW = 1050.0, 760.0
-"""Widths below which words, then the fields of the range, are left out."""
+"""Widths below which the text, then the fields of the range, are left out."""
 
 
 class Timeline:
-    """Frames, and playing them."""
+    """The timeline at the bottom of the window."""
 
     def __init__(self, context: TimelineContext) -> None:
         self._context = context
@@ -107,7 +107,7 @@ class Timeline:
             self._context.session.time.seek(edit.value)
 
     def _range(self, scale: float) -> None:
-        """The range and the rate, which are the document's."""
+        """Draw the frame range and the rate of the document."""
         session = self._context.session
         first, last = session.time.frames
         stated = session.root.settings.frames is not None
@@ -138,7 +138,7 @@ class Timeline:
         return edit
 
     def _words(self, rect: tuple[float, float, float, float]) -> None:
-        """How playing goes, else what is computed, else what is ready."""
+        """Draw the speed of playback, else what is computed, else how many frames are cached."""
         timeline, preview, palette = self._context.timeline, self._context.preview, self._context.palette
         text, color = timeline.playback.words, palette.text
         lead = preview.lead

@@ -1,4 +1,4 @@
-"""Buttons, and what runs actions."""
+"""Buttons, and widgets that run actions."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def quiet_button(
 
 
 def width_of_buttons(*labels: str, gap: float | None = None) -> float:
-    """Width of quiet buttons of these labels side by side."""
+    """The width of quiet buttons with these labels side by side."""
     style = imgui.get_style()
     between = style.item_spacing.x if gap is None else gap
     widths = (
@@ -62,7 +62,7 @@ def width_of_buttons(*labels: str, gap: float | None = None) -> float:
 
 
 def align_right(*labels: str) -> None:
-    """Move to where buttons of these labels end at the right border: on the same line, if they fit there."""
+    """Move the cursor so that buttons with these labels end at the right border, on the same line if they fit."""
     width = width_of_buttons(*labels)
     imgui.same_line()
     if imgui.get_content_region_avail().x < width:
@@ -126,7 +126,7 @@ def dropdown(
 
 
 def tip_of(surface: ActionSurface, action: ListedAction) -> str:
-    """What the tooltip of an action says."""
+    """The text of an action's tooltip."""
     shortcut = surface.actions.shortcut(action.id)
     title = action.label.removesuffix("...")
     title = f"{title} ({display_shortcut(shortcut)})" if shortcut else title
@@ -144,7 +144,7 @@ def tool(surface: ActionSurface, icon: str, id: str) -> None:
 
 
 def entry(surface: ActionSurface, action: ListedAction, icon: str = "") -> None:
-    """An action as an entry of the menu that is open."""
+    """Draw an action as an entry of the open menu."""
     checked = surface.actions.is_checked(action)
     label = f"{icon}  {action.label}" if icon else action.label
     shortcut = display_shortcut(surface.actions.shortcut(action.id))
@@ -156,7 +156,7 @@ def entry(surface: ActionSurface, action: ListedAction, icon: str = "") -> None:
 
 
 def entries(surface: ActionSurface, menu: str) -> None:
-    """The actions of a menu of the menu bar, as entries of the menu that is open."""
+    """Draw the actions of a menu of the menu bar as entries of the open menu."""
     for action in surface.actions.all:
         if action.menu == menu:
             entry(surface, action)

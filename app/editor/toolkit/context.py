@@ -1,4 +1,4 @@
-"""What every panel has, whatever else it uses."""
+"""The base of panel contexts: what every panel uses."""
 
 from __future__ import annotations
 

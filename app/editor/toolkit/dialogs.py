@@ -1,4 +1,4 @@
-"""Windows over everything."""
+"""Modal dialogs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FIXED = (
 
 
 def backdrop(surface: WidgetSurface, name: str, opacity: float = 0.45) -> bool:
-    """Cover everything below a dialog, so that nothing else can be clicked; True if it was clicked itself."""
+    """Cover everything below a dialog, so that nothing else can be clicked; True if the cover was clicked."""
     view = imgui.get_main_viewport()
     imgui.set_next_window_pos(view.pos)
     imgui.set_next_window_size(view.size)
@@ -45,7 +45,7 @@ def dialog(
     *,
     top: float = 0.5,
 ) -> Iterator[None]:
-    """A window over everything; `size` in pixels at scale 1, a height of 0 is what it needs.
+    """A modal dialog; `size` in pixels at scale 1, a height of 0 fits its content.
 
     It is centered, `top` says how far down, and never larger than the main window.
     """

@@ -1,4 +1,4 @@
-"""Fields that hold no value of the graph."""
+"""Fields for settings that are no values of a graph."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def keep_typing() -> None:
 def background(
     palette: Palette, rect: Rect, *, hovered: bool = False, active: bool = False, fault: bool = False
 ) -> None:
-    """The box of a field."""
+    """Draw the box of a field."""
     color = mix(palette.field, palette.hover, 0.6 if active else 0.35 if hovered else 0.0)
     lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
     lines.add_rect_filled(rect[:2], rect[2:], u32(color), rounding)
@@ -30,7 +30,7 @@ def background(
 
 
 def draw_arrow(palette: Palette, rect: Rect) -> None:
-    """The sign at the right of a field that opens a list."""
+    """Draw the arrow at the right of a field that opens a list."""
     size = (rect[3] - rect[1]) * 0.14
     x, y = rect[2] - imgui.get_style().frame_padding.x - size * 1.5, (rect[1] + rect[3]) * 0.5
     imgui.get_window_draw_list().add_triangle_filled(
@@ -39,7 +39,7 @@ def draw_arrow(palette: Palette, rect: Rect) -> None:
 
 
 def label(text: str, width: float) -> None:
-    """A name at the left of a field, which begins `width` units further on."""
+    """Draw a name at the left of a field, which begins `width` units further right."""
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted(text)
@@ -47,7 +47,7 @@ def label(text: str, width: float) -> None:
 
 
 def combo(surface: WidgetSurface, name: str, current: str, choices: Sequence[str], width: float = -1.0) -> str:
-    """A list of texts; what was chosen in this frame, or ""."""
+    """Draw a list of texts; returns what was chosen in this frame, or ""."""
     imgui.set_next_item_width(width)
     chosen = ""
     opened = imgui.begin_combo(f"##{name}", current, int(imgui.ComboFlags_.no_arrow_button))
@@ -75,7 +75,7 @@ def number(
     low: float = 0.0,
     high: float = 0.0,
 ) -> float:
-    """A number that is dragged or typed, in the color of errors while it is not neutral; a right click makes it so."""
+    """Draw a number that is dragged or typed; in the error color unless it is neutral, which a right click makes it."""
     changed = neutral is not None and value != neutral
     if changed:
         imgui.push_style_color(imgui.Col_.text, vec4(surface.palette.error))

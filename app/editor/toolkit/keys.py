@@ -1,4 +1,4 @@
-"""Shortcuts as people write them, such as `Ctrl+Shift+S`, and as the window library wants them."""
+"""Converts shortcuts between text, such as `Ctrl+Shift+S`, and key chords of the window library."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _SIGNS = MappingProxyType(
 
 
 def chord(text: str) -> int:
-    """The key chord that `text` names. Raises UsageError for a key that there is not."""
+    """The key chord that `text` names. Raises UsageError for an unknown key."""
     *modifiers, key = text.split("+")
     if key not in _keys() or not set(modifiers) <= _MODIFIERS.keys() or len(set(modifiers)) != len(modifiers):
         raise UsageError(f"'{text}' is no shortcut; write it like 'Ctrl+Shift+S' or 'F5'")
@@ -52,13 +52,13 @@ def chord(text: str) -> int:
 
 
 def text(chord: int) -> str:
-    """How a chord is written: modifiers always in the same order, so that equal chords are equal texts."""
+    """The text of a chord, with its modifiers always in the same order, so that equal chords are equal texts."""
     modifiers = [name for name, bit in _MODIFIERS.items() if chord & bit]
     return "+".join([*modifiers, _names()[chord & ~sum(_MODIFIERS.values())]])
 
 
 def display_shortcut(text: str) -> str:
-    """A shortcut as people read it: `Ctrl+,` for `Ctrl+Comma`, and Cmd for Ctrl on macOS."""
+    """A shortcut as shown to the user: `Ctrl+,` for `Ctrl+Comma`, and Cmd for Ctrl on macOS."""
     control = "Cmd" if sys.platform == "darwin" else "Ctrl"
     return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
 
@@ -69,7 +69,7 @@ def is_enter_pressed(repeats: bool = True) -> bool:
 
 
 def find_pressed_chord() -> str:
-    """The chord whose key went down in this frame, "" if none did; Escape is left to whoever asks."""
+    """The chord whose key went down in this frame, "" if none did; Escape is never reported."""
     held = int(imgui.get_io().key_mods)
     for name, key in _keys().items():
         if name != "Escape" and imgui.is_key_pressed(imgui.Key(key), False):

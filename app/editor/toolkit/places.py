@@ -1,4 +1,4 @@
-"""Where things are on the screen."""
+"""Records where widgets are on the screen."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Rect = tuple[float, float, float, float]
 
 
 class WidgetSurface(Protocol):
-    """What widgets are drawn on, such as the context of a panel: it knows their colors, and keeps where they are."""
+    """What widgets are drawn on, such as the context of a panel: it has the colors and records the places."""
 
     @property
     def palette(self) -> Palette: ...
@@ -31,13 +31,13 @@ class TextSurface(WidgetSurface, Protocol):
 
 
 def item_rect() -> Rect:
-    """Where the last widget is."""
+    """The rectangle of the last widget."""
     low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     return low.x, low.y, high.x, high.y
 
 
 def record(surface: WidgetSurface, name: str) -> None:
-    """Note where the last widget is."""
+    """Record the place of the last widget under a name."""
     surface.places[name] = item_rect()
 
 
@@ -48,5 +48,5 @@ def place(width: float, height: float = 0.0) -> Rect:
 
 
 def union(first: Rect, second: Rect) -> Rect:
-    """The rectangle around two."""
+    """The smallest rectangle around two rectangles."""
     return min(first[0], second[0]), min(first[1], second[1]), max(first[2], second[2]), max(first[3], second[3])

@@ -1,4 +1,4 @@
-"""Which frames and values are seen, where on the screen they are, and labels of their axes. Nothing here draws."""
+"""The plane of frames and values: the visible part, its place on the screen, and ticks. Nothing here draws."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ Rect = tuple[float, float, float, float]
 
 _FRAMES = 0.5, 1e6
 _VALUES = 1e-6, 1e9
-"""The least and the most that is seen of each axis."""
+"""The least and the largest visible extent of each axis."""
 
 _BESIDE, _ABOVE = 0.05, 0.14
-"""Room around what is brought into view, as parts of it."""
+"""The margins around what is fitted into view, as fractions of it."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +26,17 @@ class View:
     high: float = 1.1
 
     def pan(self, frames: float, values: float) -> View:
-        """Moved on."""
+        """The view, moved by some frames and values."""
         return View(self.first + frames, self.last + frames, self.low + values, self.high + values)
 
     def zoom(self, frame: float, value: float, across: float, up: float) -> View:
-        """So many times as large, with one place staying where it is."""
+        """The view, zoomed about a place."""
         first, last = _spread(self.first, self.last, frame, across, _FRAMES)
         low, high = _spread(self.low, self.high, value, up, _VALUES)
         return View(first, last, low, high)
 
     def fit(self, frames: tuple[float, float] | None, values: tuple[float, float] | None) -> View:
-        """With these frames and values in view, and some room around them; None leaves an axis as it is."""
+        """The view that shows these frames and values with a margin; None leaves an axis as it is."""
         view = self
         if frames:
             first, last = _roomy(*frames, _BESIDE, 1.0)

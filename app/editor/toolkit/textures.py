@@ -1,4 +1,4 @@
-"""Small pictures on the graphics card."""
+"""A cache of small textures."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _MOST = 300
 
 
 class Textures:
-    """Uploads each picture once and keeps those that were shown last. Must be cleared before the window ends."""
+    """Uploads each picture once and keeps the most recently shown ones. Must be cleared before the window closes."""
 
     def __init__(self) -> None:
         self._kept: OrderedDict[Hashable, hello_imgui.TextureGpu] = OrderedDict()
 
     def get(self, key: Hashable, make: Callable[[], Array]) -> imgui.ImTextureRef:
-        """The texture of what `make` gives, [h, w, 3] of uint8; the same key is the same picture."""
+        """The texture of the picture that `make` returns, [h, w, 3] of uint8; cached by key."""
         if key not in self._kept:
             pixels = make()
             opaque = np.full((*pixels.shape[:2], 4), 255, np.uint8)
@@ -32,12 +32,12 @@ class Textures:
         return imgui.ImTextureRef(self._kept[key].texture_id())
 
     def clear(self) -> None:
-        """Give everything back."""
+        """Release all textures."""
         self._kept.clear()
 
 
 def fit_picture(pixels: Array, width: float, height: float) -> tuple[float, float]:
-    """The size of a picture that fills a box as far as its shape allows, never enlarged more than twice."""
+    """The largest size of a picture in a box, enlarged at most twice."""
     across, down = pixels.shape[1], pixels.shape[0]
     scale = min(width / across, height / down, 2.0)
     return across * scale, down * scale

@@ -20,7 +20,7 @@ _IN_MEMORY, _ON_DISK, _WAITING = 400, 2000, 48
 
 
 class FileThumbnails:
-    """What was asked for last is decoded first. `folder` keeps what was decoded, for the next time."""
+    """Decodes the last requested file first. `folder` keeps thumbnails for the next start."""
 
     def __init__(self, folder: Path, sandbox: Sandbox) -> None:
         self._folder, self._sandbox = folder, sandbox
@@ -29,19 +29,19 @@ class FileThumbnails:
         )
 
     def get(self, path: Path, time: float) -> Array | str | None:
-        """[h, w, 3] of uint8, a sentence if the file is no picture, None if it is not ready; ask again.
+        """The thumbnail, [h, w, 3] of uint8; a sentence if that is impossible, None if it is not ready: ask again.
 
-        `time` is when the file was changed: another time is another picture.
+        `time` is that of the file's last change.
         """
         return self._decoded.get((path, time))
 
     @property
     def busy(self) -> bool:
-        """True while something that was asked for is not ready."""
+        """True while a requested thumbnail is not ready."""
         return self._decoded.is_busy
 
     def forget(self) -> None:
-        """Nothing that was asked for is wanted any more."""
+        """Drop all requests."""
         self._decoded.forget()
 
     def close(self) -> None:

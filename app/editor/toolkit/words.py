@@ -1,4 +1,4 @@
-"""Text: in other fonts and weights, cut to fit, as a tooltip, as what an empty panel says."""
+"""Draws text: in fonts and weights, cut to fit, as tooltips, and in empty panels."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from ..theme.palette import RGB, Palette
 from ..theme.style import EM, mix, u32, ui_scale, vec4
 from .places import Rect, TextSurface, WidgetSurface
 
-SMALL, TITLE, BIG = EM * 0.86, EM * 1.125, EM * 1.6
-"""Font sizes besides that of everything else: notes and headings of sections, titles of dialogs, the program's name."""
+SMALL, TITLE = EM * 0.86, EM * 1.125
+"""Font sizes besides `EM`: of notes and section headings, and of dialog titles."""
 
 ICONS: dict[Level, str] = {
     "info": icons.ICON_FA_CIRCLE_INFO,
@@ -25,13 +25,13 @@ ICONS: dict[Level, str] = {
 
 
 def level_color(palette: Palette, level: Level) -> RGB:
-    """The color of a sentence's icon."""
+    """The color of a message's icon."""
     return {"info": palette.dim, "warning": palette.warning, "error": palette.error}[level]
 
 
 @contextmanager
 def font(surface: TextSurface, name: Literal["text", "bold", "mono"], size: float = EM) -> Iterator[None]:
-    """Text in another font; `size` in pixels at scale 1."""
+    """Draw in another font; `size` in pixels at scale 1."""
     imgui.push_font(getattr(surface.fonts, name, None), size)
     try:
         yield
@@ -40,25 +40,25 @@ def font(surface: TextSurface, name: Literal["text", "bold", "mono"], size: floa
 
 
 def draw_dim(surface: WidgetSurface, text: str) -> None:
-    """Text of less weight."""
+    """Draw text in the dim color."""
     imgui.text_colored(vec4(surface.palette.dim), text)
 
 
 def draw_wrapped(color: RGB, text: str) -> None:
-    """Text in a color, as many lines as it needs."""
+    """Draw wrapped text in a color."""
     imgui.push_style_color(imgui.Col_.text, vec4(color))
     imgui.text_wrapped(text)
     imgui.pop_style_color()
 
 
 def tip(text: str) -> None:
-    """A tooltip of the last widget, as many lines as it needs."""
+    """Draw a wrapped tooltip for the last widget, while the mouse is over it."""
     if text and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
         show_tip(text)
 
 
 def show_tip(text: str) -> None:
-    """A tooltip at the pointer."""
+    """Draw a tooltip at the pointer."""
     # After a key the library would put it beside what the keyboard chose last, wherever that is.
     imgui.get_current_context().nav_highlight_item_under_nav = False
     if imgui.begin_tooltip():
@@ -89,7 +89,7 @@ def _cut(text: str, width: float, shorter: Callable[[int], str]) -> str:
 
 
 def write(rect: Rect, text: str, color: RGB, align: float = 0.0, alpha: float = 1.0) -> float:
-    """One line of text in a box, cut to fit; `align` 0 is left, 1 right. Returns its width."""
+    """Draw one line of text in a box, cut to fit; `align` 0 is left, 1 right. Returns its width."""
     text = cut_end(text, rect[2] - rect[0])
     size = imgui.calc_text_size(text)
     x = rect[0] + (rect[2] - rect[0] - size.x) * align
@@ -99,7 +99,7 @@ def write(rect: Rect, text: str, color: RGB, align: float = 0.0, alpha: float = 
 
 
 def note_below(palette: Palette, rect: Rect, text: str, color: RGB) -> None:
-    """A line of text in a box of its own below a field, over everything else."""
+    """Draw a line of text in a box below a field, over everything else."""
     pad = imgui.get_style().frame_padding
     limit = imgui.get_main_viewport()
     wrap = min(imgui.get_font_size() * 20, limit.size.x)
@@ -114,7 +114,7 @@ def note_below(palette: Palette, rect: Rect, text: str, color: RGB) -> None:
 
 
 def draw_empty_panel(surface: TextSurface, icon: str, title: str, sentence: str) -> None:
-    """What an empty panel says, in its middle."""
+    """Draw the message of an empty panel, in its middle."""
     room, scale = imgui.get_content_region_avail(), ui_scale()
     width = max(min(room.x, 320 * scale), 1.0)
     size = imgui.calc_text_size(sentence, wrap_width=width)

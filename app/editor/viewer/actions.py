@@ -1,4 +1,4 @@
-"""Actions on the viewer: what of the picture is seen, and how."""
+"""Actions of the viewer: view, channels, comparison, exposure and warnings."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SHOWN = frozenset({"viewer"})
 
 
 def _set(**values: Any):
-    """An act that sets fields of the viewer."""
+    """A function that sets fields of the viewer's state."""
 
     def act(context: ViewerContext) -> None:
         for name, value in values.items():
@@ -65,7 +65,7 @@ def _zoom(factor: float):
 
 
 def _toggle(context: ViewerContext) -> None:
-    """Show B instead of A and back; comparing begins with B, which is what was asked for."""
+    """Toggle between A and B; the first press shows B."""
     viewer = context.viewer
     viewer.toggled = not viewer.toggled if viewer.compare == "toggle" else True
     viewer.compare = "toggle"
@@ -80,7 +80,7 @@ def _swap(context: ViewerContext) -> None:
 
 
 def _region(context: ViewerContext) -> None:
-    """Begin to draw one; where there is one, or one is being drawn, end that."""
+    """Start to draw a region of interest; if there is one, remove it."""
     viewer = context.viewer
     viewer.drawing_region = viewer.region is None and not viewer.drawing_region
     viewer.region = None

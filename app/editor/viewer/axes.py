@@ -1,4 +1,4 @@
-"""The axes of the world, in a corner of the panel."""
+"""Draws the axes of the world in a corner of the panel."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5
 
 
 def axes(camera: CameraModel) -> tuple[tuple[str, Point, float], ...]:
-    """x, y and z as the camera sees them, the farthest first: right and down, and how far ahead."""
+    """The axes x, y and z in camera space, the farthest first: right, down and depth."""
     arms = [(name, (camera.right[at], camera.down[at]), camera.forward[at]) for at, name in enumerate("xyz")]
     return tuple(sorted(arms, key=lambda axis: -axis[2]))
 
 
 def draw_axes(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """Those of the scene that the mouse goes around, in the lower left corner."""
+    """Draw the axes of the orbited scene in the lower left corner."""
     scene, scale = scene_at(context), ui_scale()
     if scene is None:
         return

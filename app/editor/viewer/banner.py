@@ -1,4 +1,4 @@
-"""The line above the tools while a flipbook is open: what is played, and back to the document."""
+"""The banner of an open flipbook: its strips, and the button back to the graph."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
 
 
 def draw_banner(context: ViewerContext) -> None:
-    """Draw it, if there is a flipbook."""
+    """Draw the banner, if a flipbook is open."""
     book = context.stage.flipbook
     if book is None:
         return

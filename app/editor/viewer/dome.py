@@ -1,4 +1,4 @@
-"""A disk that stands for all directions that sunlight can come from, as the camera sees them.
+"""The sun dome: a disk of all directions of sunlight, in camera space.
 
 Light from the middle comes from the camera, half way out from the side, at the rim from straight ahead.
 """
@@ -13,30 +13,30 @@ from .geometry import Point, Sight
 from .perspective import Place, dot, move_place, unit
 
 RADIUS, MARGIN = 46.0, 14.0
-"""Of the disk, and between it and the corner, at UI scale 1."""
+"""The radius of the disk and its margin to the corner, at UI scale 1."""
 
 
 def middle_of(sight: Sight, scale: float) -> Point:
-    """Where the disk is: in the lower right corner of the panel."""
+    """The center of the disk: in the lower right corner of the panel."""
     right, bottom = (sight.origin[i] + sight.panel[i] / sight.density for i in (0, 1))
     return right - (RADIUS + MARGIN) * scale, bottom - (RADIUS + MARGIN) * scale
 
 
 def knob_of(sight: Sight, scale: float, camera: CameraModel, direction: Place) -> Point:
-    """The point on the screen that stands for sunlight in a direction."""
+    """The point of the disk for a direction of sunlight."""
     x, y = flat(camera, direction)
     middle = middle_of(sight, scale)
     return middle[0] + x * RADIUS * scale, middle[1] + y * RADIUS * scale
 
 
 def direction_at(sight: Sight, scale: float, camera: CameraModel, at: Point) -> Place:
-    """The direction of sunlight that a point on the screen stands for."""
+    """The direction of sunlight for a point of the disk."""
     middle = middle_of(sight, scale)
     return direction_of(camera, ((at[0] - middle[0]) / (RADIUS * scale), (at[1] - middle[1]) / (RADIUS * scale)))
 
 
 def flat(camera: CameraModel, direction: Place) -> Point:
-    """Where on a disk of radius 1: equal steps out are equal angles away from the camera."""
+    """A direction on a disk of radius 1: the distance from the center is the angle from the camera."""
     way = unit(direction)
     x, y = -dot(camera.right, way), -dot(camera.down, way)
     out, away = math.hypot(x, y), math.acos(min(max(dot(camera.forward, way), -1.0), 1.0)) / math.pi
@@ -44,7 +44,7 @@ def flat(camera: CameraModel, direction: Place) -> Point:
 
 
 def direction_of(camera: CameraModel, flat: Point) -> Place:
-    """The unit vector along which the sun shines for a point of that disk."""
+    """The unit vector of sunlight for a point of a disk of radius 1."""
     out = math.hypot(*flat)
     angle = min(out, 1.0) * math.pi
     x, y = (part / out * math.sin(angle) for part in flat) if out > 0.0 else (0.0, 0.0)

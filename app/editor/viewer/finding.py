@@ -1,4 +1,4 @@
-"""Finds the first node that makes NaN or infinity, some of it every frame."""
+"""Searches for the first node that makes NaN or infinity, a part of it in every frame of the window."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 BUDGET = 0.010
-"""Seconds per frame."""
+"""Seconds of search per frame of the window: the window stays fluid."""
 
 
 class InvalidPixelSearch:
@@ -26,7 +26,7 @@ class InvalidPixelSearch:
         self._search_key: object = None
 
     def step(self) -> None:
-        """Go on; at the end, select the node and say what was found. Another graph starts it anew."""
+        """Continue the search; at the end, select the node and report it. Another graph restarts the search."""
         if not self._context.viewer.finding:
             self._stop()
             return
@@ -73,7 +73,7 @@ def _search(context: ViewerContext, port: Port) -> Iterator[NonfinitePixel | Non
 
 
 def _show(context: ViewerContext, bad_pixel: NonfinitePixel) -> None:
-    """Go to the node that was found, and mark the pixel."""
+    """Select the node, and mark the pixel."""
     x, y = bad_pixel.pixel
     context.log.add(
         f"{bad_pixel.path} is the first node with {bad_pixel.value} (pixel {x}, {y} of its output)", "warning"

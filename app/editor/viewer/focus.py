@@ -1,4 +1,4 @@
-"""What is sharp, of a node that focuses: at a point of the picture, or so far away."""
+"""The focus of depth of field nodes: a point of the picture, or a distance."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _CHOICE, _POINT, _DISTANCE = "focus", "focus_point", "focus_distance"
 
 
 def focuses(item: object) -> bool:
-    """True for a node that is told by a depth what is sharp."""
+    """True for a node that focuses by depth."""
     return isinstance(item, Node) and "depth" in item.inputs and {_CHOICE, _POINT, _DISTANCE} <= item.values.keys()
 
 
 def find_focus_port(session: Session) -> Port | None:
-    """The value of the active node that says what is sharp, if the mouse may change it."""
+    """The focus value of the active node, if it is not linked."""
     item = session.graph.nodes.get(session.active)
     if item is None or not focuses(item):
         return None
@@ -30,28 +30,28 @@ def find_focus_port(session: Session) -> Port | None:
 
 
 def is_distance(port: Port) -> bool:
-    """True for a value that is a depth of what is sharp."""
+    """True for a focus distance."""
     return port.socket == _DISTANCE
 
 
 def is_idle(session: Session, port: Port) -> bool:
-    """True for a point that does not matter now, as a distance is chosen."""
+    """True for a focus point that has no effect, because the node focuses by distance."""
     item = session.graph.nodes.get(port.node)
     return port.socket == _POINT and focuses(item) and read_focus_choice(session, port.node) != "point"
 
 
 def read_focus_choice(session: Session, id: str) -> str:
-    """What a node that focuses goes by."""
+    """How a node focuses: by `point` or `distance`."""
     return str(session.graph.value(Port(id, _CHOICE)))
 
 
 def pick_focus(context: ViewerContext) -> None:
-    """Let the next click on the picture say what is sharp; asked for again, not."""
+    """Let the next click on the picture set the focus; a second call cancels that."""
     port = find_focus_port(context.session)
     if port is not None:
         context.viewer.picking = "" if context.viewer.picking == str(port) else str(port)
 
 
 def distance_in_words(depth: float | None) -> str:
-    """As a label says it."""
+    """A depth as the text of a label."""
     return "depth unknown" if depth is None else "nothing here" if depth >= 1e9 else f"depth {depth:.4g}"

@@ -1,4 +1,4 @@
-"""Where the picture lies in the panel, and what the mouse hits there."""
+"""The place of the picture in the panel, and what is under the mouse."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Box = tuple[float, float, float, float]
 
 MIN_ZOOM, MAX_ZOOM = 1 / 64, 128.0
 GRID_FROM = 8.0
-"""Zoom from which pixels are told apart by lines."""
+"""The zoom from which on lines separate pixels."""
 
 Grip = Literal["", "line", "angle", "move", "n", "s", "w", "e", "nw", "ne", "sw", "se"]
 
@@ -37,14 +37,14 @@ class Sight:
 
     @classmethod
     def of(cls, origin: Point, panel: Pixels, picture: Pixels, zoom: float, pan: Point, density: float = 1.0) -> Sight:
-        """With a zoom of 0 the picture fits the panel."""
+        """The sight of a picture; with a zoom of 0 it fits the panel."""
         if zoom <= 0.0:
             zoom, pan = look.fit_zoom(panel, picture), (0.0, 0.0)
         return cls(origin, panel, picture, zoom, pan, density)
 
     @property
     def look(self) -> Look:
-        """The same, as the display wants it."""
+        """The placement of the picture, as the display takes it."""
         return Look(zoom=self.zoom, pan=self.pan)
 
     def pixel(self, at: Point) -> Point:
@@ -59,7 +59,7 @@ class Sight:
         return x, y
 
     def fraction(self, at: Point) -> Point:
-        """The same as a fraction of the picture."""
+        """The picture position under a screen point, as a fraction of the picture."""
         x, y = self.pixel(at)
         return x / max(self.picture[0], 1), y / max(self.picture[1], 1)
 
@@ -77,7 +77,7 @@ class Sight:
         return (x, y) if 0 <= x < self.picture[0] and 0 <= y < self.picture[1] else None
 
     def zoom_by(self, factor: float, at: Point) -> Sight:
-        """Nearer by `factor`, with the same picture position under the screen point `at`."""
+        """Zoom in by `factor` about the screen point `at`."""
         zoom = min(max(self.zoom * factor, MIN_ZOOM), MAX_ZOOM)
         grown = zoom / self.zoom
         x, y = (
@@ -87,7 +87,7 @@ class Sight:
         return replace(self, zoom=zoom, pan=(x, y))
 
     def pan_by(self, dx: float, dy: float) -> Sight:
-        """Moved by screen units; some of the picture always stays in sight."""
+        """Pan by screen units; a part of the picture always stays visible."""
         moved = (self.pan[0] + dx * self.density, self.pan[1] + dy * self.density)
         x, y = (
             min(max(moved[i], -limit), limit)
@@ -99,7 +99,7 @@ class Sight:
 
 
 def texel(pixel: Pixels, full: Pixels, size: Pixels) -> Pixels:
-    """Where a pixel at full size lies in a texture of another size."""
+    """The texel of a texture of another size that shows a pixel of the full size."""
     x, y = (min(max(int((pixel[i] + 0.5) * size[i] / max(full[i], 1)), 0), size[i] - 1) for i in (0, 1))
     return x, y
 
@@ -130,7 +130,7 @@ def wipe_direction(angle: float) -> Point:
 
 
 def wipe_grip(at: Point, center: Point, angle: float, arm: float, reach: float) -> Grip:
-    """What of the wipe the mouse is over: its turning handle, `arm` units down the line, or the line itself."""
+    """The part of the wipe under the mouse: its turning handle, `arm` units down the line, or the line."""
     along = wipe_direction(angle)
     if math.dist(at, (center[0] + along[0] * arm, center[1] + along[1] * arm)) <= reach * 1.5:
         return "angle"

@@ -1,4 +1,4 @@
-"""Lines and words over scopes."""
+"""Graticules: lines and labels over scopes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from . import scopes
 Box = tuple[float, float, float, float]
 _LEVELS = (0.0, 0.25, 0.5, 0.75, 1.0)
 _SMALL = 0.78
-"""Size of words, as a part of that of all other text."""
+"""The size of labels, as a fraction of other text."""
 
 
 def is_dark(palette: Palette) -> bool:
@@ -22,7 +22,7 @@ def is_dark(palette: Palette) -> bool:
 
 
 def back(palette: Palette) -> RGB:
-    """What scopes are drawn on."""
+    """Draw the background of a scope."""
     return palette.border if is_dark(palette) else palette.field
 
 
@@ -71,14 +71,14 @@ def range_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float,
 
 
 def hint(lines: imgui.ImDrawList, palette: Palette, box: Box, text: str) -> None:
-    """A few words in the upper right corner of a scope, if there is room."""
+    """Draw a hint in the upper right corner of a scope, if it fits."""
     width = imgui.calc_text_size(text).x * _SMALL
     if width < (box[2] - box[0]) * 0.7:
         _word(lines, palette, (box[2] - width - 5 * ui_scale(), box[1] + 3 * ui_scale()), text)
 
 
 def _word(lines: imgui.ImDrawList, palette: Palette, at: tuple[float, float], text: str) -> None:
-    """Small text on a plate, so that traces do not cross it."""
+    """Draw small text on an opaque plate, so that traces do not cross it."""
     size, pad = imgui.get_font_size() * _SMALL, 2 * ui_scale()
     width = imgui.calc_text_size(text).x * _SMALL
     plate = (at[0] - pad, at[1]), (at[0] + width + pad, at[1] + size)

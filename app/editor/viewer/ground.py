@@ -1,4 +1,4 @@
-"""What lies under points of the picture: how far away it is, and where in the world."""
+"""The depth and the position in the world under a point of the picture."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 SCENE, DEPTH, PLACE = "scene depth", "depth", "place"
-"""Under which names the depth of the scene that is orbited, and depth and places of the active node, are wanted."""
+"""Names of requested pictures: the depth of the orbited scene, and depth and positions of the active node."""
 
 FAR = 1e9
-"""What is deeper is background."""
+"""The depth from which on everything is background."""
 
 _ASTRAY = 0.02
-"""How far from its pixel, as a part of the picture, a place may be seen that is really there."""
+"""The largest offset of a pixel from its projected position, as a fraction: a wrong camera gives more."""
 
 
 def depths(context: ViewerContext) -> dict[str, Port]:
-    """What is to be computed for handles, by name."""
+    """The ports that handles need, by name."""
     session, ports = context.session, dict[str, Port]()
     if context.viewer.orbits and (scene := scene_at(context)) is not None and "depth" in scene.outputs:
         ports[SCENE] = Port(context.viewer.scene, "depth")
@@ -41,7 +41,7 @@ def depths(context: ViewerContext) -> dict[str, Port]:
 
 
 def depth_at(context: ViewerContext, at: Point, name: str = DEPTH) -> float | None:
-    """How far away it is what is seen at a fraction of the picture; 1e10 for the background, None if unknown."""
+    """The depth at a point of the picture (a fraction); 1e10 for the background, None if unknown."""
     values = _read(context, name, at)
     if not values or not values[0] > 0.0:
         return None
@@ -49,7 +49,7 @@ def depth_at(context: ViewerContext, at: Point, name: str = DEPTH) -> float | No
 
 
 def surface_at(context: ViewerContext, camera: CameraModel, at: Point) -> tuple[Place, float] | None:
-    """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
+    """The position in the world at a point of the picture, and its depth; None for the background, or if unknown."""
     values = _read(context, PLACE, at)
     if values is not None:
         x, y, z = values[:3]
@@ -60,7 +60,7 @@ def surface_at(context: ViewerContext, camera: CameraModel, at: Point) -> tuple[
 
 
 def _read(context: ViewerContext, name: str, at: Point) -> tuple[float, ...] | None:
-    """Once it is there: until then, what was read of another node is shown under that name."""
+    """The numbers at a point; None until the picture of the current node is ready."""
     port, image = depths(context).get(name), context.preview.find_whole_image(name)
     inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
     if port is None or image is None or not inside:

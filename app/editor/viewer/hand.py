@@ -1,4 +1,4 @@
-"""Mouse and wheel over the picture."""
+"""Mouse input over the picture."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 NOTCHES = 4.0
-"""Steps of the wheel that double the size."""
+"""Steps of the wheel that double the zoom."""
 
 _PAUSE = 0.7
-"""Seconds without the wheel that end a step."""
+"""Seconds without the wheel that end an undo step."""
 
 _CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType(
     {
@@ -42,19 +42,19 @@ _CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType(
 
 
 class ViewerInput:
-    """What the mouse does with the picture. To be used right after the item that catches the mouse."""
+    """Handles mouse and wheel over the picture. Call it right after the item that catches the mouse."""
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
         self._hold: MouseHold | None = None
         self.aim = HandleTarget("pan")
         self._last_turn = "", 0.0
-        """What the wheel changed last, and when."""
+        """The last change by the wheel, and its time."""
         self.picked_point: Point | None = None
-        """Where the eyedropper was pressed or dragged to in this frame."""
+        """The point where the eyedropper is in this frame, if it is pressed."""
 
     def follow(self, sight: Sight) -> None:
-        """Do what mouse and wheel ask for."""
+        """Handle mouse and wheel."""
         viewer, io = self._context.viewer, imgui.get_io()
         hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
         at = (io.mouse_pos.x, io.mouse_pos.y)
@@ -108,7 +108,7 @@ class ViewerInput:
             self._hold = None
 
     def _wheel(self, sight: Sight, factor: float, at: Point) -> None:
-        """Zoom; over a light, take that nearer or farther; where the mouse moves a camera, go nearer."""
+        """Zoom; over a light, change its depth; while orbiting, move the camera nearer."""
         if self._hold is not None and self._hold.token:
             return
         lamp, kind = self.aim.lamp, self.aim.kind
@@ -127,14 +127,14 @@ class ViewerInput:
             self._zoom(sight, factor, at)
 
     def _begin_turn(self, of: str) -> None:
-        """What the wheel does without a pause is one step."""
+        """Begin a new undo step, unless the wheel turned a moment ago."""
         last, when = self._last_turn
         if of != last or imgui.get_time() - when > _PAUSE:
             self._context.session.seal()
         self._last_turn = of, imgui.get_time()
 
     def _zoom(self, sight: Sight, factor: float, at: Point) -> None:
-        """A zoom that passes 1 stops there."""
+        """Zoom; passing 1 stops there."""
         zoom = sight.zoom
         if (zoom - 1.0) * (zoom * factor - 1.0) < 0.0 and not math.isclose(zoom, 1.0):
             factor = 1.0 / zoom

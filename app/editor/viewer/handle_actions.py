@@ -1,4 +1,4 @@
-"""Actions on what the mouse takes hold of in the viewer: the camera of a scene, lights, what is sharp."""
+"""Actions of handles in the viewer: the camera of a scene, lights and focus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Positions that the active node lets one drag on the picture."""
+"""Handles: positions of the active node that can be dragged on the picture."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ViewerHandle:
 
 
 def handles(session: Session) -> tuple[ViewerHandle, ...]:
-    """Those of the active node that matter, and that nothing else drives."""
+    """The handles of the active node that have an effect and are not linked."""
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
@@ -37,7 +37,7 @@ def handles(session: Session) -> tuple[ViewerHandle, ...]:
 
 
 def takes_position(session: Session, port: Port) -> bool:
-    """True if a position is picked for that value, not a color."""
+    """True if the eyedropper picks a position for a value, not a color."""
     item = session.graph.nodes.get(port.node)
     value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
     return value is not None and value.handle

@@ -1,4 +1,4 @@
-"""What the mouse takes hold of on the picture, and what becomes of it while it is dragged."""
+"""Drags of handles on the picture: finding what is under the mouse, and applying the drag."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ ARM = 56.0
 """Length of the wipe's turning handle at UI scale 1."""
 
 REACH = 6.0
-"""From how far away something is hit, at UI scale 1."""
+"""The distance at which a handle is hit, in pixels at UI scale 1."""
 
 
 DOUBLINGS = 3.0
@@ -53,7 +53,7 @@ DOUBLINGS = 3.0
 
 @dataclass(frozen=True)
 class HandleTarget:
-    """What a press of the button would take hold of."""
+    """What a press of the mouse button would grab."""
 
     kind: HoldKind
     grip: Grip = ""
@@ -71,7 +71,7 @@ def aim(
     alt: bool = False,
     shift: bool = False,
 ) -> HandleTarget:
-    """What is under the mouse. `scale` is that of the interface."""
+    """The handle under the mouse. `scale` is the UI scale."""
     viewer, reach = context.viewer, REACH * scale
     if viewer.picking:
         return HandleTarget("pick")
@@ -100,7 +100,7 @@ def aim(
 def _light(
     context: ViewerContext, sight: Sight, at: Point, scale: float, alt: bool, shift: bool
 ) -> HandleTarget | None:
-    """The light there, or what it shines to; the selected one first."""
+    """The light, or the target of a spot, under the mouse; the selected light first."""
     near = REACH * scale * 1.6
     if math.dist(at, middle_of(sight, scale)) <= RADIUS * scale + near:
         for lamp in reversed(suns(context)):
@@ -116,26 +116,26 @@ def _light(
 
 @dataclass
 class MouseHold:
-    """Something that the mouse holds, from press to release."""
+    """A drag, from press to release of the mouse button."""
 
     context: ViewerContext
     aim: HandleTarget
     start: Point
-    """Where it was pressed on the screen."""
+    """The screen point where the button was pressed."""
     offset: Point = (0.0, 0.0)
     """From the mouse to the held point, as a fraction of the picture."""
     box: Box = (0.0, 0.0, 1.0, 1.0)
     moved: bool = False
     scale: float = 1.0
-    """That of the interface."""
+    """The UI scale."""
     orbit: Orbit | None = None
-    """The camera, as it was."""
+    """The camera at the start of the drag."""
     depth: float = 0.0
-    """How far away it is what was pressed on."""
+    """The depth at the point where the button was pressed."""
 
     @classmethod
     def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
-        """Take hold of what is aimed at."""
+        """Start the drag of a target."""
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
         held_point = next((handle.at for handle in handles(context.session) if handle.port == aim.port), None)
         if aim.lamp is not None:
@@ -187,7 +187,7 @@ class MouseHold:
                 pass
 
     def release(self, sight: Sight, at: Point) -> None:
-        """Let go."""
+        """End the drag."""
         viewer = self.context.viewer
         if self.token:
             self.context.session.seal()
@@ -197,13 +197,13 @@ class MouseHold:
             viewer.drawing_region = False
             viewer.region = viewer.region if self.moved else None
         elif self.aim.kind == "measure":
-            viewer.table = True  # only now: it takes room, and the picture would move under the pointer
+            viewer.table = True  # only now: the table takes space, and the picture would move under the pointer
             if not self.moved and sight.under(at):
                 viewer.markers = toggle_marker(viewer.markers, sight, at)
 
     @property
     def token(self) -> str:
-        """The merge token of what it does to the document; "" if it does nothing."""
+        """The merge token of the drag's edits; "" if it does not edit the document."""
         if self.aim.port is not None and self.aim.kind == "handle":
             return f"handle {self.aim.port}"
         return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
@@ -231,7 +231,7 @@ class MouseHold:
                 pass
 
     def _move_camera(self, sight: Sight, at: Point, orbit: Orbit) -> None:
-        """From where it was: nothing adds up."""
+        """Move the camera from where it was at the start, so that rounding errors do not add up."""
         self.context.interface.dragging = True
         if self.aim.kind == "orbit":
             across = sight.panel[0] / sight.density
@@ -250,7 +250,7 @@ class MouseHold:
 
 
 def toggle_marker(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:
-    """The markers with one more at the pixel under the mouse, or without the one that is there."""
+    """The markers with one added at the pixel under the mouse, or without the marker there."""
     pixel = sight.under(at)
     assert pixel is not None
     width, height = sight.picture

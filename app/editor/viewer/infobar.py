@@ -1,4 +1,4 @@
-"""The line below the picture: what it is, and what is under the pointer."""
+"""The info line below the picture: what is shown, and the pixel under the pointer."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ class Word:
 
 
 def row_height() -> float:
-    """How high one line is."""
+    """The height of one line."""
     return imgui.get_text_line_height() + 6 * ui_scale()
 
 
 def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight: Sight, seconds: float) -> list[Word]:
-    """What a side shows, in a few words; for A also how, and how long it took."""
+    """What a side shows; for A also zoom, proxy and render time."""
     palette, preview = context.palette, context.preview
     words: list[Word] = []
     if context.viewer.compares:
@@ -67,7 +67,7 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
 
 
 def describe(kind: Kind, channels: int) -> str:
-    """What kind of data it is."""
+    """The kind of data, as text."""
     if kind in (Kind.IMAGE, Kind.COLOR):
         return "RGBA" if kind is Kind.IMAGE else "color"
     return f"vector {channels}" if kind is Kind.VECTOR else kind.value.lower()
@@ -76,7 +76,7 @@ def describe(kind: Kind, channels: int) -> str:
 def of_pixel(
     context: ViewerContext, pixel: Pixels | None, values: tuple[float, ...], kind: Kind, look: Look
 ) -> list[Word]:
-    """The numbers of a pixel: scene-linear, then as displayed."""
+    """The numbers of a pixel: scene-linear, then display-referred."""
     palette = context.palette
     if pixel is None or not values:
         return []
@@ -101,7 +101,7 @@ def of_pixel(
 
 
 def draw_line(context: ViewerContext, name: str, words: list[Word]) -> None:
-    """One line of words, as many as fit."""
+    """Draw a line of words, as many as fit."""
     lines = imgui.get_window_draw_list()
     inner = imgui.internal.get_current_window().inner_rect
     left, top, right = inner.min.x, imgui.get_cursor_screen_pos().y, inner.max.x

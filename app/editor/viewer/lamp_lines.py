@@ -1,4 +1,4 @@
-"""Lights as they are drawn over the picture."""
+"""Draws lights over the picture."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 _STEPS = 64
-"""Corners of circles in perspective."""
+"""The number of corners of circles in perspective."""
 
 _WIDEST = 80.0
-"""Degrees; the circle of a wider cone would be too large to be seen."""
+"""Degrees: the circle of a wider cone would be larger than the picture."""
 
 _RINGS = 14
 
 
 def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """A disk in the color of each light, a line to where a spot shines; of the selected one, how far and how wide."""
+    """Draw a disk for each light and a line to the target of a spot; for the selected one also range and cones."""
     mouse = imgui.get_mouse_pos()
     at_mouse, reach = (mouse.x, mouse.y), 10.0 * ui_scale()
     for lamp in lamps(context):
@@ -50,7 +50,7 @@ def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) ->
 
 
 def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """A ball in the light of the selected sun, in a disk of all directions; every sun is a knob there."""
+    """Draw the sun dome: a ball lit by the selected sun, and a knob for every sun."""
     visible_suns, scale = suns(context), ui_scale()
     if not visible_suns:
         return
@@ -73,7 +73,7 @@ def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> 
 
 
 def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
-    """In the light's color; black while it is off, with a bar if it takes light away."""
+    """Draw the knob of a light in its color; black if it is off, with a bar if it is negative."""
     scale = ui_scale()
     lines.add_circle_filled(at, 7.5 * scale, u32(BLACK, SHADE))
     lines.add_circle_filled(at, 6.0 * scale, u32(ring))
@@ -85,7 +85,7 @@ def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
 
 
 def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool) -> None:
-    """What a spot shines to: a ring at the end of a line."""
+    """Draw the target of a spot: a ring at the end of a line."""
     assert lamp.aims is not None
     scale, (goal_point, depth) = ui_scale(), lamp.aims
     end, color = sight.place(goal_point), CHOSEN if near else ring
@@ -99,7 +99,7 @@ def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: L
 
 
 def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:
-    """How far it reaches, as a dashed circle; a sphere's own size; a spot's cones, in perspective."""
+    """Draw the range as a dashed circle, the radius of a sphere, and the cones of a spot."""
     light, at = lamp.light, sight.place(lamp.at)
     unit_size = lamp.camera.focal[0] * sight.picture[0] * sight.zoom / sight.density / lamp.depth
     if light.reach > 0.0:
@@ -133,7 +133,7 @@ def cone(lamp: Lamp, angle: float) -> list[Place]:
 
 
 def sides(apex: Point, rim: list[Point]) -> tuple[Point, ...]:
-    """The corners of a rim that the outline of its cone touches; none if the apex is seen through the rim."""
+    """The corners of a rim that the outline of its cone touches; none if the apex lies inside of the rim."""
     corners: list[Point] = []
     for before, at, after in zip((rim[-1], *rim[:-1]), rim, (*rim[1:], rim[0]), strict=True):
         if (_side(apex, at, before) >= 0.0) == (_side(apex, at, after) >= 0.0):
@@ -147,7 +147,7 @@ def _side(start: Point, end: Point, of: Point) -> float:
 
 
 def _project_places(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point]:
-    """Places on the screen; none if any of them is not before the camera."""
+    """Positions on the screen; none if any of them is behind the camera."""
     projections = [project(lamp.camera, place) for place in places]
     if any(projection is None or projection[2] < 0.02 * lamp.depth for projection in projections):
         return []

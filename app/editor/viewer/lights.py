@@ -1,4 +1,4 @@
-"""Lights of the active node on the picture, where its camera sees them, and where they are put."""
+"""Lights of the active node: where its camera sees them, and edits of their position."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 MOST = 64
-"""Lights that are shown together; of longer lists only the selected one is."""
+"""The most lights that are drawn; of longer lists only the selected one is."""
 
 _SHORTEST = 0.12
-"""Least length of the line from a spot, as a part of its depth."""
+"""The least length of the line from a spot to its target, as a fraction of its depth."""
 
 _NEAREST = 0.2
-"""Least depth of the end of that line, as a part of that of the spot."""
+"""The least depth of the target, as a fraction of the depth of the spot."""
 
 _OVER = 0.05
-"""How far before a surface a light is dropped, as a part of its depth; a sphere's radius is added."""
+"""The distance from a surface to a light dropped on it, as a fraction of the depth; a sphere's radius is added."""
 
 _DEFAULT_DEPTH = 5.0
 
@@ -51,7 +51,7 @@ class Lamp:
 
     @property
     def goal(self) -> Place | None:
-        """A place that a spot shines to, as far away as its direction is long, but where it can be seen."""
+        """The target of a spot: as far away as its direction is long, but within view."""
         length = math.hypot(*self.light.direction)
         if self.light.kind is not LightKind.SPOT or not 0.0 < length < math.inf:
             return None
@@ -63,14 +63,14 @@ class Lamp:
 
     @property
     def aims(self) -> tuple[Point, float] | None:
-        """Where the camera sees that, and how deep."""
+        """The target on the picture, and its depth."""
         goal = self.goal
         projection = project(self.camera, goal) if goal else None
         return (projection[:2], projection[2]) if projection else None
 
 
 def lamps(context: ViewerContext) -> tuple[Lamp, ...]:
-    """Those that the camera sees, the selected one last; none if no camera is linked, or none is known yet."""
+    """The lights in front of the camera, the selected one last; none if no camera is linked or known yet."""
     return tuple(lamp for lamp in _list_lamps(context) if lamp.light.kind is not LightKind.SUN)
 
 
@@ -94,7 +94,7 @@ def _list_lamps(context: ViewerContext) -> tuple[Lamp, ...]:
 
 
 def lists(context: ViewerContext) -> tuple[Port, ...]:
-    """The values of the active node that list lights, and that nothing else drives."""
+    """The light lists of the active node that are not linked."""
     session = context.session
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
@@ -109,12 +109,12 @@ def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
 
 
 def _find_chosen_index(context: ViewerContext, port: Port) -> int:
-    """The selected light; -1 if there is none."""
+    """The index of the selected light; -1 if there is none."""
     return min(max(context.lights.get(str(port), 0), 0), count_lights(_numbers(context, port)) - 1)
 
 
 def _camera(context: ViewerContext) -> CameraModel | None:
-    """The one that is linked to the active node."""
+    """The camera that is linked to the active node."""
     session = context.session
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
@@ -130,13 +130,13 @@ def _camera(context: ViewerContext) -> CameraModel | None:
 
 
 def place_light(context: ViewerContext, lamp: Lamp, to: Point, depth: float | None = None) -> None:
-    """Put a light elsewhere on the picture, as far from the camera as it is, or at another depth."""
+    """Move a light to a point of the picture, at its depth or at another one."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
     change_light(context, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
 
 
 def drop_light(context: ViewerContext, lamp: Lamp, to: Point) -> None:
-    """Put it before the surface that is seen there; where none is, it stays as far away as it is."""
+    """Move a light in front of the surface at a point of the picture; without a surface it keeps its depth."""
     place = _over(context, lamp.camera, to, lamp.light)
     if place is None:
         place_light(context, lamp, to)
@@ -145,7 +145,7 @@ def drop_light(context: ViewerContext, lamp: Lamp, to: Point) -> None:
 
 
 def turn_spot(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
-    """Let a spot shine to a point of the picture at a depth."""
+    """Aim a spot at a point of the picture at a depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
     direction = move_place(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
     x, y, z = (round(part, 5) for part in direction)
@@ -154,7 +154,7 @@ def turn_spot(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> No
 
 
 def change_light(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
-    """Let it be that one; what is done to it in a row is one step."""
+    """Replace a light; consecutive changes are one undo step."""
     numbers = _numbers(context, lamp.port)
     if lamp.index >= count_lights(numbers):
         return
@@ -166,17 +166,17 @@ def change_light(context: ViewerContext, lamp: Lamp, light: Light, merge: str = 
 
 
 def make_merge_token(lamp: Lamp) -> str:
-    """The merge token of what is done to it."""
+    """The merge token of changes of a light."""
     return f"light {lamp.port} {lamp.index}"
 
 
 def can_add(context: ViewerContext) -> bool:
-    """True if the active node has a list of lights, and is told what it sees them with."""
+    """True if the active node has a light list and a camera."""
     return bool(lists(context)) and _camera(context) is not None
 
 
 def add_light(context: ViewerContext, to: Point) -> None:
-    """Add a point light before the surface that is seen there; where none is, as deep as the selected one."""
+    """Add a point light in front of the surface at a point; without a surface, at the depth of the selected light."""
     ports, camera = lists(context), _camera(context)
     if not ports or camera is None:
         return
@@ -217,7 +217,7 @@ def remove_chosen_light(context: ViewerContext) -> None:
 
 
 def _over(context: ViewerContext, camera: CameraModel, to: Point, light: Light) -> Place | None:
-    """A place before the surface that is seen at a point of the picture, on the way to it."""
+    """A position in front of the surface at a point of the picture."""
     surface = surface_at(context, camera, to)
     if surface is None:
         return None

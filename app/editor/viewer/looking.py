@@ -1,4 +1,4 @@
-"""How a result is shown: as a picture, or data made visible."""
+"""How the viewer displays a result: as a picture, or as data."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ if TYPE_CHECKING:
     from ..theme.palette import RGB
 
 Samples = Callable[[], Array]
-"""Gives the picture with most pixels left out; only called where it matters."""
+"""Returns a small version of the picture; called only if it is needed."""
 
 
 def choose_meaning(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
-    """As what to show it."""
+    """How to show a picture: the user's choice, or by its kind and numbers."""
     if state.meaning != "auto":
         return state.meaning
     if kind in (Kind.IMAGE, Kind.COLOR):
@@ -38,7 +38,7 @@ def choose_meaning(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
 
 
 def choose_range(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[float, float]:
-    """The numbers that are shown as black and as white."""
+    """The numbers of data that are shown as black and as white."""
     if state.low != state.high:
         return state.low, state.high
     if meaning not in ("field", "vector"):
@@ -48,7 +48,7 @@ def choose_range(state: ViewerState, meaning: Meaning, samples: Samples) -> tupl
 
 
 def measures(state: ViewerState, kind: Kind) -> bool:
-    """True if it depends on the numbers of the whole picture how it is shown."""
+    """True if the display depends on the numbers of the whole picture."""
     meaning = state.meaning
     if meaning == "auto":
         return kind is not Kind.IMAGE
@@ -73,7 +73,7 @@ def look_of(
     surround: RGB,
     manager: ColorManager | None = None,
 ) -> Look:
-    """What the display needs to know.
+    """The look for the display.
 
     `span` is the range of data, `view` what the picture asks for, `manager` how its colors are managed.
     """
@@ -111,7 +111,7 @@ def look_of(
 
 
 def picture_only(look: Look) -> Look:
-    """The same at the picture's own size, without what only helps to judge it."""
+    """The look at the picture's own size, without overlays that only help to judge it."""
     return replace(look, zoom=1.0, pan=(0.0, 0.0), clipping=False, nonfinite=False, region=None)
 
 
@@ -123,7 +123,7 @@ def display_pixels(pixels: Array, look: Look) -> Array:
         return np.clip((rgb_of(pixels) - look.low) / max(look.high - look.low, 1e-6), 0.0, 1.0)
     lit = np.concatenate([rgb_of(pixels) * np.float32(2.0**look.exposure), _alpha(pixels)], axis=2)
     encoded = to_display(lit, look.view, bits=32, display=look.display, look=look.look, manager=look.manager)[..., :3]
-    cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color without alpha is light
+    cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color with an alpha of 0 adds light
     return np.clip(encoded, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
 
 

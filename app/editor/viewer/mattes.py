@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MatteHit:
-    """What is under the pointer: its id, and its name if the file gives it one; `on` if it is picked."""
+    """The object under the pointer: its id, and its name if the file has one; `on` if it is picked."""
 
     port: Port
     matte: Matte
@@ -32,7 +32,7 @@ class MatteHit:
 
     @property
     def words(self) -> str:
-        """What a label says of it."""
+        """The text of the label."""
         if not self.name:
             return f"id {self.id:08x}: the file has no name for it"
         return f"{icons.ICON_FA_CHECK}  {self.name}" if self.on else self.name
@@ -48,7 +48,7 @@ def picks(context: ViewerContext) -> Port | None:
 
 
 def find_matte_hit(context: ViewerContext, sight: Sight, at: Point) -> MatteHit | None:
-    """What a click there would pick; None for nothing, and while the file is being read."""
+    """The object that a click would pick; None for nothing, and while the file is being read."""
     port = picks(context)
     file = render_file(context.session.graph, port.node) if port else None
     matte = matte_at(context, port.node) if port else None
@@ -65,7 +65,7 @@ def find_matte_hit(context: ViewerContext, sight: Sight, at: Point) -> MatteHit 
 
 
 def click(context: ViewerContext, sight: Sight, at: Point) -> None:
-    """Pick what is there, or no longer, as one step."""
+    """Pick the object under the mouse, or unpick it, as one step."""
     hit = find_matte_hit(context, sight, at)
     if hit is None:
         return
@@ -78,7 +78,7 @@ def click(context: ViewerContext, sight: Sight, at: Point) -> None:
 
 
 def draw_name(context: ViewerContext, sight: Sight) -> None:
-    """The name of what is under the pointer, beside it."""
+    """Draw the name of the object under the pointer."""
     if not context.viewer.hovered or picks(context) is None:
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()

@@ -1,4 +1,4 @@
-"""Numbers about pixels: statistics, and how they are written."""
+"""Statistics of pixels, and numbers as text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Statistics:
-    """Per channel, of finite numbers; `wrong` counts the pixels that hold others."""
+    """Statistics per channel, of finite numbers; `wrong` counts pixels with other numbers."""
 
     low: tuple[float, ...]
     mean: tuple[float, ...]
@@ -22,7 +22,7 @@ class Statistics:
 
 
 def statistics(pixels: Array) -> Statistics:
-    """Of pixels [h, w, channels]."""
+    """The statistics of pixels [h, w, channels]."""
     flat = pixels.reshape(-1, pixels.shape[2]).astype(np.float64)
     finite = np.isfinite(flat)
     low, mean, high = [], [], []

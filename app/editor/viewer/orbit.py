@@ -1,4 +1,4 @@
-"""A camera that goes around a target, as the values of a node have it: turned, moved and brought nearer."""
+"""The orbit camera of a node: a target, a distance and angles, and how the mouse changes them."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 SENSOR = 36.0
-"""Width in mm of what the focal length is measured against."""
+"""The width of the sensor in mm to which the focal length refers (full frame)."""
 
 HALF_TURN = 180.0
-"""Degrees that it turns for a drag across the whole panel."""
+"""Degrees that a drag across the whole panel turns the camera."""
 
 VALUES = ("target", "distance", "azimuth", "elevation", "focal")
-"""A node that has these values has a camera that goes around a target."""
+"""The values of a node with an orbit camera."""
 
 NEAREST, FARTHEST = 1e-3, 1e6
 STEEPEST = 89.0
-"""Straight from above, left and right would be anywhere."""
+"""The steepest elevation in degrees: straight from above, the camera's roll is undefined."""
 
 _MARGIN = 0.9
-"""The part of the picture that a framed scene fills."""
+"""The fraction of the picture that a framed scene fills."""
 
 _SURROUNDING = 0.99
-"""What is so large, as a part of everything both in x and y, is a floor or backdrop: framing leaves it out."""
+"""An object that covers this fraction of the scene in x and y is a floor or backdrop, which framing leaves out."""
 
 
 @dataclass(frozen=True)
 class Orbit:
-    """Where the camera is: angles in degrees, focal length in mm."""
+    """An orbit camera: angles in degrees, focal length in mm."""
 
     target: Place
     distance: float
@@ -52,24 +52,24 @@ class Orbit:
 
     @classmethod
     def of(cls, node: Node) -> Orbit:
-        """The one that a node's values say."""
+        """The camera in the values of a node."""
         return cls(*(getattr(node, name) for name in VALUES))
 
     def camera(self, aspect: float) -> CameraModel:
-        """As effects see it; `aspect` is the picture's width over its height."""
+        """The camera as effects take it; `aspect` is the picture's width over its height."""
         across = self.focal / SENSOR
         angles = math.radians(self.azimuth), math.radians(self.elevation)
         return orbit_camera(self.target, self.distance, *angles, (across, across * aspect))
 
     def turn_by(self, right: float, down: float) -> Orbit:
-        """After a drag by parts of the panel's width: what is in front of the target goes where the mouse goes."""
+        """The camera after a drag by fractions of the panel's width: what is before the target follows the mouse."""
         azimuth = (self.azimuth - HALF_TURN * right + 180.0) % 360.0 - 180.0
         low, high = min(self.elevation, -STEEPEST), max(self.elevation, STEEPEST)
         elevation = min(max(self.elevation + HALF_TURN * down, low), high)
         return replace(self, azimuth=round(azimuth, 3), elevation=round(elevation, 3))
 
     def shift_target(self, right: float, down: float, depth: float, aspect: float) -> Orbit:
-        """With the target moved so that what lies at a depth goes right and down by fractions of the picture."""
+        """The camera with its target moved: objects at a depth move right and down by fractions of the picture."""
         camera = self.camera(aspect)
         across, along = right * depth / camera.focal[0], down * depth / camera.focal[1]
         x, y, z = (
@@ -79,11 +79,11 @@ class Orbit:
         return replace(self, target=(x, y, z))
 
     def approach_by(self, factor: float) -> Orbit:
-        """With the target that many times as near."""
+        """The camera at a smaller distance, by a factor."""
         return replace(self, distance=neat(min(max(self.distance / factor, NEAREST), FARTHEST)))
 
     def frame_places(self, places: np.ndarray, aspect: float) -> Orbit:
-        """Seen from the same side, with all places [n, 3] in the picture, and their middle in its middle."""
+        """The camera that shows all positions [n, 3] from the same side, centered."""
         low, high = places.min(axis=0), places.max(axis=0)
         x, y, z = (neat(float(part)) for part in (low + high) / 2.0)
         camera = replace(self, target=(x, y, z)).camera(aspect)
@@ -101,9 +101,9 @@ class Orbit:
 
 
 def find_orbit_node(session: Session) -> str:
-    """The node whose camera the viewer moves: the scene that is selected, else the only one that is seen; "" if none.
+    """The node whose camera the viewer moves: the selected scene, else the only viewed one; "" if there is none.
 
-    One that is selected must be seen too. Values that links or keys set are not for the mouse.
+    A selected scene must be viewed too, and its camera neither linked nor animated.
     """
     graph, viewed_port = session.graph, session.views.find_port("A")
     scenes = [id for id, item in graph.nodes.items() if _goes_around(item)]
@@ -139,13 +139,13 @@ def _is_free(graph: Graph, id: str) -> bool:
 
 
 def scene_at(context: ViewerContext) -> Node | None:
-    """The node whose camera the viewer moves, as it is now."""
+    """The node whose camera the viewer moves, at the current frame."""
     item = context.session.graph.nodes.get(context.viewer.scene)
     return item if isinstance(item, Node) and _goes_around(item) else None
 
 
 def move_camera(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
-    """Move the camera there; equal `merge` tokens in a row make one step."""
+    """Set the camera; equal `merge` tokens make one undo step."""
     session, id = context.session, context.viewer.scene
     graph, before = session.graph, scene_at(context)
     if before is None:
@@ -163,14 +163,14 @@ def aspect_of(context: ViewerContext) -> float:
 
 
 def frame_scene(context: ViewerContext) -> None:
-    """Show all of the scene, as one step."""
+    """Frame the whole scene, as one undo step."""
     node = scene_at(context)
     if node is not None:
         move_camera(context, Orbit.of(node).frame_places(_places(context, node), aspect_of(context)))
 
 
 def _places(context: ViewerContext, node: Node) -> np.ndarray:
-    """Where the scene's triangles are, but for a floor or backdrop around the rest. It was loaded to be shown."""
+    """The vertices of the scene, without a floor or backdrop."""
     name, file, up = (getattr(node, value) for value in ("scene", "file", "up"))
     path = str(PurePath(context.session.graph.folder, file))
     mesh = load_mesh(SceneFile(path, up) if name == "file" else BuiltInScene(name), sandbox=context.session.sandbox)
@@ -180,7 +180,7 @@ def _places(context: ViewerContext, node: Node) -> np.ndarray:
 
 
 def without_surroundings(places: np.ndarray, objects: np.ndarray) -> np.ndarray:
-    """The places of all objects but those as wide as everything; of all, if nothing would be left.
+    """The positions of all objects except those as wide as the scene; of all objects, if none would be left.
 
     Places of one object stand in a row.
     """

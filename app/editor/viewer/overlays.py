@@ -1,4 +1,4 @@
-"""What is drawn over the picture: grid, region, wipe, handles, lights, markers, messages."""
+"""Draws overlays over the picture: grid, region, wipe, handles, lights, markers and messages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def draw_overlays(context: ViewerContext, sight: Sight) -> None:
-    """Everything that belongs to a place on the picture."""
+    """Draw all overlays with a place on the picture."""
     lines = imgui.get_window_draw_list()
     if sight.zoom >= GRID_FROM:
         _grid(lines, sight)
@@ -47,7 +47,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
 
 
 def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
-    """Lines between pixels that are in sight."""
+    """Draw lines between the visible pixels."""
     left, top, right, bottom = _visible(sight)
     color = u32(WHITE, min((sight.zoom - GRID_FROM) / 16.0, 1.0) * 0.16 + 0.04)
     x0, y0 = sight.screen((left, top))
@@ -60,7 +60,7 @@ def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
 
 
 def _visible(sight: Sight) -> tuple[int, int, int, int]:
-    """The pixels in sight: left, top, right, bottom."""
+    """The visible pixels: left, top, right, bottom."""
     (left, top), (right, bottom) = (sight.pixel(corner) for corner in _corners(sight))
     width, height = sight.picture
     return (
@@ -91,7 +91,7 @@ def _region(context: ViewerContext, lines: imgui.ImDrawList, box: Box) -> None:
 
 
 def _wipe(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """Grips on the line, which the display draws."""
+    """Draw the grips of the wipe line; the display draws the line."""
     viewer, scale = context.viewer, ui_scale()
     x, y = sight.place(viewer.wipe)
     dx, dy = wipe_direction(viewer.wipe_angle)
@@ -126,7 +126,7 @@ def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> N
 
 
 def _draw_picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """While a distance is picked: the one that is under the pointer."""
+    """Draw the depth under the pointer while a distance is picked."""
     viewer, port = context.viewer, find_focus_port(context.session)
     if not viewer.hovered or port is None or viewer.picking != str(port) or not is_distance(port):
         return
@@ -145,7 +145,7 @@ def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
 
 
 def draw_progress(context: ViewerContext, sight: Sight, fraction: float) -> None:
-    """A thin line at the top that grows."""
+    """Draw progress as a thin line at the top."""
     (left, top), (right, _) = _corners(sight)
     lines, height = imgui.get_window_draw_list(), 2.0 * ui_scale()
     lines.add_rect_filled((left, top), (right, top + height), u32(BLACK, 0.4))
@@ -153,7 +153,7 @@ def draw_progress(context: ViewerContext, sight: Sight, fraction: float) -> None
 
 
 def draw_message(context: ViewerContext, sight: Sight, text: str, color: RGB, dim: bool = False) -> None:
-    """A sentence in the middle of the panel; `dim` darkens what is behind it."""
+    """Draw a sentence in the middle of the panel; `dim` darkens the background."""
     (left, top), (right, bottom) = _corners(sight)
     palette, scale = context.palette, ui_scale()
     lines = imgui.get_window_draw_list()
@@ -173,7 +173,7 @@ def draw_message(context: ViewerContext, sight: Sight, text: str, color: RGB, di
 
 
 def draw_badge(context: ViewerContext, sight: Sight, text: str, color: RGB) -> Box:
-    """A few words in the upper right corner; returns where."""
+    """Draw a label in the upper right corner; returns its rectangle."""
     (_, top), (right, _) = _corners(sight)
     palette, scale = context.palette, ui_scale()
     size, pad = imgui.calc_text_size(text), 5 * scale

@@ -1,17 +1,17 @@
-"""How coarse pictures may be while a value is being dragged, so that they keep up with the hand."""
+"""Chooses the proxy while the user drags a value, so that pictures keep up with the mouse."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 SLOW = 0.060
-"""Seconds: above, the next picture is made coarser."""
+"""Seconds per picture above which the next one is coarser: below 15 pictures a second a drag feels slow."""
 
 EASY = 0.035
-"""Seconds: a finer scale must promise this before it is taken again."""
+"""Seconds per picture that a finer scale must promise before it is used again."""
 
 COARSEST = 0.25
-"""The least part of the chosen proxy."""
+"""The coarsest scale, as a fraction of the chosen proxy."""
 
 OVERDUE = 0.5
 """Seconds after which a picture counts as slow even if it is not there yet."""
@@ -58,7 +58,7 @@ class Pace:
         return self.scale if dragging else finest
 
     def took(self, scale: float, seconds: float, share: float = 1.0) -> None:
-        """A picture at `scale`, or a part of it, was finished after `seconds`."""
+        """Note that a picture at `scale`, or a part of it, took `seconds`."""
         self.seconds = seconds * (self._finest / scale) ** 2 / share
         if self._dragging and scale == self.scale:
             self.scale = coarsen_scale(self._finest, scale, seconds)
@@ -66,13 +66,13 @@ class Pace:
 
 @dataclass
 class PictureTimer:
-    """Measures how long pictures take, from what is seen once per frame."""
+    """Measures how long pictures take, from what is shown in each frame of the window."""
 
     _started: float | None = None
     _key: str = ""
 
     def lap(self, busy: bool, key: str, time_now: float) -> float | None:
-        """Seconds that a picture took, when another one is shown, nothing is left to do, or it is overdue."""
+        """The seconds of the last picture, once it is shown, complete or overdue."""
         if self._started is None:
             self._started, self._key = (time_now if busy else None), key
             return None

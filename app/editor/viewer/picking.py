@@ -1,4 +1,4 @@
-"""Choosing what a side of the viewer shows."""
+"""The menu of what a side of the viewer shows."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
-    """Everything that can be shown, under headings, as the graph flows."""
+    """All ports that can be shown, grouped, in the order of the graph."""
     nodes = tuple(Port(id, name) for id in _order_nodes(graph) for name in signature(graph.nodes[id]).outputs)
     groups = (
         ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)),
@@ -28,14 +28,14 @@ def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
 
 
 def title(graph: Graph, port: Port) -> str:
-    """What a port is called in a list: a node with one output by its id alone."""
+    """The title of a port in a list: only the id for a node with one output."""
     if port.node in (INPUTS, OUTPUTS):
         return port.socket
     return port.node if len(signature(graph.nodes[port.node]).outputs) == 1 else f"{port.node}.{port.socket}"
 
 
 def pick_port(context: ViewerContext, side: str, label: str) -> None:
-    """A button that says what is shown, and a list to choose from."""
+    """Draw the button with the shown port, and its menu."""
     name = f"button viewer {side}"
     doc = f"What {side} shows. Ctrl+1 to Ctrl+9 assign a node to a key, 1 to 9 show it."
     dropdown(context, label, name, doc, lambda: list_ports(context, side))
@@ -46,7 +46,7 @@ def pick_port(context: ViewerContext, side: str, label: str) -> None:
 
 
 def list_ports(context: ViewerContext, side: str) -> None:
-    """Everything that a side can show, as entries of the menu that is open."""
+    """Draw everything that a side can show as entries of the open menu."""
     session = context.session
     chosen = session.views.find_port("A" if side == "A" else "B")
     numbers = {port: number for number, port in session.views.numbered_ports.items()}

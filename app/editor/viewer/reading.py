@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 SMALL = 208
-"""Width of what stands for a whole picture in scopes and ranges."""
+"""The width of the small picture from which scopes and ranges are measured."""
 
 BAND = 2**19
-"""Pixels that are looked through per frame."""
+"""Pixels that are scanned per frame of the window."""
 
 
 class ValueReader:
-    """What was read last, by what it is of."""
+    """Caches the numbers that were read last."""
 
     def __init__(self) -> None:
         self._cache: dict[object, tuple[object, Any]] = {}
 
     def read_small(self, probe: PixelProbe, image: DisplayedImage) -> Array:
-        """The picture [h, w, channels] with most pixels left out."""
+        """A small version of the picture, [h, w, channels]."""
         return self._remember(
             "small",
             _mark(image),
@@ -50,7 +50,7 @@ class ValueReader:
         )
 
     def measure_box(self, probe: PixelProbe, name: str, image: DisplayedImage, box: Box) -> Statistics:
-        """Statistics of a box of fractions."""
+        """The statistics of a box of fractions."""
         part = texels(box, image.texture.size)
         return self._remember(
             ("box", name),
@@ -66,7 +66,7 @@ class ValueReader:
 
 
 class Scan:
-    """Looks through a picture for numbers that are not finite, some of it every frame."""
+    """Counts the pixels of a picture that are not finite, a part of it per frame of the window."""
 
     def __init__(self) -> None:
         self._mark: object = None
@@ -75,7 +75,7 @@ class Scan:
         """Pixels found so far."""
 
     def step(self, probe: PixelProbe, image: DisplayedImage | None) -> None:
-        """Go on, from the start where the picture is another one."""
+        """Continue to count; start again for another picture."""
         if image is None:
             self._mark, self._steps, self.wrong = None, None, 0
             return

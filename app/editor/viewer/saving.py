@@ -1,4 +1,4 @@
-"""Saves what the viewer shows, as it shows it."""
+"""Saves the picture of the viewer as displayed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | None, look: Look) -> None:
-    """Draw the picture at its own size, and ask where to keep it."""
+    """Draw the picture at its own size, and ask for a file."""
     width, height = a.full_size
     texture = context.display.draw("saved", (width, height), a, b, picture_only(look))
     try:

@@ -1,4 +1,4 @@
-"""Scopes as pictures of 8 bits, [height, width, 4]: bright traces over nothing."""
+"""Scopes as 8-bit pictures, [height, width, 4]: bright traces on transparent black."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _CHANNELS = np.asarray((_RED, _GREEN, _BLUE), np.float32)
 def histogram_image(rgb: Array, low: float, high: float, logarithmic: bool, dark: bool, rows: int = 128) -> Array:
     """Filled curves of red, green and blue that add up where they overlap, and luminance behind them."""
     counts = scopes.histogram(rgb, low, high).astype(np.float32)
-    inner = counts[:, 1:-1]  # what is clipped would flatten everything else
+    inner = counts[:, 1:-1]  # clipped pixels would flatten everything else
     if logarithmic:
         counts, inner = np.log1p(counts), np.log1p(inner)
     top = max(float(np.percentile(inner, 99.5)), 1e-6)  # one level that most pixels have would too
@@ -38,12 +38,12 @@ def waveform_image(rgb: Array, low: float, high: float, dark: bool) -> Array:
 
 
 def parade_image(rgb: Array, low: float, high: float, dark: bool) -> Array:
-    """The same, side by side."""
+    """The waveforms of red, green and blue side by side."""
     return _traces(scopes.parade(rgb, rgb.shape[1] // 3 * 3, LEVELS, low, high), dark)
 
 
 def vectorscope_image(rgb: Array, dark: bool, size: int = 256) -> Array:
-    """Where chroma lies, in the colors that it stands for."""
+    """The vectorscope, with traces in the colors of their chroma."""
     light = scopes.glow(scopes.vectorscope(np.clip(rgb, 0.0, 1.0), size))
     axis = (np.arange(size, dtype=np.float32) + 0.5) / size * (2 * scopes.CHROMA) - scopes.CHROMA
     blue, red = np.meshgrid(axis, -axis)
@@ -60,7 +60,7 @@ def vectorscope_image(rgb: Array, dark: bool, size: int = 256) -> Array:
 
 
 def _traces(counts: Array, dark: bool) -> Array:
-    """Hue by what each channel has there, opacity by how much it is."""
+    """Traces: the hue from the share of each channel, the opacity from the count."""
     light = scopes.glow(counts)
     color = light @ _CHANNELS
     hue = color / np.maximum(color.max(axis=2, keepdims=True), 1e-6)
@@ -69,7 +69,7 @@ def _traces(counts: Array, dark: bool) -> Array:
 
 
 def _ink(color: Array) -> Array:
-    """A color that can be seen on a light background."""
+    """A color that is visible on a light background."""
     return color / np.maximum(color.max(axis=2, keepdims=True), 1e-6) * 0.58
 
 

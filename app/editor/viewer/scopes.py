@@ -1,4 +1,4 @@
-"""What scopes show of a picture, as arrays. Pictures are [height, width, 3 or 4]; nothing here draws."""
+"""Computes the arrays of scopes. Pictures are [height, width, 3 or 4]; nothing here draws."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ LUMINANCE = (0.2126, 0.7152, 0.0722)
 """BT.709."""
 
 CHROMA = 0.5 * 1.06
-"""The vectorscope shows Cb and Cr from minus to plus this."""
+"""The range of Cb and Cr in the vectorscope, from minus to plus this: all display colors, with a margin of 6 %."""
 
 SKIN_ANGLE = 123.0
-"""Degrees from the axis of Cb towards that of Cr: where skin of every tone lies."""
+"""The skin tone line: degrees from the axis of Cb towards that of Cr (the I axis of NTSC)."""
 
 TARGETS = (
     ("R", (0.75, 0.0, 0.0)),
@@ -24,7 +24,7 @@ TARGETS = (
     ("B", (0.0, 0.0, 0.75)),
     ("Mg", (0.75, 0.0, 0.75)),
 )
-"""The colors of bars at 75 %."""
+"""The colors of 75 % color bars."""
 
 
 def rgb_of(pixels: Array) -> Array:
@@ -94,13 +94,13 @@ def vectorscope(rgb: Array, size: int) -> Array:
 
 
 def chroma_place(rgb: tuple[float, float, float]) -> tuple[float, float]:
-    """Where a color is in the vectorscope: fractions of its width and height from the left top."""
+    """The place of a color in the vectorscope: fractions of its width and height from the top left."""
     blue, red = (float(part) for part in chroma(np.asarray(rgb)))
     return 0.5 + blue / (2 * CHROMA), 0.5 - red / (2 * CHROMA)
 
 
 def glow(counts: Array) -> Array:
-    """Counts as brightness 0..1: single pixels can be seen, and crowds do not hide everything else."""
+    """Counts as brightness 0 to 1: single pixels are visible, and large counts do not hide the rest."""
     top = float(np.percentile(counts[counts > 0], 97.0)) if (counts > 0).any() else 1.0
     return np.clip((counts / max(top, 1.0)) ** 0.45 * 1.1, 0.0, 1.0).astype(np.float32)
 

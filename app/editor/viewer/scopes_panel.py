@@ -1,4 +1,4 @@
-"""The scopes panel: what the picture on side A measures."""
+"""The Scopes panel: histogram, waveform, parade and vectorscope of side A."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 SECONDS = 0.2
-"""Between refreshes."""
+"""Seconds between two refreshes."""
 
 _ICONS = (icons.ICON_FA_CHART_AREA, icons.ICON_FA_WAVE_SQUARE, icons.ICON_FA_CHART_COLUMN, icons.ICON_FA_CIRCLE_DOT)
 
 
 class ScopesPanel:
-    """Draws the scopes that are chosen, below each other or side by side, as fits."""
+    """Draws the chosen scopes, below each other or side by side."""
 
     def __init__(self, context: ViewerContext) -> None:
         self._context = context
@@ -43,13 +43,13 @@ class ScopesPanel:
         self._mark: object = None
         self._rgb = np.zeros((1, 1, 3), np.float32)
         self._waiting: list[str] = []
-        """Scopes still to be made of what was measured: one per frame, so that none of them stutters."""
+        """The scopes that still wait for an update: one is updated per frame, so that the window stays fluid."""
         self._next = 0.0
         self._range = (0.0, 1.0)
         self._clipping = (0.0, 0.0)
 
     def draw(self) -> None:
-        """Tools, and every scope."""
+        """Draw the tools and the scopes."""
         image = self._context.preview.find_whole_image(A)
         self._draw_tools()
         names = [name for name in SCOPES if name in self._context.viewer.scopes]
@@ -196,13 +196,13 @@ class ScopesPanel:
 
 
 def _wrap(label: str) -> None:
-    """Begin another line where a button with that label would not fit."""
+    """Continue on the same line if a button with that label fits, else on a new one."""
     if width_of_buttons(label) > imgui.get_content_region_avail().x:
         imgui.new_line()
 
 
 def _columns(width: float, height: float, count: int) -> int:
-    """How many scopes side by side make them least narrow or flat."""
+    """The number of columns that makes scopes least narrow or flat."""
 
     def badness(columns: int) -> float:
         rows = -(-count // columns)

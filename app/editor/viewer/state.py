@@ -1,4 +1,4 @@
-"""How the viewer shows pictures. Nothing here changes the document."""
+"""The state of the viewer. Nothing here changes the document."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
 Background = Literal["checker", "black", "gray", "white"]
 Meaning = Literal["auto", "image", "field", "vector", "normal"]
 CHANNELS: tuple[Channels, ...] = ("color", "red", "green", "blue", "alpha", "luminance", "false color")
-COMPARES: tuple[Compare, ...] = ("off", "wipe", "beside", "difference", "toggle")
 BACKGROUNDS: tuple[Background, ...] = ("checker", "black", "gray", "white")
 MEANINGS: tuple[Meaning, ...] = ("auto", "image", "field", "vector", "normal")
 PROXIES = (1.0, 0.5, 0.25, 0.125)
@@ -30,7 +29,7 @@ class ViewerState:
     zoom: float = 0.0
     pan: tuple[float, float] = (0.0, 0.0)
     nearer: float = 1.0
-    """A zoom that was asked for and is still to be made, about the pointer."""
+    """A requested zoom factor, applied about the pointer in the next frame."""
     channels: Channels = "color"
     exposure: float = 0.0
     gamma: float = 1.0
@@ -60,9 +59,9 @@ class ViewerState:
     table: bool = False
     """True shows the values of every layer under the pointer."""
     finding: bool = False
-    """True starts, and goes on with, the search for the first node that makes NaN or infinity."""
+    """True while the search for the first node with NaN or infinity runs."""
     saving: bool = False
-    """True asks where to save what is seen."""
+    """True asks for a file and saves the picture."""
     copying: bool = False
     """True copies the values under the pointer to the clipboard."""
     proxy: float = 1.0
@@ -71,9 +70,9 @@ class ViewerState:
     meaning: Meaning = "auto"
     low: float = 0.0
     high: float = 0.0
-    """Range of data shown as gray; equal ones measure it."""
+    """The range of data shown as gray; if `low` and `high` are equal, it is measured."""
     span: tuple[float, float] = (0.0, 1.0)
-    """The range as shown last, measured or not."""
+    """The range of data in the last frame."""
     pixel: tuple[int, int] | None = None
     """The pixel under the pointer, at full size."""
     panel: tuple[int, int] = (0, 0)
@@ -84,16 +83,16 @@ class ViewerState:
     picking: str = ""
     """`node.value` that the next click on the picture sets: a color to that of the pixel, a position to its place."""
     orbiting: bool = False
-    """True lets the mouse move the camera of the scene that is seen, not the picture."""
+    """True lets the mouse move the camera of the viewed scene, not the picture."""
     scene: str = ""
-    """The node whose camera that is; "" where there is none."""
+    """The node of that scene; "" if there is none."""
     reader: ValueReader = field(default_factory=ValueReader)
-    """The numbers that handles know."""
+    """The numbers that handles have read."""
     compare_after: Compare = "off"
     """How to compare when the flipbook is closed."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
-    """True measures scene-linear numbers, False what the display shows."""
+    """True measures scene-linear values, False display values."""
     scopes_logarithmic: bool = False
 
     @property
@@ -107,15 +106,15 @@ class ViewerState:
         return self.orbiting and self.scene != ""
 
     def show(self, channels: Channels) -> None:
-        """Show these channels; asked for again, all of them."""
+        """Show some channels; a second call shows all."""
         self.channels = "color" if self.channels == channels else channels
 
     def toggle_comparison(self, mode: Compare) -> None:
-        """Compare that way; asked for again, not at all."""
+        """Set how to compare; a second call ends the comparison."""
         self.compare = "off" if self.compare == mode else mode
 
     def fit(self) -> None:
-        """Let the picture fill the panel, whatever size either has."""
+        """Fit the picture into the panel."""
         self.zoom, self.pan = 0.0, (0.0, 0.0)
 
     def begin_flipbook(self, count: int, *, again: bool) -> None:

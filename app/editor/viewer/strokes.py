@@ -1,4 +1,4 @@
-"""What overlays are made of: lines and words that can be read over any picture."""
+"""Lines and labels of overlays, readable over any picture."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BLACK: RGB = (0.0, 0.0, 0.0)
 """Lines over pictures of any color: white on black, whatever the theme."""
 
 CHOSEN: RGB = (1.0, 0.62, 0.30)
-"""What is selected, or under the mouse."""
+"""The color of what is selected, or under the mouse."""
 
 SHADE = 0.6
 """Opacity of the black below lines."""
@@ -61,7 +61,7 @@ def draw_dashed_circle(lines: imgui.ImDrawList, center: Point, radius: float, co
 
 
 def draw_label(lines: imgui.ImDrawList, center: Point, text: str) -> Box:
-    """Words around a point; returns where."""
+    """Draw a label centered on a point; returns its rectangle."""
     size = imgui.calc_text_size(text)
     x, y = round(center[0] - size.x / 2), round(center[1] - size.y / 2)
     pad = 3.0 * ui_scale()

@@ -30,7 +30,7 @@ _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", 
 
 
 def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str, tuple[float, ...]]]:
-    """Every row of the table: name, place, numbers."""
+    """The rows of the table: name, pixel, numbers."""
     viewer = context.viewer
     rows: list[tuple[str, str, tuple[float, ...]]] = []
     layers = _layers(context)
@@ -63,7 +63,7 @@ def rows_of(context: ViewerContext, reader: ValueReader) -> list[tuple[str, str,
 
 
 def draw_table(context: ViewerContext, reader: ValueReader, height: float) -> None:
-    """Draw it, `height` high."""
+    """Draw the table."""
     try:
         rows = rows_of(context, reader)
     except HalationError as error:
@@ -95,7 +95,7 @@ def _row(context: ViewerContext, name: str, place: str, values: tuple[float, ...
 
 
 def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
-    """A, B and the inputs of the graph, as far as they are there."""
+    """The pictures of A, B and the inputs of the graph that are ready."""
     names = [("A", "A")]
     if context.viewer.compares:
         names.append(("B", "B"))
@@ -104,6 +104,6 @@ def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
 
 
 def _same_place(pixel: Pixels, of: Pixels, size: Pixels) -> Pixels:
-    """The pixel of a picture of another size that lies at the same part of it."""
+    """The pixel at the same relative position of a picture of another size."""
     x, y = (min(int((pixel[i] + 0.5) * size[i] / max(of[i], 1)), size[i] - 1) for i in (0, 1))
     return x, y

@@ -1,4 +1,4 @@
-"""The row of tools above the picture; what does not fit is in a menu at its end."""
+"""The toolbar of the viewer; tools that do not fit are in a menu at its end."""
 
 from __future__ import annotations
 
@@ -240,7 +240,7 @@ def _brightness(context: ViewerContext) -> list[_ViewerTool]:
 
 
 def _range(context: ViewerContext) -> list[_ViewerTool]:
-    """How data is made visible."""
+    """The tools for the display of data."""
     viewer, font = context.viewer, imgui.get_font_size()
     measured, (low, high) = viewer.low == viewer.high, viewer.span
     speed = max(abs(high - low), 1e-6) / 200
@@ -304,7 +304,7 @@ def _proxy_while_dragging(context: ViewerContext) -> None:
 
 
 def context_menu(context: ViewerContext) -> None:
-    """What a right click on the picture offers."""
+    """Draw the context menu of the picture."""
     if imgui.begin_popup("viewer menu"):
         for action in context.actions.in_menu("viewer"):
             entry(context, action)

@@ -1,4 +1,4 @@
-"""The viewer: the picture, tools above it, numbers below it."""
+"""The Viewer panel: the toolbar, the picture, and the info line."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from .context import ViewerContext
 
 TABLE_LINES = 7
-"""Always the same, whatever it holds: else the picture would move under the pointer."""
+"""The lines of the pixel table, always the same: otherwise the picture would move under the pointer."""
 _CATCH = (
     int(imgui.ButtonFlags_.mouse_button_left)
     | int(imgui.ButtonFlags_.mouse_button_middle)
@@ -50,20 +50,20 @@ _EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image
 
 @dataclass(frozen=True)
 class _FrameImages:
-    """What is shown in this frame."""
+    """The pictures of this frame."""
 
     a: DisplayedImage | None
     b: DisplayedImage | None
     view: str
-    """The view that the picture asks for."""
+    """The requested view of the picture."""
 
     @property
     def is_whole(self) -> bool:
-        """True unless only a part is there of what is shown."""
+        """True unless only a part of the picture is ready."""
         return not any(image is not None and image.partial for image in (self.a, self.b))
 
     def is_beside(self, context: ViewerContext) -> bool:
-        """True if B is seen at the right of A."""
+        """True if B is shown to the right of A."""
         return context.viewer.compare == "beside" and self.a is not None and self.b is not None
 
 
@@ -84,7 +84,7 @@ class Viewer:
         """True if the mouse is over B, beside A."""
 
     def draw(self) -> None:
-        """Everything, into the current window."""
+        """Draw into the current window."""
         viewer, preview = self._context.viewer, self._context.preview
         port = self._context.session.views.find_port("A")
         b = preview.find_visible_image(B) if viewer.compares else None
@@ -126,7 +126,7 @@ class Viewer:
             draw_table(self._context, self._reader, table)
 
     def _catch(self, images: _FrameImages, size: tuple[float, float]) -> Sight:
-        """The area of the picture, of A where B is beside it, after mouse and wheel had their say."""
+        """The sight of A after mouse and wheel were handled."""
         viewer, a, across = self._context.viewer, images.a, 2 if images.is_beside(self._context) else 1
         start = imgui.get_cursor_screen_pos()
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
@@ -150,7 +150,7 @@ class Viewer:
         return sight()
 
     def _find_hovered_sight(self, sight: Sight) -> Sight:
-        """Where the picture lies that the mouse is over."""
+        """The sight of the picture under the mouse: A or B."""
         if not self._right:
             return sight
         return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
@@ -176,7 +176,7 @@ class Viewer:
         texture = self._context.log.attempt(
             lambda: self._context.display.draw("viewer", sight.panel, images.a, images.b, look)
         )
-        if texture is None:  # a view that there is not
+        if texture is None:  # the config has no such view
             viewer.view = viewer.display = viewer.look = ""
             return look
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
@@ -204,7 +204,7 @@ class Viewer:
     def _draw_messages(self, images: _FrameImages, sight: Sight) -> None:
         preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault and images.a is None and fault not in preview.faults.values():  # something is still to be chosen
+        if fault and images.a is None and fault not in preview.faults.values():  # the user has to choose something
             draw_message(self._context, sight, fault[:1].upper() + fault[1:], palette.dim)
         elif fault and (images.a is None or preview.faults.get(self._context.code.fault_path) != fault):
             draw_message(self._context, sight, fault, palette.error, dim=images.a is not None)
@@ -248,7 +248,7 @@ class Viewer:
         imgui.dummy((0, 0))
 
     def _read(self, images: _FrameImages, sight: Sight, look: Look) -> None:
-        """What is under the pointer, written below the picture."""
+        """Draw the values under the pointer below the picture."""
         viewer = self._context.viewer
         mouse = imgui.get_mouse_pos()
         under = self._find_hovered_sight(sight).under((mouse.x, mouse.y))
@@ -294,7 +294,7 @@ class Viewer:
                 viewer.picking = ""
 
     def _convert_pick(self, port: Port, values: tuple[float, ...]) -> Plain | None:
-        """What a value becomes by a click on the picture: a place, a depth or a color; None if it is not known."""
+        """The new number of a value after a click on the picture: a position, a depth or a color; None if unknown."""
         viewer = self._context.viewer
         if takes_position(self._context.session, port):
             return pixel_place(viewer)
@@ -310,7 +310,7 @@ class Viewer:
         return _EMPTY
 
     def _time(self, images: _FrameImages) -> None:
-        """How long pictures take, for the line below and for the proxy of drags."""
+        """Measure how long pictures take, for the info line and the proxy of drags."""
         preview, moment = self._context.preview, imgui.get_time()
         busy = preview.busy and not preview.completing
         if busy:

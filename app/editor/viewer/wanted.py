@@ -1,4 +1,4 @@
-"""What the viewer wants to be computed."""
+"""The pictures that the viewer requests from the preview."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ A, B = "A", "B"
 
 
 def layer(name: str) -> str:
-    """Under which name the values of a graph input are wanted."""
+    """The request name of a graph input."""
     return str(Port(INPUTS, name))
 
 
@@ -31,7 +31,7 @@ def effective_scale(context: ViewerContext) -> float:
 
 
 def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
-    """What panels show by name, as ports of the graph that one is in, and the scale to compute it at.
+    """The ports to compute, by name, and the scale to compute them at.
 
     That is A, B where it is compared with, every input of the graph while their values are shown, and what says how far
     away things are where a handle asks for that.
@@ -44,7 +44,7 @@ def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
 
 
 def find_visible_region(context: ViewerContext) -> VisibleRegion | None:
-    """What can be seen of A, and of B where it is compared with; None where all is needed to show it.
+    """The visible region of A, and of B while comparing; None if the whole picture is needed.
 
     So it is while frames are played, which are kept for the next time, and where numbers of the whole picture say how
     it is shown.

@@ -43,7 +43,7 @@ def _has_graph(path: Path, sandbox: Sandbox) -> bool:
 
 
 def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
-    """Ask what a dropped picture of ours is wanted for: its graph, or its pixels."""
+    """Ask whether to open the graph of a dropped picture, or to read its pixels."""
     editor.dialogs.question = Question(
         "Rendered by Halation",
         f"{path.name} holds the graph that made it.",
@@ -55,7 +55,7 @@ def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path
 
 
 def add_files(editor: Editor, paths: Sequence[Path]) -> None:
-    """Make nodes of files."""
+    """Add files as nodes."""
     codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
     files, frames = suggest_patterns([path for path in paths if path not in codes], sandbox=editor.session.sandbox)
     files = (*codes, *files)

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from .editor import Editor
 
 FRAME_BUDGET = 0.012
-"""Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""
+"""Seconds of rendering per frame of the window: the rest of a sixtieth of a second is for drawing panels."""
 
 PLAY_BUDGET = 0.030
-"""The same while frames are played, which is what is looked at then."""
+"""Seconds of rendering per frame of the window during playback, when panels hardly change."""
 
 _DELETED: Mapping[Kind, str] = MappingProxyType(
     {
@@ -44,7 +44,7 @@ OVER_BUDGET = 2
 
 
 class FrameUpdater:
-    """Lets files be watched, unsaved work be kept, and pictures be computed within the budget of one frame."""
+    """Watches files, keeps unsaved work, and computes pictures within the budget of one frame."""
 
     def __init__(self, editor: Editor, contexts: Contexts) -> None:
         self._editor, self._contexts = editor, contexts
@@ -92,7 +92,7 @@ class FrameUpdater:
         )
 
     def _compute(self) -> None:
-        """Compute what the viewer and the canvas show, for as long as the budget lasts."""
+        """Compute what the viewer and the canvas show, within the budget."""
         editor, context = self._editor, self._contexts.viewer
         preview, preferences, session = editor.preview, editor.store.current, context.session
         preview.thumbnailing, preview.timed = preferences.thumbnails, preferences.timings
@@ -106,7 +106,7 @@ class FrameUpdater:
         preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
 
     def _play(self, session: Session) -> None:
-        """Go on to the frame that is due."""
+        """Go to the frame that playback shows now."""
         timeline, preview = self._editor.timeline, self._editor.preview
         playback, time_now = timeline.playback, imgui.get_time()
         if playback.playing:

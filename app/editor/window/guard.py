@@ -1,4 +1,4 @@
-"""A panel that fails must not take the program along."""
+"""Catches errors of panels, so that one cannot end the program."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .editor import Editor
 
 
 def draw_guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
-    """Draw a panel; False if it failed. Then the stacks of the window library are put right, and Problems says why."""
+    """Draw a panel; False if it failed: the stacks of the library are repaired, and Problems shows the error."""
     state = imgui.internal.ErrorRecoveryState()
     imgui.internal.error_recovery_store_state(state)
     try:
@@ -31,14 +31,14 @@ def draw_guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
 
 
 def enable_error_recovery() -> None:
-    """What a panel leaves open is closed for it, instead of ending the program; to be called once in a window."""
+    """Let the window library close what a failed panel leaves open, instead of ending the program. Call it once."""
     io = imgui.get_io()
     io.config_error_recovery_enable_assert = io.config_error_recovery_enable_tooltip = False
     io.config_error_recovery_enable_debug_log = True  # one of the three has to be on
 
 
 def _recover(state: imgui.internal.ErrorRecoveryState) -> None:
-    """End all that was begun since. What is left open is no news here, though tests want to hear of it elsewhere."""
+    """Close everything that was begun since. The library's warnings about it are off here, and stay on in tests."""
     io = imgui.get_io()
     strict = io.config_error_recovery_enable_assert
     enable_error_recovery()
@@ -47,7 +47,7 @@ def _recover(state: imgui.internal.ErrorRecoveryState) -> None:
 
 
 def draw_failure(editor: Editor, name: str) -> None:
-    """What a panel shows in place of itself."""
+    """Draw the message in place of a failed panel."""
     imgui.text_wrapped(f"{name} could not be drawn. The document is safe; Problems has the details.")
     if imgui.button("Try again"):
         editor.faults.pop(name, None)

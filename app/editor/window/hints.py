@@ -1,4 +1,4 @@
-"""What the mouse does in the panel below it, in a few words."""
+"""Hints in the status line: what the mouse and keys do in the panel under the mouse."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Hint = tuple[str, str]
 
 
 def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint, ...]:
-    """For the panel of that title; what is most needed first."""
+    """The hints for a panel, the most useful ones first."""
     viewer, canvas = editor.viewer, editor.canvas
     if panel == PanelTitle.VIEWER:
         if viewer.picking:
@@ -47,7 +47,7 @@ def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint
 
 
 def key_text(editor: Editor, keys: str) -> str:
-    """`keys`, or the shortcut in force if they name an action."""
+    """`keys`, or the current shortcut if they name an action."""
     return display_shortcut(editor.actions.shortcut(keys)) if "." in keys else keys
 
 

@@ -28,7 +28,7 @@ def open_window(path: Path | None, bindings: Mapping[str, str], sandbox: Sandbox
 
 
 def run(window: Window) -> None:
-    """Run a window until it is closed. Raises why it could not begin, and what failed outside of all panels."""
+    """Run a window until it is closed. Raises the error if it cannot start, and errors outside of panels."""
     try:
         immapp.run(window.params, immapp.AddOnsParams())
     except RuntimeError:
@@ -41,7 +41,7 @@ def run(window: Window) -> None:
 
 
 def keep_layout(params: hello_imgui.RunnerParams, state: Path) -> None:
-    """Remember where panels are, if the folder lets us: the library would end the program if not."""
+    """Save the layout of the panels, if the folder is writable: the library would end the program if it is not."""
     try:
         state.mkdir(parents=True, exist_ok=True)
     except OSError:

@@ -1,4 +1,4 @@
-"""Which panels there are, where they dock first, and what lies on top of them."""
+"""The list of panels with their first docks, and of dialogs on top of them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .contexts import Contexts
 
 
 class Panel(Protocol):
-    """Something that draws itself into the window it is given."""
+    """A panel: draws itself into the current window."""
 
     def draw(self) -> None: ...
 

@@ -1,4 +1,4 @@
-"""Keys to actions."""
+"""Runs the actions of pressed shortcuts."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def note_scope(editor: Editor) -> None:
 
 
 def run_shortcuts(editor: Editor) -> None:
-    """Do what the keys pressed in this frame ask for; keys that go into a text field do nothing else."""
+    """Run the actions of the keys that were pressed in this frame; keys in a text field run none."""
     if editor.dialogs.any or imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
         editor.timeline.tapped = False
         return
@@ -52,6 +52,6 @@ _MODIFIERS = sum(
     int(item) for item in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super)
 )
 _TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow)
-"""Keys that would press buttons, or move on to the next one, if they were not ours."""
+"""Keys that the library would use for buttons, if actions did not take them."""
 
 _OURS = 0x48414C41

@@ -1,4 +1,4 @@
-"""The line at the bottom of the window: what was said, or else what the mouse does, and what things cost."""
+"""The status line at the bottom of the window: the last message or hints, and time and memory."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from .hints import list_hints
 from .panels import DOCKED
 
 SECONDS = 8.0
-"""How long a sentence stays."""
+"""Seconds for which a message stays."""
 
 
 def draw_status(editor: Editor, contexts: Contexts) -> None:
-    """Words on the left, figures on the right."""
+    """Draw the message or hints on the left, figures on the right."""
     figures = _figures(editor)
     end = imgui.get_window_width() - imgui.get_style().window_padding.x
     left = max(end - imgui.calc_text_size(figures).x, 0.0)
@@ -37,7 +37,7 @@ def draw_status(editor: Editor, contexts: Contexts) -> None:
 
 
 def _draw_hints(editor: Editor, contexts: Contexts, end: float) -> None:
-    """As many as fit."""
+    """Draw as many hints as fit."""
     gap = imgui.get_font_size()
     for index, (keys, does) in enumerate(list_hints(editor, contexts.viewer, _panel_below(editor))):
         with font(contexts.dialogs, "bold"):

@@ -1,4 +1,4 @@
-"""The window: how the library that hosts it is told what to show."""
+"""The window: sets up the library that hosts it, and draws all panels."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ class Window:
             self.editor.interface.fonts = fonts.load()
 
     def close(self) -> None:
-        """Give everything back, once; unsaved work is kept, unless the user agreed to lose it."""
+        """Release everything, once; unsaved work is kept, unless the user discarded it."""
         if self._closed:
             return
         self._closed = True

@@ -28,7 +28,7 @@ class CodeEditor(Protocol):
     """True asks it to take the keyboard."""
 
     def flush(self) -> object:
-        """Take over what the user typed last."""
+        """Take over the last typed text."""
         ...
 
 

@@ -76,7 +76,7 @@ def test_settings_stay_beside_each_other_and_are_the_documents_in_groups(session
     session.apply(SetPreroll(6))
     found = session.root.settings
     assert (found.rate, found.size, found.preroll) == (25.0, (8, 4), 6)
-    assert session.history.undo_label == "Set pre-roll" and session.place == (group,)
+    assert session.history.steps[-1] == "Set pre-roll" and session.place == (group,)
 
 
 def test_a_value_with_keys_gets_keys_and_undo_is_one_step(session):

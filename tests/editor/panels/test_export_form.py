@@ -104,7 +104,7 @@ def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "out" / "soft_bloom.0004.exr").touch()
     assert form.targets(0.9) is aim and form.targets(1.1).exist == 4, "the disk is asked once in a second"
     assert exist_text(aim, False) == "3 of them exist and will be replaced."
-    assert exist_text(aim, True).startswith("3 of them are there. They are kept")
+    assert exist_text(aim, True).startswith("3 of them exist. Those up to date are kept")
     form.chosen["image"] = False
     assert "Choose an output" in form.targets(0.0).fault
 
