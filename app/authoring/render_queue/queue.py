@@ -57,7 +57,7 @@ class RenderQueue:
         are replaced. It waits for those before it. Raises UsageError, and GraphError for what JSON cannot hold.
         """
         if not destinations:
-            raise UsageError("no file to write is chosen: choose one")
+            raise UsageError("no file to write to: choose a file")
         inputs: dict[str, str] = {}
         for name, item in (bindings or {}).items():
             if not isinstance(item, str | Path):

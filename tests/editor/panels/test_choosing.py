@@ -121,7 +121,7 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:
     desk.session.files.open(PRESET)
     form = RenderForm(desk, chosen={"image": False})
-    with pytest.raises(UsageError, match="where to write"):
+    with pytest.raises(UsageError, match="no file to write to"):
         form.start()
 
 
