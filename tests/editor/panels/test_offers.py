@@ -84,7 +84,7 @@ def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, conte
 
 def test_what_cannot_be_done_says_why_and_comes_last(contexts: Contexts) -> None:
     offered = {command.id: command for command in list_commands(contexts.command_palette)}
-    assert offered["edit.undo"].reason == "nothing was done yet"
+    assert offered["edit.undo"].reason == "nothing to undo"
     assert offered["edit.copy"].reason == "select something first"
     assert not offered["file.open"].reason
     found = [bool(command.reason) for command, _ in rank_commands("o", tuple(offered.values()), ())]
