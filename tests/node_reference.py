@@ -34,7 +34,7 @@ BASES = (
     vocabulary.Temporal,
 )
 OVERRIDES = ("identity", "output_size", "times", "upgrade")
-NODE_ATTRIBUTES = ("traits", "proxy_notes", "version")
+NODE_ATTRIBUTES = ("traits", "proxy_notes", "aliases", "version")
 NOTES = ("Slider", "Doc", "Swatch", "Handle", "File", "OfLayer", "OfSpace", "Picks", "Curve", "ColorRamp", "Lights")
 
 TYPES = MappingProxyType(

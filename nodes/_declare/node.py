@@ -51,7 +51,7 @@ class Node:
     order: ClassVar[tuple[str, ...]] = ()
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     aliases: ClassVar[tuple[str, ...]] = ()
-    """What other programs and their users call it, in lower case: the search finds it by these words."""
+    """Names that other programs give such a node, in lower case: the search finds it by them."""
     traits: ClassVar[tuple[Trait, ...]] = ()
     """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
