@@ -39,6 +39,10 @@ _ENDINGS: Mapping[Kind, str] = {"shader": ".glsl", "node": ".py"}
 _POLL_SECONDS = 1.0
 """Seconds after which files are compared without a notification: a choice, for drives that send none."""
 
+_FOLDERS_EVERY = 10
+"""Comparisons without a notification, of which one looks into folders of shaders and nodes: these are part of
+the installation, hardly ever on a network drive, and to look through their 300 files takes 20 ms."""
+
 _REST_SECONDS = 0.15
 """Seconds that a file must stay unchanged before it is read, as its writer may not be done: a choice that users do not
 notice."""
@@ -125,6 +129,11 @@ class FileWatcher:
             self._news = {key: one for key, one in self._news.items() if key in _select_watched(watch_list, self._news)}
         self._wake.changed.set()
 
+    @property
+    def has_news(self) -> bool:
+        """True if `poll` would return something; other threads may ask."""
+        return bool(self._news)
+
     def poll(self) -> tuple[FileChange, ...]:
         """What changed since the last call, each file once."""
         if not self._news:
@@ -195,9 +204,10 @@ class FileWatcher:
             yield_on_timeout=True,
             raise_interrupt=False,
         )
-        for _ in events:
-            self._settle()
-            if self._folders() != folders:
+        for number, changes in enumerate(events):
+            is_whole = bool(changes) or number % _FOLDERS_EVERY == 0
+            self._settle(is_whole)
+            if is_whole and self._folders() != folders:
                 return
 
     def _wait(self, seconds: float) -> None:
@@ -214,19 +224,21 @@ class FileWatcher:
         numbers = ((path, _file_stamp(path, UNRESTRICTED)) for path in folders)
         return frozenset((path, stamp[2]) for path, stamp in numbers if stamp)
 
-    def _settle(self) -> None:
-        """Compare until every file has been at rest."""
-        self._compare()
+    def _settle(self, is_whole: bool = True) -> None:
+        """Compare until every file has been at rest; without folders if it is not `is_whole`."""
+        self._compare(is_whole)
         while not self._wake.is_set() and not all(one.rests for one in self._known.values()):
             self._wait(_REST_SECONDS)
             self._compare()
 
-    def _compare(self) -> None:
-        """Note the files that changed since the last comparison."""
+    def _compare(self, is_whole: bool = True) -> None:
+        """Note the files that changed since the last comparison; of watched folders only if it is `is_whole`."""
         with self._lock:
             watched, before, listed = self._watched, dict(self._known), self._listed
-        inside = {key: folder for folder in watched.folders for key in _files_inside(folder)}
-        removed = [key for key in before if key not in inside and key in _select_watched(watched, (key,))]
+        folders = watched.folders if is_whole else ()
+        inside = {key: folder for folder in folders for key in _files_inside(folder)}
+        gone = [key for key in before if is_whole and key not in inside]
+        removed = [key for key in gone if key in _select_watched(watched, (key,))]
         nothing = _FileState(None, b"", 0.0, True)
         # A file that a folder did not have when it was first looked at is news; all others are known from then on.
         old = {key: before.get(key) or (nothing if folder in listed else None) for key, folder in inside.items()}
@@ -235,7 +247,8 @@ class FileWatcher:
         with self._lock:
             if watched is not self._watched:
                 return
-            self._known, self._listed = states, frozenset(watched.folders)
+            self._known = states if is_whole else {**before, **states}
+            self._listed = frozenset(watched.folders) if is_whole else listed
             self._news |= {
                 key: one
                 for key, one in states.items()

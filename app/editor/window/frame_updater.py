@@ -53,6 +53,8 @@ class FrameUpdater:
         self._flushed = float("-inf")
         self._reported: set[str] = set()
         self._seconds_over_budget = 0
+        self.is_working = False
+        """True while there is more to compute."""
 
     def update(self) -> None:
         """Do the work of one frame."""
@@ -103,7 +105,7 @@ class FrameUpdater:
         place = session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
         preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.time.frame)
-        preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
+        self.is_working = preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
 
     def _play(self, session: Session) -> None:
         """Go to the frame that playback shows now."""

@@ -27,6 +27,7 @@ from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .menus import draw_menus
 from .panels import DOCKED, OVERLAYS, Docked, Panel
+from .resting import GRACE, FrameWaker, choose_idle_rate
 from .screenshot import save_screenshot
 from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
@@ -58,6 +59,8 @@ class Window:
         self._panels: dict[str, Panel] = {}
         self._overlays: dict[str, Panel] = {}
         self._updater: FrameUpdater
+        self._waker: FrameWaker
+        self._worked_at = 0.0
         self._dropped: list[str] = []
         self._input = InputQueue()
         self._title = ""
@@ -131,6 +134,7 @@ class Window:
         open_first(self.editor, self._path, self._bindings)
         self._contexts = compose_contexts(self.editor)
         self._updater = FrameUpdater(self.editor, self._contexts)
+        self._waker = FrameWaker(lambda: self.editor.watcher.has_news)
         self._panels = {docked.title: docked.make(self._contexts) for docked in DOCKED}
         self._panels["Timeline"] = Timeline(self._contexts.timeline)
         self._overlays = {name: make(self._contexts) for name, make in OVERLAYS}
@@ -151,6 +155,8 @@ class Window:
         self._closed = True
         for panel in (*self._panels.values(), *self._overlays.values()):
             getattr(panel, "close", bool)()
+        if hasattr(self, "_waker"):
+            self._waker.close()
         if hasattr(self, "editor"):
             take_apart(self.editor)
 
@@ -180,10 +186,7 @@ class Window:
         if editor.commands.closing:
             self.params.app_shall_exit = True
         self._serve_commands()
-        resting = self.params.fps_idling
-        computes = editor.preview.busy and not editor.preview.paused
-        resting.enable_idling = not (computes or editor.timeline.playback.playing)
-        resting.fps_idle = 10.0 if editor.exports.running or editor.dialogs.any else 2.0
+        self._rest()
 
     def _draw_menus(self) -> None:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
@@ -246,6 +249,15 @@ class Window:
         if title != self._title:
             self._title = title
             glfw.set_window_title(_host(), title)
+
+    def _rest(self) -> None:
+        """Say how often the next frames come."""
+        editor, time_now = self.editor, imgui.get_time()
+        if self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
+            self._worked_at = time_now
+        resting = self.params.fps_idling
+        resting.enable_idling = time_now - self._worked_at > GRACE
+        resting.fps_idle = choose_idle_rate(editor)
 
     def _serve_commands(self) -> None:
         """Do what panels and actions asked the window to do."""
