@@ -23,7 +23,7 @@ from ...authoring.log import TOAST_SECONDS
 from .editor import Editor
 from .status import SECONDS
 
-AT_REST = 0.1
+AT_REST = 0.125
 """Frames per second while nothing happens: the watch on other editors and the memory goes on."""
 
 _BLINK = 3.0
