@@ -10,6 +10,7 @@ import sys
 from io import TextIOWrapper
 from typing import Literal, TextIO
 
+from ..resources.machine import has_memory_limit
 from .signals import raise_on_requests
 
 _INTERRUPTED = 130
@@ -22,9 +23,12 @@ def main() -> None:
     """Run the command line and end the process at once: the system frees all that it holds.
 
     File names may hold bytes that are not valid text, so printing escapes them. Matrices are small here, and the
-    threads that numpy starts for large ones would cost time.
+    threads that numpy starts for large ones would cost time. Each thread takes address space, and libraries wait for
+    ever where a limit (`ulimit -v`) leaves none for theirs.
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if has_memory_limit():
+        os.environ.setdefault("OPENIMAGEIO_THREADS", "1")
     gc.set_threshold(_YOUNG)
     _replace_closed_streams()
     for stream in (sys.stdout, sys.stderr):
@@ -32,9 +36,9 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")
     raise_on_requests()
     try:
-        from .program import run
+        from .program import run_process
 
-        code = run(sys.argv[1:])
+        code = run_process(sys.argv[1:])
     except KeyboardInterrupt:  # while modules are still being imported
         code = _INTERRUPTED
     os._exit(code)

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import UsageError
-from ..resources.machine import has_memory_limit
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
 from .outcome import flush_output, print_json, print_note, report_failure, write_count
@@ -41,7 +40,7 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     if job.processes > 1 and job.videos:
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
-    if job.processes == 1 and (needs_watchdog(graph) or has_memory_limit()) and can_fork():
+    if job.processes == 1 and needs_watchdog(graph) and can_fork():
         return run_forked(lambda: _execute_forked(job, graph, progress, as_json, started), job.timeout, job.memory)
     return _execute_opened(job, graph, progress, as_json, started)
 

@@ -12,13 +12,14 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import HalationError, InputError, describe_owner
+from ..resources.machine import is_memory_scarce
 
 USAGE = 2
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 BUG = 70
 
-_NO_MEMORY = ("start new thread", "failed to map segment", "annot allocate memory", "bad_alloc")
+_NO_MEMORY = ("start new thread", "failed to map segment", "annot allocate memory", "bad_alloc", "EXR_ERR_OUT_OF_MEMORY")
 """What Python, the loader of libraries and C++ say when the system gives them no thread or no memory."""
 
 EXIT_CODES = """\b
@@ -66,6 +67,8 @@ def report_failure(fault: BaseException, as_json: bool) -> int:
 
 def _describe(fault: BaseException) -> tuple[str, int, str]:
     """Kind, exit code and sentence."""
+    if any(words in str(fault) for words in _NO_MEMORY):  # also where a library says so of a file that it reads
+        return "MemoryError", 1, "the system gives no more threads or memory (ulimit -u, ulimit -v): allow more"
     if isinstance(fault, HalationError):
         return type(fault).__name__, fault.exit_code, _name_reader(fault)
     if isinstance(fault, KeyboardInterrupt):
@@ -78,16 +81,18 @@ def _describe(fault: BaseException) -> tuple[str, int, str]:
             1,
             f"{fault.filename or 'standard output'}: the system reports an error: {fault.strerror or fault}",
         )
-    if any(words in str(fault) for words in _NO_MEMORY):
-        return "MemoryError", 1, "the system gives no more threads or memory (ulimit -u, ulimit -v): allow more"
     if isinstance(fault, MemoryError):
-        sentence = str(fault) or "there is not enough memory; render a smaller picture with --scale or --size"
+        sentence = str(fault) if type(fault) is MemoryError else ""  # numpy has a class of its own
+        sentence = sentence or "there is not enough memory; render a smaller picture with --scale or --size"
         return "MemoryError", 1, sentence
     if format_message := getattr(fault, "format_message", None):  # the parser of the command line raises it
         context = getattr(fault, "ctx", None)
         command = context.command_path if context else "halation"
         text = str(format_message()).strip().rstrip(".")
         return "UsageError", USAGE, f"{text[:1].lower()}{text[1:]}; see {command} --help"
+    if is_memory_scarce():  # then Python and libraries raise anything, such as errors of syntax
+        sentence = f"there is not enough memory ({type(fault).__name__}): allow more (ulimit -v)"
+        return "MemoryError", 1, sentence
     text = " ".join(str(fault).split())
     if isinstance(fault, ImportError):
         from halation.nodes import NodeImportError

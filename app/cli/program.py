@@ -13,10 +13,12 @@ import typer
 from typer.core import TyperGroup
 from typer.main import get_command
 
+from ..errors import RenderError
 from ..resources.machine import memory_limit
 from ..version import VERSION
 from .options import add_root
 from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
+from .watchdog import run_limited
 
 _VISIBLE = (
     "edit",
@@ -111,9 +113,17 @@ def main_options(
         raise typer.Exit(2)
 
 
+def run_process(arguments: Sequence[str]) -> int:
+    """Run the one command of a process, which ends afterwards, and return its exit code. Nothing is raised."""
+    try:
+        return run_limited(lambda: run(arguments))
+    except RenderError as fault:
+        return flush_output(report_failure(fault, _prints_json(arguments)))
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code. Nothing is raised."""
-    as_json = "--json" in arguments
+    as_json = _prints_json(arguments)
     try:
         if (memory := memory_limit()) < _LEAST_MEMORY:
             raise MemoryError(f"{memory / 2**20:.0f} MiB of memory are too few (ulimit -v): allow 288 MiB at least")
@@ -124,6 +134,10 @@ def run(arguments: Sequence[str]) -> int:
     except (Exception, KeyboardInterrupt) as fault:
         code = report_failure(fault, as_json)
     return flush_output(code if isinstance(code, int) else 0)
+
+
+def _prints_json(arguments: Sequence[str]) -> bool:
+    return "--json" in arguments or arguments[:1] == ["worker"]
 
 
 @cache

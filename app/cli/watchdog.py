@@ -87,16 +87,10 @@ class Watchdog:
 
     def explain_signal(self, number: int) -> HalationError:
         """The error to raise after a signal has ended the process."""
-        try:
-            name = signal.Signals(number).name
-        except ValueError:
-            name = f"signal {number}"
+        name = _name_signal(number)
         self._beat = self._file.read_text(encoding="utf-8")
         if has_memory_limit():
-            return RenderError(
-                f"the driver ended the process ({name}), as drivers do without enough memory: allow more (ulimit -v), "
-                "or render a smaller picture with --scale or --size"
-            )
+            return _explain_memory_limit(name)
         if self._beat:
             return self._fault(f"has ended the process ({name}) while it compiled or ran: make the code simpler")
         return RenderError(f"the render was ended from outside ({name})")
@@ -158,6 +152,41 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
         if code < 0:
             raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
         return code
+
+
+def run_limited(work: Callable[[], int]) -> int:
+    """Do all that a command does in a copy of this process, if the system limits its memory; return the exit code.
+
+    Drivers and libraries end the process where they are refused memory. Then this one remains to say so: it raises
+    RenderError.
+    """
+    if not (has_memory_limit() and can_fork()):
+        return work()
+    process = os.fork()
+    if process == 0:
+        end_with_parent_thread()
+        os._exit(work())
+    with relay_requests(process) as requests:
+        code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+    if code < 0 and requests:
+        raise KeyboardInterrupt
+    if code < 0:
+        raise _explain_memory_limit(_name_signal(-code))
+    return code
+
+
+def _name_signal(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"
+
+
+def _explain_memory_limit(name: str) -> RenderError:
+    return RenderError(
+        f"the driver ended the process ({name}), as drivers do without enough memory: allow more (ulimit -v), "
+        "or render a smaller picture with --scale or --size"
+    )
 
 
 def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: float) -> int | None:

@@ -18,6 +18,10 @@ WIDTH = 100
 _SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outputs"})
 """Sections of a document that have a line for every entry, however short, so that a diff shows one entry."""
 
+_TEXT = frozenset({str})
+_SCALARS = frozenset({str, int, float, bool, type(None)})
+"""Types that hold no others. Most parts of a file have one, which is known sooner than by `isinstance`."""
+
 
 def pretty(document: Mapping[str, Any]) -> str:
     """Sorted keys, two spaces, one line for all that fits but code. Raises GraphError for what JSON cannot hold."""
@@ -26,7 +30,7 @@ def pretty(document: Mapping[str, Any]) -> str:
 
 def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) -> str:
     """`item` as text that starts at `column` of a line with this `indent`."""
-    if not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):  # most types are known at once
+    if type(item) in _SCALARS or not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):
         return _scalar(item, trail)
     if not item:
         return "[]" if isinstance(item, list | tuple) else "{}"
@@ -38,7 +42,8 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
     inner, texts = indent + 2, list[str]()
     if not isinstance(item, list | tuple):
         mapping = cast("Mapping[str, Any]", item)
-        if odd := next((key for key in mapping if type(key) is not str), None):
+        if not _TEXT.issuperset(map(type, mapping)):
+            odd = next(key for key in mapping if type(key) is not str)
             raise GraphError(f"{spell_path(trail)}: the key {odd!r} cannot be saved; JSON has only text as keys")
         opening, closing = "{", "}"
         for key in sorted(mapping):

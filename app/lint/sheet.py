@@ -86,7 +86,7 @@ class GraphFacts:
 
 def has_trait(item: Item | None, *traits: Trait) -> TypeGuard[Node]:
     """True for a node that has one of these traits."""
-    return isinstance(item, Node) and not set(traits).isdisjoint(item.traits)
+    return isinstance(item, Node) and any(trait in item.traits for trait in traits)
 
 
 def find_layered_path(item: Item) -> Value | None:

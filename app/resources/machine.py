@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from pathlib import Path
 
 
@@ -33,6 +34,18 @@ def memory_limit() -> float:
 def has_memory_limit() -> bool:
     """True if this process may have less address space than it asks for (`ulimit -v`)."""
     return memory_limit() < math.inf
+
+
+def is_memory_scarce() -> bool:
+    """True if this process came near its limit of address space, so that requests for more may have been refused.
+
+    Near is three quarters: libraries ask for 64 to 256 MiB at a time (arenas of malloc, code of LLVM).
+    """
+    try:
+        peak = re.search(r"VmPeak:\s*(\d+)", Path("/proc/self/status").read_text("ascii"))
+    except OSError:
+        return False
+    return peak is not None and int(peak[1]) * 1024 > 0.75 * memory_limit()
 
 
 def resident_memory(process: int) -> int:

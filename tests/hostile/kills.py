@@ -21,6 +21,7 @@ from typing import Any
 
 import av
 import OpenImageIO as oiio
+from cases import UNFINISHED
 from pool import Tally
 
 HALATION = (sys.executable, "-P", "-m", "halation.cli")
@@ -106,7 +107,8 @@ def _prepare_more(folder: Path) -> None:
 
 def find_broken(folder: Path) -> Iterator[str]:
     """Results that are neither whole nor absent."""
-    for path in sorted((*folder.glob("out.*"), *folder.glob("goldens/*"), *folder.glob("failed/**/*.*"))):
+    paths = (*folder.glob("out.*"), *folder.glob("goldens/*"), *folder.glob("failed/**/*.*"))
+    for path in sorted(path for path in paths if not UNFINISHED.search(path.name)):
         if path.suffix == ".fs":
             if not path.read_text("utf-8").endswith("}\n"):
                 yield f"half-written: {path.name}"

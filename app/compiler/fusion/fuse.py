@@ -54,6 +54,7 @@ def fuse(
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
     uniforms: dict[int, int] = {}
+    tables: dict[int, int] = {}
     for index in reversed(range(len(ops))):
         op = ops[index]
         if index not in live or op.is_source:
@@ -71,15 +72,16 @@ def fuse(
         if enabled and joins:
             joined = _join_reads(reads[root], outputs, op)
             floats = uniforms[root] + op.uniform_floats
-            inputs = len(joined) + count_tables(ops, [*members[root], index])
+            inputs = len(joined) + tables[root] + len(op.tables)
             if floats <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
                 roots_by_op[index] = root
                 uniforms[root] = floats
+                tables[root] += len(op.tables)
                 members[root].append(index)
                 reads[root] = joined
                 continue
         roots_by_op[index], members[index], uniforms[index] = index, [index], op.uniform_floats
-        reads[index] = dict.fromkeys(op.reads())
+        reads[index], tables[index] = dict.fromkeys(op.reads()), len(op.tables)
     return tuple(
         PassGroup(
             tuple(reversed(members[root])), tuple(reads[root]), tuple(_find_writes(ops, root, readers, kept_refs))

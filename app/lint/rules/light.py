@@ -32,6 +32,8 @@ _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 
 def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes for scene light after a tone map. The first one of each chain is reported."""
+    if not any(_list_display_outputs(sheet, id) for id in sheet.graph.nodes):
+        return
     maker: dict[Port, str] = {}
     for id in sheet.graph.order():
         item = sheet.works(id)

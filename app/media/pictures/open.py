@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...resources.input_files import check_file, fingerprint
 from ...resources.library_messages import quiet_libraries
 from ...resources.library_names import name_for_library
-from ...resources.machine import available_cores
+from ...resources.machine import available_cores, has_memory_limit
 from ...resources.sandbox import Sandbox
 from ..channels import ChannelPart, group_channels
 from ..layers import ImageInfo
@@ -44,8 +44,9 @@ _FAULTS = (
 )
 
 # OpenImageIO follows OPENIMAGEIO_THREADS, but ignores which processors this process may use; OpenEXR ignores both.
+# OpenEXR waits for ever where a limit of memory leaves no thread for it; -1 asks for none.
 oiio.attribute("threads", min(available_cores(), oiio.get_int_attribute("threads")))
-oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
+oiio.attribute("exr_threads", -1 if has_memory_limit() else oiio.get_int_attribute("threads"))
 
 
 @contextmanager
