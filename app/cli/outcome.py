@@ -19,7 +19,13 @@ INTERRUPTED = 130
 BROKEN_PIPE = 141
 BUG = 70
 
-_NO_MEMORY = ("start new thread", "failed to map segment", "annot allocate memory", "bad_alloc", "EXR_ERR_OUT_OF_MEMORY")
+_NO_MEMORY = (
+    "start new thread",
+    "failed to map segment",
+    "annot allocate memory",
+    "bad_alloc",
+    "EXR_ERR_OUT_OF_MEMORY",
+)
 """What Python, the loader of libraries and C++ say when the system gives them no thread or no memory."""
 
 EXIT_CODES = """\b

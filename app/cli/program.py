@@ -14,11 +14,10 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from ..errors import RenderError
-from ..resources.machine import memory_limit
+from ..resources.machine import has_memory_limit, memory_limit
 from ..version import VERSION
 from .options import add_root
 from .outcome import EXIT_CODES, catch_faults, flush_output, report_failure
-from .watchdog import run_limited
 
 _VISIBLE = (
     "edit",
@@ -115,9 +114,13 @@ def main_options(
 
 def run_process(arguments: Sequence[str]) -> int:
     """Run the one command of a process, which ends afterwards, and return its exit code. Nothing is raised."""
+    if not has_memory_limit():
+        return run(arguments)
+    from .watchdog import run_limited
+
     try:
         return run_limited(lambda: run(arguments))
-    except RenderError as fault:
+    except (RenderError, KeyboardInterrupt) as fault:
         return flush_output(report_failure(fault, _prints_json(arguments)))
 
 

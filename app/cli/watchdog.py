@@ -155,12 +155,12 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
 
 
 def run_limited(work: Callable[[], int]) -> int:
-    """Do all that a command does in a copy of this process, if the system limits its memory; return the exit code.
+    """Do all that a command does, under a limit of memory, in a copy of this process, and return the exit code.
 
     Drivers and libraries end the process where they are refused memory. Then this one remains to say so: it raises
     RenderError.
     """
-    if not (has_memory_limit() and can_fork()):
+    if not can_fork():
         return work()
     process = os.fork()
     if process == 0:

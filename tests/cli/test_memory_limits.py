@@ -98,6 +98,6 @@ def test_a_limited_command_can_be_interrupted(tmp_path: Path):
         assert process.stdout
         while "1 pass" not in (line := process.stdout.readline()) and "passes" not in line:
             assert line, "it ended before the first picture"
-        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
         assert "interrupted" in process.stdout.read()
     assert process.returncode == 130
