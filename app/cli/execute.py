@@ -197,6 +197,7 @@ def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) 
         "peak_bytes": report.peak_bytes,
         "repaired": dict(report.repaired),
         "warnings": dict(report.warnings),
+        "views": dict(report.views),
         "seconds": {name: round(part, 4) for name, part in seconds.items()},
     }
 
@@ -207,6 +208,8 @@ def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> Non
         print_note(f"{path}: {warning}")
     for path, count in report["repaired"].items():
         print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
+    for output in report["views"]:
+        print_note(f"output '{output}' is encoded without a view: its pictures are made for a screen already (--view)")
     if as_json:
         print_json(report)
         return

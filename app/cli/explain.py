@@ -24,7 +24,9 @@ from .options import (
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ..compiler import Form, Target
+    from ..compiler import Form, Plan, Target
+    from ..graph import Graph
+    from ..inputs.lazy_provider import LazyResourceProvider
 
 
 def explain(
@@ -84,8 +86,31 @@ def explain(
     if as_json:
         print_json(compiler.plan_as_json(plan))
     else:
-        print(compiler.write_dot(plan) if dot else compiler.explain(plan))
+        print(
+            compiler.write_dot(plan) if dot else compiler.explain(plan, _describe_views(opened_graph, plan, provider))
+        )
     return 0
+
+
+def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) -> dict[str, str]:
+    """Through which view each color output is written into formats for screens, and why; by its name."""
+    from halation.nodes import Kind
+
+    from ..inputs.default_view import choose_default_view
+
+    views: dict[str, str] = {}
+    for name, output in graph.outputs.items():
+        if name not in plan.outputs or output.kind is not Kind.IMAGE:
+            continue
+        if output.view:
+            views[name] = f"{output.view}, as the output says"
+        elif not plan.uploads:
+            views[name] = "that of the config"
+        elif choose_default_view(plan, plan.outputs[name], provider.pictures):
+            views[name] = "none, since its pictures are made for a screen"
+        else:
+            views[name] = "that of the config, since it has light of a scene"
+    return views
 
 
 def _choose_target(form: Form | Literal["device"], sandbox: Sandbox) -> Target:

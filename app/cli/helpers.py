@@ -48,7 +48,7 @@ def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
             total[name] = [*total[name], *report[name]]
         for name in ("passes", "programs", "peak_bytes"):
             total[name] += report[name]
-        for name in ("repaired", "warnings"):
+        for name in ("repaired", "warnings", "views"):
             total[name] = {**total[name], **report[name]}
         total["seconds"] = {name: max(seconds, report["seconds"][name]) for name, seconds in total["seconds"].items()}
     if len(reports) == 1:

@@ -168,6 +168,10 @@ class ColorManager:
         start = f"did you mean '{names[close_names[0]]}'? It" if close_names else "it"
         return f": {start} must be a color space or role of {self.where}, such as {_shorten_list(self.list_spaces())}"
 
+    def find_encoding(self, space: OcioColorSpace) -> str:
+        """What the config says of the numbers of a space: `scene-linear`, `log`, `sdr-video`, ...; "" for nothing."""
+        return str((self.spaces if space.own else load_studio_config()).getColorSpace(space.name).getEncoding())
+
     def make_processor(self, source: OcioColorSpace, target: OcioColorSpace) -> Any:
         """The processor from one space to another. Raises GraphError or UsageError if the config has no conversion."""
         if source.data or target.data or source == target:

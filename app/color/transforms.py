@@ -43,6 +43,20 @@ def is_linear(file_space: FileSpace, manager: ColorManager) -> bool:
     return is_matrix(_make_reading_group(manager, file_space.space))
 
 
+def is_display_referred(file_space: FileSpace, manager: ColorManager) -> bool:
+    """True for color that is encoded for a screen; False for light of a scene, linear or on a logarithmic curve.
+
+    A config says so by the `encoding` of a space; spaces that have none count as light of a scene. So do spaces of HDR
+    screens, because only a view can fit their highlights into a picture of standard range.
+    """
+    if file_space.described is not None:
+        return not file_space.described.is_linear and not file_space.described.is_film
+    space = file_space.space
+    if space is None or space.data:
+        return False
+    return _is_srgb(space) or manager.find_encoding(space) == "sdr-video"
+
+
 def is_matrix(group: Any) -> bool:
     """True for a group of matrices without offset."""
     return all(isinstance(part, load_ocio().MatrixTransform) and not any(part.getOffset()) for part in group)

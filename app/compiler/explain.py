@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 
 from .plan import Pass, Plan, Surface
 
@@ -17,8 +18,11 @@ def format_bytes(count: int) -> str:
     return f"{amount:.2f} GiB"
 
 
-def explain(plan: Plan) -> str:
-    """Uploads, passes with what was fused into each, formats, slots, bytes, and the peak of texture memory."""
+def explain(plan: Plan, views: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Uploads, passes with what was fused into each, formats, slots, bytes, and the peak of texture memory.
+
+    `views` say through which view an output is written into formats for screens.
+    """
     target = plan.target
     lines = [f"target    {target.renderer}, GL {target.version / 100:.1f}, {target.form} passes ({target.why})"]
     for upload in plan.uploads:
@@ -30,7 +34,7 @@ def explain(plan: Plan) -> str:
         read = " ".join(f"#{number}" for number in pass_.textures) or "-"
         lines.append(f"pass {index:<4} {written}  {_describe_pass(pass_)}  reads {read}")
     for name, number in plan.outputs.items():
-        lines.append(f"output    #{number}  {name}")
+        lines.append(f"output    #{number}  {name}{views.get(name, '') and f'  view: {views[name]}'}")
     lines.append(f"frames    {describe_frames(plan)}")
     shaders = len({pass_.shader for pass_ in plan.passes})
     lines.append(

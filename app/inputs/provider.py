@@ -51,11 +51,13 @@ class MediaProvider:
         """Replaces `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
         self._fingerprints: dict[str, str] = {}
+        self._encodings: dict[tuple[str, str, str, ColorSettings], bool | None] = {}
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
         self._fingerprints = {}
         self._infos.clear()
+        self._encodings.clear()
         bound = {name: self._bind_input(_find_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._bind_siblings(graph, bound)
 
@@ -120,6 +122,18 @@ class MediaProvider:
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
+
+    def is_display_referred(self, picture: Picture) -> bool | None:
+        """True for color that is encoded for a screen, False for light of a scene, None for data.
+
+        Raises InputError for a file that cannot be read.
+        """
+        if picture.in_memory:
+            return False
+        key = (picture.path, picture.layer, picture.space, picture.color)
+        if key not in self._encodings:
+            self._encodings[key] = self._find_encoding(picture)
+        return self._encodings[key]
 
     def load_pixels(self, picture: Picture) -> Array:
         """The pixels of a picture as [height, width, channels] of float16 or float32."""
@@ -191,6 +205,18 @@ class MediaProvider:
 
             self._infos[path] = read_info(path, sandbox=self.sandbox)
         return self._infos[path]
+
+    def _find_encoding(self, picture: Picture) -> bool | None:
+        """The answer of `is_display_referred` for a file."""
+        from ..color.management import get_color_manager
+        from ..media.color_spaces import is_layer_display_referred
+        from .layer_choice import find_input_layer
+
+        layer = find_input_layer(self.find_info(picture.path), picture.layer, self.sandbox)
+        if layer.is_data:
+            return None
+        manager = get_color_manager(picture.color, self.sandbox)
+        return is_layer_display_referred(picture.path, layer, manager, picture.space, sandbox=self.sandbox)
 
     def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
         """Inputs whose default is another layer of a replaced file follow it to the new file.

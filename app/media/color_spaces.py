@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ..color.file_space import FileSpace, find_file_space
+from ..color.file_space import FileSpace, find_file_space, find_requested_space
 from ..color.management import ColorManager, get_default_color_manager
+from ..color.transforms import is_display_referred
 from ..errors import HalationError
 from ..graph.frames import is_video
 from ..resources.sandbox import Sandbox
+from .layers import Layer
 from .pictures.color_hints import read_color_hints
 from .pictures.open import describe_picture, open_picture
 
@@ -34,6 +36,24 @@ def find_layer_spaces(
                 hints = read_color_hints(picture.spec(), info.format, layer.format)
                 spaces[layer.full_name] = find_file_space(str(path), hints, manager, space)
     return spaces
+
+
+def is_layer_display_referred(
+    path: str, layer: Layer, manager: ColorManager, space: str = "", *, sandbox: Sandbox
+) -> bool:
+    """True if a layer of color is encoded for a screen, False if it is light of a scene; errors of `find_layer_spaces`.
+
+    A video says so by its transfer characteristics, unless the user says which `space` it is in.
+    """
+    if not is_video(path):
+        spaces = find_layer_spaces(path, manager, space, sandbox=sandbox)
+        return is_display_referred(spaces[layer.full_name], manager)
+    if requested := find_requested_space(space, manager):
+        return is_display_referred(FileSpace(requested.name, "", requested), manager)
+    from .video import read_video_info
+    from .video.signals import SCENE_TRANSFERS
+
+    return read_video_info(path, sandbox=sandbox).transfer not in SCENE_TRANSFERS
 
 
 def describe_color_spaces(path: str | Path, sandbox: Sandbox) -> list[tuple[str, ...]]:

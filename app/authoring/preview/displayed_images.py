@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 from halation.nodes import Kind, Size
 
 from ...compiler import Plan, scale_size
+from ...errors import InputError
 from ...graph import Port
+from ...inputs.default_view import PictureEncodings, choose_default_view
 from ...renderer import DeviceTexture, Runner, TextureLease
 from .frame_cache import FrameImage
 from .request import PreviewRequest, pixel_kind
@@ -35,6 +38,8 @@ class DisplayedImage:
     """Greater for every new picture."""
     frame: int = 1
     start: tuple[int, int] = (0, 0)
+    default_view: str = ""
+    """The view that suits it where nobody names one, as `choose_default_view` says."""
 
     @property
     def partial(self) -> bool:
@@ -59,8 +64,8 @@ class _LeasedImage:
 class DisplayedImages:
     """The picture of each panel, by the panel's name."""
 
-    def __init__(self, runner: Runner) -> None:
-        self._runner = runner
+    def __init__(self, runner: Runner, encodings: PictureEncodings) -> None:
+        self._runner, self._encodings = runner, encodings
         self._pictures: dict[str, _LeasedImage] = {}
         self._parts: dict[str, _LeasedImage] = {}
         """Parts of newer pictures, by the panel's name."""
@@ -87,8 +92,8 @@ class DisplayedImages:
     def show_part(self, wish: PreviewRequest, ports: Mapping[str, Port], plan: Plan, part: PictureRegion) -> None:
         """Show a part of new pictures until the whole is ready."""
         for name, port in ports.items():
-            surface, before = plan.surfaces[plan.outputs[name]], self._parts.get(name)
-            face = FrameImage(surface, self.full_size(port, wish, plan, part.size))
+            before = self._parts.get(name)
+            face = self.describe(name, port, wish, plan, part.size)
             self._parts[name] = self._lease_image(before, port, wish, face, part.size)
             _drop(before)
 
@@ -115,11 +120,19 @@ class DisplayedImages:
                 before.image.revision if before is not None and same else self._revision,
                 wish.frame,
                 surface.window.start if surface.window else (0, 0),
+                face.default_view,
             ),
             lease,
         )
 
-    def full_size(self, port: Port, wish: PreviewRequest, plan: Plan, size: Size) -> Size:
+    def describe(self, name: str, port: Port, wish: PreviewRequest, plan: Plan, size: Size) -> FrameImage:
+        """What a panel is to show of a plan; `size` is that of the whole picture."""
+        number, view = plan.outputs[name], ""
+        with suppress(InputError):  # a file that is gone by now: the next plan says so
+            view = choose_default_view(plan, number, self._encodings)
+        return FrameImage(plan.surfaces[number], self._find_full_size(port, wish, plan, size), view)
+
+    def _find_full_size(self, port: Port, wish: PreviewRequest, plan: Plan, size: Size) -> Size:
         """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""
         candidates = [self._full_sizes.get(port), wish.size, wish.graph.settings.size]
         candidates += [plan.surfaces[upload.surface].size for upload in plan.uploads]

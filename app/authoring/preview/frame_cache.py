@@ -28,6 +28,7 @@ class FrameImage:
 
     surface: Surface
     full_size: Size
+    default_view: str = ""
 
 
 FrameImages = Mapping[str, FrameImage]

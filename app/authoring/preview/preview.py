@@ -48,7 +48,7 @@ class Preview:
         self._wish: PreviewRequest | None = None
         self._round: PreviewWork | None = None
         self._job: PictureJob | None = None
-        self._shelf = DisplayedImages(renderer.runner)
+        self._shelf = DisplayedImages(renderer.runner, renderer.pictures)
         self._seen: Graph | None = None
         """The last requested graph: it may differ from the request in its layout."""
         self._stopwatch = PassTimes()
@@ -385,7 +385,7 @@ class Preview:
         wish, faces = job.wish, dict[str, FrameImage]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
-            faces[name] = FrameImage(surface, self._shelf.full_size(port, wish, plan, surface.size))
+            faces[name] = self._shelf.describe(name, port, wish, plan, surface.size)
             if not job.ahead:
                 self._shelf.show(name, port, wish, faces[name])
         wish.frame_cache.add_frame(job.frame, faces, self.renderer, work.wish.frame)

@@ -55,13 +55,16 @@ def measures(state: ViewerState, kind: Kind) -> bool:
     return meaning in ("field", "vector") and state.low == state.high
 
 
-def find_requested_view(graph: Graph, port: Port) -> str:
-    """The view that an output of the graph asks for: also of what is linked to it, for it is the same picture."""
+def choose_view(graph: Graph, port: Port, default: str = "") -> str:
+    """The view that an output of the graph names, also for what is linked to it, for it is the same picture.
+
+    Where none does, `default`: the one that suits the picture.
+    """
     for name, output in graph.outputs.items():
         end = Port(OUTPUTS, name)
         if port in (end, graph.links.get(end)) and output.view:
             return output.view
-    return ""
+    return default
 
 
 def look_of(

@@ -16,7 +16,7 @@ from ..toolkit.buttons import quiet_button, tool, width_of_buttons
 from ..toolkit.words import draw_empty_panel
 from . import graticules, scope_images
 from .geometry import Box, Sight, texels
-from .looking import choose_meaning, choose_range, display_pixels, find_requested_view, look_of
+from .looking import choose_meaning, choose_range, choose_view, display_pixels, look_of
 from .reading import ValueReader
 from .scopes import extent, measure_clipping, rgb_of
 from .state import SCOPES
@@ -153,7 +153,7 @@ class ScopesPanel:
             return rgb_of(part)
         meaning = choose_meaning(viewer, image.kind, lambda: whole)
         port = self._context.session.views.find_port("A")
-        view = find_requested_view(self._context.session.graph, port) if port else ""
+        view = choose_view(self._context.session.graph, port, image.default_view) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), image.full_size)
         span = choose_range(viewer, meaning, lambda: whole)
         return display_pixels(

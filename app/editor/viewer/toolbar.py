@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.display import NO_LOOK, list_displays, list_looks, list_views
+from ...color.display import NO_LOOK, NO_VIEW, list_displays, list_looks, list_views
 from ..shared.coloring import find_color_manager
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
@@ -268,13 +268,16 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
+_VIEW_WORDS = {"": "the default", NO_VIEW: "no view"}
+
+
 def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
     viewer, color = context.viewer, find_color_manager(context)
 
     def menu() -> None:
         if context.coloring.fault:
             imgui.text_disabled("The color config cannot be read: these are the built-in views")
-        if imgui.menu_item(f"From the output ({asked_view or 'default'})", "", not viewer.view)[0]:
+        if imgui.menu_item(f"From the output ({_VIEW_WORDS.get(asked_view, asked_view)})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
         for display in list_displays(color):
@@ -293,7 +296,7 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
                 imgui.end_menu()
 
     view_name = viewer.view or asked_view or "Default"
-    label = f"{icons.ICON_FA_DISPLAY}  {'No view' if view_name == 'none' else view_name}"
+    label = f"{icons.ICON_FA_DISPLAY}  {'No view' if view_name == NO_VIEW else view_name}"
     return _dropdown(context, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
 
 

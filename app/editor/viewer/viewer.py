@@ -21,7 +21,7 @@ from .geometry import Sight
 from .ground import depth_at
 from .hand import ViewerInput
 from .handles import pixel_place, takes_position
-from .looking import choose_meaning, choose_range, find_requested_view, look_of
+from .looking import choose_meaning, choose_range, choose_view, look_of
 from .mattes import picks
 from .measuring import format_pixel, format_pixel_number, make_opaque_color
 from .orbit import find_orbit_node
@@ -86,11 +86,10 @@ class Viewer:
     def draw(self) -> None:
         """Draw into the current window."""
         viewer, preview = self._context.viewer, self._context.preview
-        port = self._context.session.views.find_port("A")
+        port, a = self._context.session.views.find_port("A"), preview.find_visible_image(A)
         b = preview.find_visible_image(B) if viewer.compares else None
-        images = _FrameImages(
-            preview.find_visible_image(A), b, find_requested_view(self._context.session.graph, port) if port else ""
-        )
+        view = choose_view(self._context.session.graph, port, a.default_view if a else "") if port else ""
+        images = _FrameImages(a, b, view)
         viewer.scene = find_orbit_node(self._context.session)
         self._time(images)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()

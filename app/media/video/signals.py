@@ -38,6 +38,10 @@ _HLG_WHITE = 0.75
 GAMUTS = MappingProxyType({9: "lin_rec2020_scene", 12: "lin_p3d65_scene"})
 """Primaries that differ much from Rec.709, as linear spaces of OpenColorIO."""
 
+SCENE_TRANSFERS = frozenset({8, 9, 10, 16, 18})
+"""Transfer characteristics (H.273) of light of a scene, or of more light than a screen of standard range shows: linear,
+two logarithmic curves, PQ and HLG."""
+
 
 def choose_matrix(number: int, size: tuple[int, int]) -> int:
     """The matrix of a video; without a tag BT.601 up to 1024x576, else BT.709."""

@@ -17,6 +17,7 @@ from ...compiler import Plan, Precision
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
+from ...inputs.default_view import PictureEncodings, choose_default_view
 from ...resources.picture import Picture
 from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
@@ -52,6 +53,8 @@ class Destination(Struct, frozen=True):
     layers: Mapping[str, str]
     kinds: Mapping[str, Kind]
     encoding: Encoding
+    has_automatic_view: bool = False
+    """True if nobody named the view of the encoding: its pictures are made for a screen, and so are only encoded."""
 
     @property
     def view(self) -> str:
@@ -100,6 +103,23 @@ def _group_outputs(
             raise UsageError(f"-o {path}: this file is given twice; give every output a file of its own")
         files[path_as_given] = (*files.get(path_as_given, ()), *((name,) if name else names))
     return tuple(_describe_destination(graph, request, settings, path, files[path], sandbox) for path in files)
+
+
+def choose_views(files: Sequence[Destination], plan: Plan, encodings: PictureEncodings) -> tuple[Destination, ...]:
+    """The files of a frame with the view that suits their pictures, where neither the user nor an output names one.
+
+    Raises InputError for a picture that cannot be read.
+    """
+    return tuple(_choose_view(file, plan, encodings) for file in files)
+
+
+def _choose_view(file: Destination, plan: Plan, encodings: PictureEncodings) -> Destination:
+    encoding, outputs = file.encoding, tuple(file.layers.values())
+    is_chosen = encoding.view or encoding.display or encoding.look or encoding.space
+    if is_chosen or len(outputs) != 1 or file.path.suffix.casefold() == ".exr":
+        return file
+    view = choose_default_view(plan, plan.outputs[outputs[0]], encodings)
+    return replace(file, encoding=replace(encoding, view=view), has_automatic_view=bool(view))
 
 
 def check_destinations(

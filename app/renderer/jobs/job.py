@@ -24,7 +24,14 @@ from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..execution.texture_pool import TextureLease
 from ..frame_renderer import FrameRenderer
-from .destinations import Destination, OutputSettings, check_destinations, plan_destinations, select_half_outputs
+from .destinations import (
+    Destination,
+    OutputSettings,
+    check_destinations,
+    choose_views,
+    plan_destinations,
+    select_half_outputs,
+)
 from .header import compute_frame_key, dump_whole_graph, has_key, make_header, matches_key
 from .scanline_writers import ScanlineWriters, select_row_outputs
 from .source_files import FileHashes, SourceFile, SourceFinder
@@ -73,6 +80,8 @@ class JobReport(Struct, frozen=True):
     videos: tuple[Path, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
     warnings: Mapping[str, str] = field(default_factory=dict[str, str])
+    views: Mapping[str, str] = field(default_factory=dict[str, str])
+    """The views that were chosen for outputs because nobody named one and their pictures are made for a screen."""
 
     @property
     def written(self) -> tuple[Path, ...]:
@@ -110,6 +119,7 @@ def run_job(
         job.videos,
         job.seconds,
         dict(renderer.pictures.warnings),
+        job.views,
     )
 
 
@@ -148,6 +158,7 @@ class _Job:
         self._video_writers = VideoWriters(settings, self._find_rate, renderer.sandbox)
         self._row_writers: ScanlineWriters | None = None
         self.videos: tuple[Path, ...] = ()
+        self.views: dict[str, str] = {}
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
     def run(self) -> list[FrameReport]:
@@ -211,6 +222,10 @@ class _Job:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._frame_renderer.plan_frame(frame), self._files[frame]
             sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
+            files = choose_views(files, plan, self._renderer.pictures)
+            self.views |= {
+                name: file.view for file in files if file.has_automatic_view for name in file.layers.values()
+            }
             check_destinations(files, plan, sources, self._settings, sandbox=self._renderer.sandbox)
             task = _Task(
                 frame,

@@ -12,8 +12,8 @@ from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.looking import (
     choose_meaning,
     choose_range,
+    choose_view,
     display_pixels,
-    find_requested_view,
     look_of,
     picture_only,
 )
@@ -61,9 +61,9 @@ def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
     noise = session.apply(AddNode("noise"))
     graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
     graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
-    assert find_requested_view(graph, Port("outputs", "image")) == "none"
-    assert find_requested_view(graph, Port(noise, "out")) == "none"
-    assert find_requested_view(graph, Port(noise, "value")) == ""
+    assert choose_view(graph, Port("outputs", "image")) == "none"
+    assert choose_view(graph, Port(noise, "out")) == "none"
+    assert choose_view(graph, Port(noise, "value")) == ""
 
 
 def test_the_look_has_what_the_viewer_is_set_to() -> None:
