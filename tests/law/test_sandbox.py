@@ -44,6 +44,7 @@ OPENERS = {
     "authoring/preferences.py": "the editor's own file",
     "authoring/recovery/recovery.py": "the editor's own files",
     "authoring/recovery/file_locks.py": "the editor's own files",
+    "authoring/recovery/claims.py": "the editor's own files",
     "color/management.py": "the config of $OCIO, which the user trusts",
     "custom_nodes/isf/glsl.py": "shaders of Halation",
     "editor/browser/places.py": "the list of mounted disks",

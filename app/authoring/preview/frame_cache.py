@@ -11,6 +11,7 @@ from halation.nodes import Size
 from ...compiler import Surface
 from ...graph import Port
 from ...renderer import FrameRenderer, Renderer, TextureLease
+from ...renderer.execution.texture_pool import count_device_bytes
 
 SHARE = 0.5
 """The share of the memory budget for frames that were shown; the rest is for the current frame."""
@@ -121,7 +122,7 @@ class FrameCache:
 
     def _sizes(self) -> dict[str, int]:
         return {
-            face.surface.key: face.surface.nbytes
+            face.surface.key: count_device_bytes(face.surface.nbytes)
             for frame in self._leases
             for face in self._images_by_frame[frame].values()
         }

@@ -28,6 +28,11 @@ to 5 KiB more for a framebuffer (measured on 1,000 textures of 1, 8 and 32 pixel
 single pixel would rank above every picture, and a budget of 512 MiB would hold 33 million of them."""
 
 
+def count_device_bytes(pixel_bytes: int) -> int:
+    """The bytes that a texture takes on the device, beside which the pixels of a small texture are little."""
+    return max(pixel_bytes, MIN_TEXTURE_BYTES)
+
+
 class PooledTexture(Struct, eq=False):
     """A texture of the pool."""
 
@@ -41,8 +46,8 @@ class PooledTexture(Struct, eq=False):
 
     @property
     def device_bytes(self) -> int:
-        """What it takes on the device, beside which the pixels of a small texture are little."""
-        return max(self.nbytes, MIN_TEXTURE_BYTES)
+        """What it takes on the device."""
+        return count_device_bytes(self.nbytes)
 
 
 class TexturePool:

@@ -8,6 +8,7 @@ from halation.graph import Expression, Graph, Keys, Port
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
 from halation.renderer import FrameRenderer, RenderRequest
+from halation.renderer.execution.texture_pool import MIN_TEXTURE_BYTES
 from previews import pixels, settle
 from sequences import noise_graph
 
@@ -137,7 +138,7 @@ def test_a_frame_for_later_that_is_wanted_now_goes_on(preview, engine):
 
 def test_frames_keep_to_their_share_of_the_budget(preview, engine):
     graph = moving((1, 200))
-    one = 13 * 7 * 8
+    one = MIN_TEXTURE_BYTES  # which 13 x 7 pixels do not fill
     engine.runner.textures.budget = 40 * one
     for frame in range(1, 60):
         look(preview, graph, frame)
