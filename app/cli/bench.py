@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ..renderer.bench import Benchmark, NodeShare
 
 _BAR = 24
+"""Columns of a bar. Chosen by judgement: a line fits into 120 columns."""
 
 
 def bench(

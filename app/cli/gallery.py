@@ -28,6 +28,8 @@ Step = Callable[[str], None]
 _COLUMNS = 6
 _WIDTH = 256
 _LETTERS = 18
+"""Pictures in a row, pixels of a picture's width and of a letter's height. Chosen by eye for a web page."""
+
 _FRAMES_SHOWN = 6
 """Frames per animated preset, from the first to the last: as many as fit in a row of the sheet."""
 

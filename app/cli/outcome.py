@@ -18,6 +18,8 @@ USAGE = 2
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 BUG = 70
+"""Exit codes: 2 as other commands use it, 128 plus the number of a signal as in shells (SIGINT, SIGPIPE), and
+EX_SOFTWARE of sysexits.h."""
 
 _NO_MEMORY = (
     "start new thread",

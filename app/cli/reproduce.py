@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..renderer.provenance.reproduction import LayerDifference, Reproduction
 
 _SHORT = 12
+"""Digits of a hash that are printed, as many as git prints in large repositories."""
 
 
 def reproduce(

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _RANGE = re.compile(r"\s*(?P<first>[^.].*?)\.\.(?P<last>.+?)/(?P<count>[0-9]+)(?P<log>log)?\s*")
 _MOST = 400
+"""Values of a range. Chosen by judgement: a sheet of 20 x 20 pictures."""
 
 
 def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Graph, tuple[SweepAxis, ...]]:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from ..watch.rerendering import WatchReport
 
 _LISTED = 3
+"""Changed files that a line names. Chosen by judgement: a line stays short."""
 
 
 def watch(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 MAX_BYTES = 32 * 2**20
+"""Bytes of a file. Chosen by judgement: 100,000 nodes with their values and links take less."""
+
 MAX_NESTING = 64
 """Objects and lists inside each other."""
 

@@ -64,6 +64,7 @@ SIZE = (1920, 1080)
 
 _POINTER = b"version https://git-lfs.github.com/spec/"
 _POINTER_SIZE = 1024
+"""How a pointer of git LFS begins, and the size in bytes that it never reaches (specification of git LFS)."""
 
 T = TypeVar("T")
 

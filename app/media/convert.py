@@ -28,6 +28,8 @@ from .pictures.finite import fill_non_finite, find_non_finite, has_non_finite
 from .pictures.open import read_orientation
 
 _LARGEST_COUNT = 2**32 - 1
+"""The white of 32-bit integers: the largest one."""
+
 _ALPHA_NAMES = ("a", "alpha")
 _RGBA_LAYOUTS = {(*"rgb", alpha) for alpha in _ALPHA_NAMES}
 

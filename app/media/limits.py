@@ -19,6 +19,8 @@ _MOST_PIXELS = 1 << 28
 """16384 x 16384: 4 GiB as RGBA in 32-bit floats. It applies if nobody sets the limit."""
 
 _CHANNEL_BYTES = 4
+"""Pixels are converted in 32-bit floats."""
+
 _WORKING_COPIES = 3
 _WORKING_CHANNELS = 4
 """Channels in memory while a picture is converted, besides those of the file: as stored, as light and as RGBA, four

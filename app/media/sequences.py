@@ -38,8 +38,14 @@ _CLOCK_STEP_NS = 2_000_000_000
 the same time."""
 
 _LONGEST_TEXT = 60
+"""Letters of a list of frames in a message. Chosen by judgement: the sentence stays on two lines of a terminal."""
+
 _MOST_NUMBERS = 8
+"""Numbers of a name that may be the frame, the last ones first. Chosen by judgement: more than names have."""
+
 _WIDEST = 16
+"""Digits of a frame number in a name. Chosen by judgement: Nuke and Blender write four, and a frame has up to nine."""
+
 _NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
 
 

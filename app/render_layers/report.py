@@ -15,6 +15,8 @@ from .analysis import RenderAnalysis, RenderCamera
 from .conventions import Convention
 
 _WIDEST = 84
+"""Letters of an attribute in the report. Chosen by judgement: with its name it fits into 120 columns."""
+
 _SHORT = {"float16": "half", "float32": "float"}
 
 

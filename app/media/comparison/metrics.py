@@ -17,7 +17,7 @@ EIGHT_BIT_STEP = 1.0 / 255.0
 _TAPS = 11
 _SIGMA = 1.5
 _K1, _K2 = 0.01, 0.03
-"""The window and the constants of SSIM (Wang, Bovik, Sheikh and Simoncelli 2004)."""
+"""Size and sigma of the window, and the constants of SSIM (Wang, Bovik, Sheikh and Simoncelli 2004)."""
 _BROKEN_COLOR = (1.0, 0.0, 1.0)
 
 

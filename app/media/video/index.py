@@ -43,7 +43,10 @@ _TIMELESS = ("avi",)
 
 _ALPHA_DECODERS = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 _USUAL_RATE = Fraction(24)
+"""Frames per second of a video that names no rate: that of graphs."""
+
 _ATTACHED_PICTURE = 1024
+"""The flag of a cover picture: AV_DISPOSITION_ATTACHED_PIC of FFmpeg."""
 
 
 @dataclass(frozen=True)

@@ -31,10 +31,18 @@ LUMA: Mapping[int, tuple[float, float]] = MappingProxyType(
 RGB, UNKNOWN = 0, 2
 _YCGCO = 8
 _UNSPECIFIED = (UNKNOWN, 3)
+"""Numbers of the matrix in H.273, table 4: no matrix, not specified, YCgCo, and reserved."""
+
 _SMALL = (1024, 576)
+"""The largest size of video in standard definition: 576 lines of PAL, with square pixels in 16:9."""
+
 _BT709_ALPHA, _BT709_BETA = 1.09929682680944, 0.018053968510807
+"""The constants of the camera curve (ITU-R BT.2020-2, table 4), with all digits."""
+
 _PQ_WHITE = 203.0
 _HLG_WHITE = 0.75
+"""Reference white in PQ (cd/m2) and as a signal of HLG (ITU-R BT.2408)."""
+
 GAMUTS = MappingProxyType({9: "lin_rec2020_scene", 12: "lin_p3d65_scene"})
 """Primaries that differ much from Rec.709, as linear spaces of OpenColorIO."""
 
