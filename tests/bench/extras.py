@@ -43,6 +43,8 @@ def measure_extras(place: Place, rounds: int, repeat: int, say: Say) -> dict[str
     figures["plans"] = _require_result(run_process([sys.executable, str(HERE / "planning.py"), *map(str, PLANNED)]))[
         "graphs"
     ]
+    say("checks of large files")
+    figures["checks"] = _require_result(run_process([sys.executable, str(HERE / "checking.py")]))["checks"]
     say(f"{LONG} frames")
     figures["frames"] = _measure_long_sequence(place)
     return figures

@@ -201,6 +201,16 @@ def _compute_extras(extras: Mapping[str, Any]) -> Iterator[Row]:
             Figure("plan", median(small["change"]) * 1e3 if small else None, 10.0, " ms"),
         ),
     )
+    checks = {check["name"]: check for check in extras.get("checks", ())}
+    chain = checks.get("99,000 nodes")
+    yield Row(
+        "processor time and memory of `check` with 99,000 nodes",
+        "10 s, 1,000 MiB",
+        (
+            Figure("", chain["seconds"] if chain else None, 10.0, " s"),
+            Figure("", chain["memory"] if chain else None, 1000.0, " MiB"),
+        ),
+    )
     sigma = extras.get("sigma")
     yield Row(
         "sigma 200 against sigma 20, in memory",

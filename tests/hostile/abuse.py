@@ -53,6 +53,7 @@ LIMITS: dict[str, Set] = {
     "20 descriptors": _limit(resource.RLIMIT_NOFILE, 20),
     "600 MB of address space": _limit(resource.RLIMIT_AS, 600 << 20),
     "1500 MB of address space": _limit(resource.RLIMIT_AS, 1500 << 20),
+    "300 MB of data": _limit(resource.RLIMIT_DATA, 300 << 20),
     "files of 100 bytes": _limit(resource.RLIMIT_FSIZE, 100),
     "no processes": _limit(resource.RLIMIT_NPROC, 1),
     "a deep stack": _limit(resource.RLIMIT_STACK, 1 << 20),
