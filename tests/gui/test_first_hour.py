@@ -257,3 +257,18 @@ def test_a_merge_mode_is_added_by_its_name(gui) -> None:
         assert ui.session.history.steps == ("Add merge",)
 
     gui(body, size=(1366, 768))
+
+
+def test_a_picture_is_opened_by_a_path_that_tab_completes(gui, shot: Path) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.keys("Ctrl+O")
+        ui.wait(6)
+        type_keys(ui, f"{shot.parent}/ren")
+        ui.keys("Tab")
+        ui.wait(3)
+        ui.keys("Enter")
+        ui.until(lambda: ui.session.name == "render")
+        assert [node.id for node in ui.session.graph.nodes.values()] == ["read_image"]
+
+    gui(body, presets.paths()[0])

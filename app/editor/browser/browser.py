@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ..shared.dialogs import Question
+from ..shared.dialogs import Browse, Question
 from ..theme.style import ui_scale
 from ..toolkit.buttons import align_right, main_button, quiet_button, width_of_buttons
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import is_enter_pressed
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
-from .browsing import Browsing, begin_browsing
+from .browsing import Browsing, FolderMemory, begin_browsing, find_own_folder
 from .file_list import FileGrid, FileTable
 from .listing import make_folder
-from .places import PlaceKind, complete_path
+from .places import PlaceKind, complete_name, complete_path
 
 if TYPE_CHECKING:
     from .context import BrowserContext
@@ -31,6 +31,9 @@ PLACE_ICONS: dict[PlaceKind, str] = {
     "recent": icons.ICON_FA_CLOCK_ROTATE_LEFT,
     "drive": icons.ICON_FA_HARD_DRIVE,
 }
+
+_ENTERED = int(imgui.InputTextFlags_.enter_returns_true)
+_COMPLETES = int(imgui.InputTextFlags_.callback_completion)
 
 
 class FileBrowser:
@@ -46,6 +49,7 @@ class FileBrowser:
         self._naming = False
         self._focus = ""
         self._elsewhere = False
+        self._memory: FolderMemory = {}
 
     def close(self) -> None:
         """Stop the threads."""
@@ -58,7 +62,7 @@ class FileBrowser:
             self._browsing = None
             return
         if self._browsing is None or self._browsing.browse is not browse:
-            self._browsing, self._naming, self._focus = begin_browsing(self._context, browse), False, "field"
+            self._browsing, self._naming, self._focus = self._begin(browse), False, "field"
             self._path = str(self._browsing.folder)
         browsing = self._browsing
         browsing.poll()
@@ -77,6 +81,17 @@ class FileBrowser:
             if escape_pressed() and self._context.dialogs.question is None:
                 self._context.dialogs.browse = None
 
+    def _begin(self, browse: Browse) -> Browsing:
+        return begin_browsing(self._context, browse, self._memory)
+
+    def _complete(self, text: str, browsing: Browsing, data: imgui.InputTextCallbackData) -> int:
+        """Tab: complete the path that is typed in a field."""
+        completed = complete_name(text, browsing.folder, browsing.endings)
+        if completed != text:
+            data.delete_chars(0, data.buf_text_len)
+            data.insert_chars(0, completed)
+        return 0
+
     def _draw_path_bar(self, browsing: Browsing) -> None:
         with font(self._context, "bold", 18.0):
             imgui.text_unformatted(browsing.browse.title)
@@ -86,7 +101,8 @@ class FileBrowser:
         button_icons = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
         buttons = width_of_buttons(*button_icons) + imgui.get_style().item_spacing.x
         imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
-        entered, self._path = imgui.input_text("##path", self._path, int(imgui.InputTextFlags_.enter_returns_true))
+        completes = partial(self._complete, self._path, browsing)
+        entered, self._path = imgui.input_text("##path", self._path, _ENTERED | _COMPLETES, completes)
         record(self._context, "path field")
         self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()
         if entered:
@@ -191,11 +207,16 @@ class FileBrowser:
         empty = not browsing.query
         imgui.set_next_item_width(imgui.get_content_region_avail().x)
         if browsing.browse.saving:
-            changed, name = imgui.input_text_with_hint("##name", "Name of the file", browsing.name)
+            completes = partial(self._complete, browsing.name, browsing)
+            changed, name = imgui.input_text_with_hint(
+                "##name", "Name of the file", browsing.name, _COMPLETES, completes
+            )
             if changed:
                 browsing.name, browsing.chosen = name, -1
         else:
-            changed, query = imgui.input_text_with_hint("##query", "Type to find", browsing.query)
+            completes = partial(self._complete, browsing.query, browsing)
+            hint = "Type to find, or a path; Tab completes it"
+            changed, query = imgui.input_text_with_hint("##query", hint, browsing.query, _COMPLETES, completes)
             if changed:
                 browsing.search(query)
         record(self._context, "file field")
@@ -233,7 +254,7 @@ class FileBrowser:
             return
         if target is None or self._context.dialogs.question is not None:
             return
-        answer = partial(_answer, self._context, browsing, target)
+        answer = partial(self._answer, browsing, target)
         if not browsing.browse.saving or not os.path.exists(target):  # noqa: PTH110 - False for an invalid path
             answer()
             return
@@ -243,9 +264,9 @@ class FileBrowser:
             (("Replace", answer), ("Cancel", lambda: None)),
         )
 
-
-def _answer(context: BrowserContext, browsing: Browsing, target: object) -> None:
-    path = browsing.folder / str(target)
-    context.dialogs.browse = None
-    context.log.attempt(lambda: context.store.note_folder(browsing.browse.purpose, path))
-    context.log.attempt(lambda: browsing.browse.then(path))
+    def _answer(self, browsing: Browsing, target: object) -> None:
+        context, path = self._context, browsing.folder / str(target)
+        self._memory[find_own_folder(context), browsing.browse.purpose] = path.parent
+        context.dialogs.browse = None
+        context.log.attempt(lambda: context.store.note_folder(browsing.browse.purpose, path))
+        context.log.attempt(lambda: browsing.browse.then(path))

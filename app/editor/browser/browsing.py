@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...color.gpu_programs import list_table_endings
@@ -116,12 +118,25 @@ class Browsing:
         return path if os.path.isfile(path) else None  # noqa: PTH113 - False for an invalid path
 
 
-def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:
-    """Start in the folder that was used last for this, else where the document is."""
-    path = context.session.path
-    own = path.absolute().parent if path else None
-    last = context.store.folder(browse.purpose)
-    start = own if browse.saving and browse.purpose == "graph" and own else Path(last) if last else own or Path.home()
+FolderMemory = dict[tuple[Path | None, str], Path]
+"""The folder that was used last, by the folder of the document and the purpose."""
+
+_NO_MEMORY: Mapping[tuple[Path | None, str], Path] = MappingProxyType({})
+
+
+def begin_browsing(
+    context: BrowserContext, browse: Browse, memory: Mapping[tuple[Path | None, str], Path] = _NO_MEMORY
+) -> Browsing:
+    """Start where a file was chosen last for this beside the same document, else where the document is.
+
+    A document without a file has the folder that was used last for this purpose, then that of the newest recent file;
+    only the first one of all begins at home.
+    """
+    own, recent_files = find_own_folder(context), context.store.current.recent
+    newest = Path(recent_files[0].path).parent if recent_files else Path.home()
+    untitled = Path(context.store.folder(browse.purpose) or newest)
+    start = memory.get((own, browse.purpose)) or own or untitled
+    start = start if os.path.isdir(start) else Path.home()  # noqa: PTH112 - False for an invalid path
     recent = tuple(dict.fromkeys(Path(recent_file.path).parent for recent_file in context.store.current.recent))[:4]
     used = tuple(Path(folder) for folder in context.store.current.folders.values())
     browsing = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
@@ -129,10 +144,16 @@ def begin_browsing(context: BrowserContext, browse: Browse) -> Browsing:
     return browsing
 
 
+def find_own_folder(context: BrowserContext) -> Path | None:
+    """The folder of the document; None if it has no file yet."""
+    return context.session.path.absolute().parent if context.session.path else None
+
+
 def endings(browse: Browse) -> frozenset[str]:
     """The endings of the files that are listed."""
-    if browse.purpose == "image":
-        return list_readable_endings() | VIDEO_ENDINGS
+    if browse.purpose in ("image", "document"):
+        pictures = list_readable_endings() | VIDEO_ENDINGS
+        return pictures if browse.purpose == "image" else pictures | {".json"}
     if browse.purpose == "table":
         return list_table_endings()
     if browse.purpose == "scene":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import string
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -68,6 +68,31 @@ def complete_path(text: str, folder: Path) -> Path:
     except RuntimeError:
         return folder / path
     return Path(os.path.normpath(folder / path))
+
+
+def complete_name(text: str, folder: Path, endings: Collection[str] = ()) -> str:
+    """A typed path with as much added as all names that begin like it share; a folder gets its separator.
+
+    Files count if their name ends in one of `endings` (none: all). Letter case only matters where several names differ
+    in nothing else.
+    """
+    cut = max(text.rfind(separator) for separator in (os.sep, os.altsep or os.sep)) + 1
+    head, stem = text[:cut], text[cut:]
+    try:
+        with os.scandir(complete_path(head, folder)) as entries:
+            names = [entry.name + os.sep if entry.is_dir() else entry.name for entry in entries]
+    except (OSError, ValueError):
+        return text
+    fitting = [
+        name
+        for name in names
+        if name.lower().startswith(stem.lower())
+        and (stem.startswith(".") or not name.startswith("."))
+        and (name.endswith(os.sep) or not endings or os.path.splitext(name)[1].lower() in endings)  # noqa: PTH122
+    ]
+    fitting = [name for name in fitting if name.startswith(stem)] or fitting
+    shared = os.path.commonprefix(fitting)  # noqa: RUF071 - letters that all share, as shells do
+    return head + shared if len(shared) >= len(stem) else text
 
 
 def is_path(text: str) -> bool:

@@ -9,7 +9,7 @@ from typing import Literal
 
 from halation.nodes import Value
 
-Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
+Purpose = Literal["graph", "document", "image", "table", "scene", "config", "code", "export"]
 """The kind of file: it decides which files are listed and which folder is remembered."""
 
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from ...authoring.commands import DropFiles
 from ...authoring.edits.coding import ENDINGS
 from ...authoring.edits.element_id import ElementId
-from ...errors import HalationError
 from ...media.sequences import find_sequence
-from ...renderer.provenance.recipe import has_recipe
-from ...resources.sandbox import Sandbox
 from ...watch.sequence_files import suggest_patterns
 from ..shared.dialogs import Question
-from ..workflows.documents import DocumentWorkflow
+from ..workflows.documents import DocumentWorkflow, has_graph
 from .editor import Editor
 
 
@@ -28,30 +26,12 @@ def take_files(editor: Editor, documents: DocumentWorkflow, paths: Sequence[Path
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         documents.open_graph(graphs[0])
         return
-    if len(paths) == 1 and _has_graph(paths[0], editor.session.sandbox):
-        ask_graph_or_picture(editor, documents, paths[0])
+    is_code = paths[0].suffix.casefold() in (".json", *ENDINGS) if len(paths) == 1 else True
+    if not is_code and has_graph(paths[0], editor.session.sandbox):
+        read = partial(editor.log.attempt, lambda: add_files(editor, paths))
+        documents.ask_graph_or_picture(paths[0], read)
         return
     add_files(editor, paths)
-
-
-def _has_graph(path: Path, sandbox: Sandbox) -> bool:
-    """True for a picture that Halation rendered, which holds the graph that made it."""
-    try:
-        return path.suffix.casefold() not in (".json", *ENDINGS) and has_recipe(path, sandbox=sandbox)
-    except HalationError:
-        return False
-
-
-def ask_graph_or_picture(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
-    """Ask whether to open the graph of a dropped picture, or to read its pixels."""
-    editor.dialogs.question = Question(
-        "Rendered by Halation",
-        f"{path.name} holds the graph that made it.",
-        (
-            ("Open its graph", lambda: documents.open_graph_of_picture(path)),
-            ("Read it as a picture", lambda: editor.log.attempt(lambda: add_files(editor, [path]))),
-        ),
-    )
 
 
 def add_files(editor: Editor, paths: Sequence[Path]) -> None:

@@ -7,6 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...errors import HalationError
+from ...media.pictures.thumbnail import is_picture
+from ...renderer.provenance.recipe import has_recipe
+from ...resources.sandbox import Sandbox
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
 from ..shared.window_commands import PanelTitle
@@ -23,6 +27,14 @@ if TYPE_CHECKING:
     from ..shared.window_commands import WindowCommands
     from ..toolkit.services import Services
     from .code_files import CodeFileWorkflow
+
+
+def has_graph(path: Path, sandbox: Sandbox) -> bool:
+    """True for a picture that Halation rendered, which holds the graph that made it."""
+    try:
+        return has_recipe(path, sandbox=sandbox)
+    except HalationError:
+        return False
 
 
 def _do_nothing() -> None:
@@ -72,8 +84,34 @@ class DocumentWorkflow:
         self._show_document()
 
     def ask_for_graph(self) -> None:
-        """Ask for a file, and open it."""
-        self.dialogs.browse = Browse("Open a graph", "graph", self.open_graph)
+        """Ask for a graph or a picture, and open it."""
+        self.dialogs.browse = Browse("Open a graph or a picture", "document", self.open_file)
+
+    def open_file(self, path: Path) -> None:
+        """Open a graph, or a picture; of one that Halation rendered the user says whether its graph is meant."""
+        if not is_picture(path):
+            self.open_graph(path)
+        elif has_graph(path, self.session.sandbox):
+            self.ask_graph_or_picture(path, lambda: self.open_picture(path))
+        else:
+            self.open_picture(path)
+
+    def open_picture(self, path: Path) -> None:
+        """Open a picture in a new document that reads it, after asking about unsaved work."""
+
+        def open_reader() -> None:
+            self.session.files.open_pictures([path])
+            self._show_document()
+
+        self._unless_unsaved(lambda: self.log.attempt(open_reader), "open")
+
+    def ask_graph_or_picture(self, path: Path, read: Callable[[], object]) -> None:
+        """Ask what a picture of ours is wanted for: its graph, or its pixels."""
+        self.dialogs.question = Question(
+            "Rendered by Halation",
+            f"{path.name} holds the graph that made it.",
+            (("Open its graph", lambda: self.open_graph_of_picture(path)), ("Read it as a picture", read)),
+        )
 
     def open_graph(self, path: Path) -> None:
         """Open a file, after asking about unsaved work."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from halation.authoring.preferences import PreferenceStore
 from halation.authoring.render_queue.queue import RenderJob, RenderQueue
 from halation.authoring.session import Session
 from halation.editor.browser.browsing import Browsing, begin_browsing, size_text
+from halation.editor.browser.places import complete_name
 from halation.editor.renders.folders import command, show_folder
 from halation.editor.renders.form import RenderForm
 from halation.editor.renders.wording import title
@@ -198,3 +200,53 @@ def test_opening_takes_a_typed_path_too(desk: Desk, folder: Path) -> None:
     ):
         now.search(typed)
         assert (now.typed_file, now.typed_folder) == (file, shown)
+
+
+def test_it_starts_where_the_document_is(desk: Desk, folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    for purpose in ("graph", "document", "image"):
+        desk.store.note_folder(purpose, tmp_path / "elsewhere" / "x")
+        assert begin_browsing(desk, Browse("Choose", purpose, print)).folder == tmp_path / "elsewhere"
+    desk.session.path = folder / "a.json"
+    for purpose in ("graph", "document", "image"):
+        assert begin_browsing(desk, Browse("Choose", purpose, print)).folder == folder
+    memory = {(folder, "image"): folder / "inner"}
+    assert begin_browsing(desk, Browse("Choose", "image", print), memory).folder == folder / "inner"
+    assert begin_browsing(desk, Browse("Choose", "document", print), memory).folder == folder
+
+
+def test_only_the_first_document_starts_at_home(desk: Desk, folder: Path) -> None:
+    assert begin_browsing(desk, Browse("Choose", "document", print)).folder == Path.home()
+    desk.store.note_opened(folder / "a.json")
+    assert begin_browsing(desk, Browse("Choose", "document", print)).folder == folder
+
+
+def test_graphs_and_pictures_are_offered_to_open(desk: Desk, folder: Path) -> None:
+    desk.session.path = folder / "a.json"
+    assert names(browsing(desk, purpose="document")) == ["inner", "a.json", "b.json", "picture.EXR"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "completed"),
+    [
+        ("inn", "inner/"),
+        ("in", "inner/"),
+        ("pic", "picture.EXR"),
+        ("PIC", "picture.EXR"),
+        ("inner/sh", "inner/shot_"),
+        ("inner/shot_a", "inner/shot_a.exr"),
+        ("./inner/shot_b", "./inner/shot_b.exr"),
+        ("inner/.h", "inner/.hidden.exr"),
+        ("nothing", "nothing"),
+        ("missing/a", "missing/a"),
+        ("inner", "inner/"),
+        ("", ""),
+    ],
+)
+@pytest.mark.skipif(os.sep != "/", reason="paths as on POSIX")
+def test_tab_completes_a_path(folder: Path, typed: str, completed: str) -> None:
+    for name in ("shot_a.exr", "shot_b.exr", ".hidden.exr", "shot.txt"):
+        (folder / "inner" / name).write_text("")
+    assert complete_name(typed, folder, {".json", ".exr"}) == completed
+    if typed:
+        assert complete_name(f"{folder}/{typed}", Path("/"), {".json", ".exr"}) == f"{folder}/{completed}"
