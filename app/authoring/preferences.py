@@ -24,7 +24,7 @@ MAX_RECENT = 20
 MAX_SCALE = 3.0
 MIN_SCALE = 0.75
 
-Purpose = Literal["graph", "document", "image", "table", "scene", "config", "code", "export"]
+Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
 
 
 def state_folder() -> Path:

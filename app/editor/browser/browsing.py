@@ -151,9 +151,9 @@ def find_own_folder(context: BrowserContext) -> Path | None:
 
 def endings(browse: Browse) -> frozenset[str]:
     """The endings of the files that are listed."""
-    if browse.purpose in ("image", "document"):
+    if browse.purpose == "image" or browse.has_pictures:
         pictures = list_readable_endings() | VIDEO_ENDINGS
-        return pictures if browse.purpose == "image" else pictures | {".json"}
+        return pictures | {".json"} if browse.has_pictures else pictures
     if browse.purpose == "table":
         return list_table_endings()
     if browse.purpose == "scene":

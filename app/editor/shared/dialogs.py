@@ -9,19 +9,23 @@ from typing import Literal
 
 from halation.nodes import Value
 
-Purpose = Literal["graph", "document", "image", "table", "scene", "config", "code", "export"]
+Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
 """The kind of file: it decides which files are listed and which folder is remembered."""
 
 
 @dataclass(frozen=True)
 class Browse:
-    """A request for a file, which `then` gets. `saving` asks for a new name, starting from `name`."""
+    """A request for a file, which `then` gets. `saving` asks for a new name, starting from `name`.
+
+    With `has_pictures` a picture will do as well as a graph.
+    """
 
     title: str
     purpose: Purpose
     then: Callable[[Path], object]
     saving: bool = False
     name: str = ""
+    has_pictures: bool = False
 
 
 def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:

@@ -85,7 +85,7 @@ class DocumentWorkflow:
 
     def ask_for_graph(self) -> None:
         """Ask for a graph or a picture, and open it."""
-        self.dialogs.browse = Browse("Open a graph or a picture", "document", self.open_file)
+        self.dialogs.browse = Browse("Open a graph or a picture", "graph", self.open_file, has_pictures=True)
 
     def open_file(self, path: Path) -> None:
         """Open a graph, or a picture; of one that Halation rendered the user says whether its graph is meant."""

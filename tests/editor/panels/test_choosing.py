@@ -204,26 +204,26 @@ def test_opening_takes_a_typed_path_too(desk: Desk, folder: Path) -> None:
 
 def test_it_starts_where_the_document_is(desk: Desk, folder: Path, tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
-    for purpose in ("graph", "document", "image"):
+    for purpose in ("graph", "image"):
         desk.store.note_folder(purpose, tmp_path / "elsewhere" / "x")
         assert begin_browsing(desk, Browse("Choose", purpose, print)).folder == tmp_path / "elsewhere"
     desk.session.path = folder / "a.json"
-    for purpose in ("graph", "document", "image"):
+    for purpose in ("graph", "image"):
         assert begin_browsing(desk, Browse("Choose", purpose, print)).folder == folder
     memory = {(folder, "image"): folder / "inner"}
     assert begin_browsing(desk, Browse("Choose", "image", print), memory).folder == folder / "inner"
-    assert begin_browsing(desk, Browse("Choose", "document", print), memory).folder == folder
+    assert begin_browsing(desk, Browse("Choose", "graph", print), memory).folder == folder
 
 
 def test_only_the_first_document_starts_at_home(desk: Desk, folder: Path) -> None:
-    assert begin_browsing(desk, Browse("Choose", "document", print)).folder == Path.home()
+    assert begin_browsing(desk, Browse("Choose", "graph", print)).folder == Path.home()
     desk.store.note_opened(folder / "a.json")
-    assert begin_browsing(desk, Browse("Choose", "document", print)).folder == folder
+    assert begin_browsing(desk, Browse("Choose", "graph", print)).folder == folder
 
 
 def test_graphs_and_pictures_are_offered_to_open(desk: Desk, folder: Path) -> None:
     desk.session.path = folder / "a.json"
-    assert names(browsing(desk, purpose="document")) == ["inner", "a.json", "b.json", "picture.EXR"]
+    assert names(browsing(desk, has_pictures=True)) == ["inner", "a.json", "b.json", "picture.EXR"]
 
 
 @pytest.mark.parametrize(
