@@ -13,7 +13,7 @@ from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import CustomNode
 from ...errors import GraphError
-from ...graph import Graph, Group, Item, Port, Unknown, signature
+from ...graph import Graph, Group, Item, Port, Signature, Unknown, signature
 from ..fields.lights import describe_count
 from ..fields.numbers import SUFFIX, bar, format_number
 from ..shared.entries import spell_out
@@ -153,14 +153,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
     if spell_out(subtitle).lower() == spell_out(id).lower():
         subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
 
-    inputs = dict(node_signature.inputs)
-    input_pins = [Pin(name, socket.kind, 0.0, 0.0, socket.optional) for name, socket in inputs.items()]
-    output_pins = [Pin(name, socket.kind, WIDTH, 0.0) for name, socket in node_signature.outputs.items()]
-    input_pins += [
-        Pin(name, None, 0.0, 0.0)
-        for name in sorted(facts.linked_ins - {*node_signature.inputs, *node_signature.values})
-    ]
-    output_pins += [Pin(name, None, WIDTH, 0.0) for name in sorted(facts.linked_outs - {*node_signature.outputs})]
+    input_pins, output_pins = _list_pins(node_signature, facts)
     if facts.collapsed:
         linked = [
             Pin(name, find_value_kind(node_signature.values[name]), 0.0, 0.0, True, True)
@@ -180,31 +173,12 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
             collapsed=True,
         )
 
-    y = HEADER + PAD / 2
-    rows: list[NodeRow] = []
-    for index in range(max(len(input_pins), len(output_pins))):
-        start = _move_pin(input_pins[index], y) if index < len(input_pins) else None
-        end = _move_pin(output_pins[index], y) if index < len(output_pins) else None
-        hint = (
-            "" if start is None or end or start.name in facts.linked_ins else _describe_default(inputs.get(start.name))
-        )
-        rows.append(NodeRow(y, start, end, hint=hint, linked=start is not None and start.name in facts.linked_ins))
-        y += ROW
+    rows = _make_socket_rows(input_pins, output_pins, node_signature, facts)
+    y = HEADER + PAD / 2 + ROW * len(rows)
     values = _make_value_rows(id, item, graph, facts, node_signature.values)
     visible_rows = values if facts.expanded else _choose_rows(values)
     for row in visible_rows:
-        rows.append(
-            NodeRow(
-                y,
-                row.left and _move_pin(row.left, y),
-                None,
-                row.value,
-                row.label,
-                row.plain,
-                row.linked,
-                texts=row.texts,
-            )
-        )
+        rows.append(_move_row(row, y))
         y += ROW
     hidden = len(values) - len(visible_rows)
     is_open = facts.expanded and len(_choose_rows(values)) < len(values)
@@ -236,6 +210,43 @@ def find_subtitle(item: Item) -> str:
     if isinstance(item, Unknown):
         return LANGUAGES.get(item.type, item.type)
     return item.title if isinstance(item, Node) else ""
+
+
+def _list_pins(node_signature: Signature, facts: NodeFacts) -> tuple[list[Pin], list[Pin]]:
+    """The pins of inputs and of outputs; links to sockets that no longer exist have pins without a kind."""
+    inputs, outputs = node_signature.inputs, node_signature.outputs
+    lost_inputs = sorted(facts.linked_ins - {*inputs, *node_signature.values})
+    lost_outputs = sorted(facts.linked_outs - {*outputs})
+    return (
+        [
+            *(Pin(name, socket.kind, 0.0, 0.0, socket.optional) for name, socket in inputs.items()),
+            *(Pin(name, None, 0.0, 0.0) for name in lost_inputs),
+        ],
+        [
+            *(Pin(name, socket.kind, WIDTH, 0.0) for name, socket in outputs.items()),
+            *(Pin(name, None, WIDTH, 0.0) for name in lost_outputs),
+        ],
+    )
+
+
+def _make_socket_rows(
+    inputs: list[Pin], outputs: list[Pin], node_signature: Signature, facts: NodeFacts
+) -> list[NodeRow]:
+    """The rows below the header: an input at the left of each and an output at its right."""
+    rows: list[NodeRow] = []
+    for index in range(max(len(inputs), len(outputs))):
+        y = HEADER + PAD / 2 + ROW * index
+        start = _move_pin(inputs[index], y) if index < len(inputs) else None
+        end = _move_pin(outputs[index], y) if index < len(outputs) else None
+        linked = start is not None and start.name in facts.linked_ins
+        hint = "" if start is None or end or linked else _describe_default(node_signature.inputs.get(start.name))
+        rows.append(NodeRow(y, start, end, hint=hint, linked=linked))
+    return rows
+
+
+def _move_row(row: NodeRow, y: float) -> NodeRow:
+    pin = row.left and _move_pin(row.left, y)
+    return NodeRow(y, pin, None, row.value, row.label, row.plain, row.linked, texts=row.texts)
 
 
 def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values: Mapping[str, Value]) -> list[NodeRow]:

@@ -70,8 +70,12 @@ def draw_toolbar(context: CurvesContext, room: float) -> None:
 
 
 def _make_tools(context: CurvesContext) -> list[_CurveTool]:
-    state = context.curves
-    has_keys, square = commands.has_chosen_keys(context), imgui.get_frame_height()
+    return [*_make_view_tools(context), *_make_key_tools(context), *_make_panel_tools(context)]
+
+
+def _make_view_tools(context: CurvesContext) -> list[_CurveTool]:
+    """The modes, the filter of rows, and the menu that animates another value."""
+    state, square = context.curves, imgui.get_frame_height()
 
     def make_mode_tool(which: Mode, icon: str, label: str) -> _CurveTool:
         def draw() -> None:
@@ -80,18 +84,11 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
 
         return _CurveTool(square, draw)
 
-    def make_menu_tool(icon: str, name: str, doc: str, actions: str, starts_group: bool = False) -> _CurveTool:
-        return _CurveTool(
-            width_of_buttons(icon),
-            lambda: dropdown(context, icon, f"button keys {name}", doc, lambda: draw_entries(context, actions)),
-            starts_group,
-        )
-
     rows = "Selected nodes" if state.only_selected else "All values"
     width = max(
         map(width_of_buttons, (f"{icons.ICON_FA_FILTER}  Selected nodes", f"{icons.ICON_FA_FILTER}  All values"))
     )
-    tools = [
+    return [
         make_mode_tool("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
         make_mode_tool("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
         _CurveTool(
@@ -118,7 +115,20 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
             ),
         ),
     ]
-    tools += [
+
+
+def _make_key_tools(context: CurvesContext) -> list[_CurveTool]:
+    """The shape, the easing and the handles of keys."""
+    has_keys, square = commands.has_chosen_keys(context), imgui.get_frame_height()
+
+    def make_menu_tool(icon: str, name: str, doc: str, actions: str, starts_group: bool = False) -> _CurveTool:
+        return _CurveTool(
+            width_of_buttons(icon),
+            lambda: dropdown(context, icon, f"button keys {name}", doc, lambda: draw_entries(context, actions)),
+            starts_group,
+        )
+
+    tools = [
         _CurveTool(square, lambda look=look: _draw_shape_button(context, look, has_keys), look == "constant")
         for look in LOOKS
     ]
@@ -140,6 +150,14 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
             "Before the first and after the last key",
             "keys outside",
         ),
+    ]
+    return tools
+
+
+def _make_panel_tools(context: CurvesContext) -> list[_CurveTool]:
+    """Snapping, fitting the view, and the legend."""
+    square = imgui.get_frame_height()
+    return [
         _CurveTool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
         _CurveTool(square, lambda: tool(context, icons.ICON_FA_EXPAND, "keys.fit_all")),
         _CurveTool(
@@ -153,7 +171,6 @@ def _make_tools(context: CurvesContext) -> list[_CurveTool]:
             ),
         ),
     ]
-    return tools
 
 
 def _draw_shape_button(context: CurvesContext, look: Interpolation, has_keys: bool) -> None:

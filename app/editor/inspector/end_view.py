@@ -96,13 +96,7 @@ class EndView:
         if layer:
             rows.act(lambda: session.apply(SetInput(name, layer=str(layer.value))))
         if end.kind in (Kind.IMAGE, Kind.COLOR):
-            rows.name(f"{key} space", "color space", doc="The color space of the file")
-            space = space_field(rows, self._fields, f"{key} space", end.color_space, rows.field())
-            rows.record(f"{key} space")
-            if space:
-                rows.act(lambda: session.apply(SetInput(name, color_space=str(space.value))))
-            if not bound:
-                self._files.space(rows, end.file, end.layer, end.color_space)
+            self._space(rows, port, end, bool(bound))
         if Pattern.parse(end.file):
             rows.name(f"{key} missing", "missing", doc="What to show at a frame that has no file")
             index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
@@ -121,6 +115,17 @@ class EndView:
             lambda doc: session.apply(SetInput(name, doc=doc)),
             "A description of it",
         )
+
+    def _space(self, rows: Rows, port: Port, end: Input, bound: bool) -> None:
+        """Draw the color space of the file of an input."""
+        session, key = rows.context.session, f"{port} space"
+        rows.name(key, "color space", doc="The color space of the file")
+        space = space_field(rows, self._fields, key, end.color_space, rows.field())
+        rows.record(key)
+        if space:
+            rows.act(lambda: session.apply(SetInput(port.socket, color_space=str(space.value))))
+        if not bound:
+            self._files.space(rows, end.file, end.layer, end.color_space)
 
     def _default(self, rows: Rows, name: str, end: Input, width: float) -> Edit | None:
         """Draw the default with a button that removes it, or a button that sets one."""

@@ -28,7 +28,7 @@ from ...authoring.commands import (
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import value_label
-from ...graph import Port, Unknown, signature
+from ...graph import Control, Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..fields.color_field import color_field
 from ..fields.colors import decode, encode
@@ -257,60 +257,69 @@ class GraphView:
         if not session.graph.controls:
             rows.note("Values that this graph offers on the command line, and when it is used as a group.")
         for name, control in session.graph.controls.items():
-            key, target = f"controls.{name}", control.target
-            item = session.graph.nodes.get(target.node)
-            values = {} if item is None or isinstance(item, Unknown) else signature(item).values
-            declaration = values.get(target.socket)
-            if declaration:
-                self._values.draw(rows, (target,), declaration, control.label or name)
-            else:
-                rows.name(key, name)
-                rows.field()
-                rows.note("its value no longer exists", rows.palette.error)
-            imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
-            opened = imgui.tree_node(f"{target}##{key}")
-            imgui.pop_style_color()
-            tip("Name, label and description of the control")
-            rows.context.places[f"more {key}"] = item_rect()
-            if opened:
-                inner = rows.inset()
-                draw_text(
-                    inner,
-                    self._fields,
-                    f"{key} name",
-                    "name",
-                    name,
-                    lambda new, name=name: session.apply(RenameControl(name, new)),
-                )
-                draw_text(
-                    inner,
-                    self._fields,
-                    f"{key} label",
-                    "label",
-                    control.label,
-                    lambda label, name=name: session.apply(DescribeControl(name, label=label)),
-                    hint=name,
-                )
-                draw_text(
-                    inner,
-                    self._fields,
-                    f"{key} doc",
-                    "description",
-                    control.doc,
-                    lambda doc, name=name: session.apply(DescribeControl(name, doc=doc)),
-                    hint=declaration.doc if declaration else "",
-                )
-                if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
-                    rows.act(lambda target=target: go_to(rows.context, target))
-                imgui.same_line()
-                if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
-                    rows.act(lambda name=name: session.apply(HideControl(name)))
-                imgui.tree_pop()
+            self._control(rows, name, control)
         if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add Control", "add control"):
             imgui.open_popup("add control")
         if imgui.begin_popup("add control"):
             self._candidates(rows)
             imgui.end_popup()
+
+    def _control(self, rows: Rows, name: str, control: Control) -> None:
+        """Draw the value of a control, and a section with its name, label and description."""
+        key, target = f"controls.{name}", control.target
+        session = rows.context.session
+        item = session.graph.nodes.get(target.node)
+        values = {} if item is None or isinstance(item, Unknown) else signature(item).values
+        declaration = values.get(target.socket)
+        if declaration:
+            self._values.draw(rows, (target,), declaration, control.label or name)
+        else:
+            rows.name(key, name)
+            rows.field()
+            rows.note("its value no longer exists", rows.palette.error)
+        imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
+        opened = imgui.tree_node(f"{target}##{key}")
+        imgui.pop_style_color()
+        tip("Name, label and description of the control")
+        rows.context.places[f"more {key}"] = item_rect()
+        if opened:
+            self._control_details(rows, name, control, declaration)
+            imgui.tree_pop()
+
+    def _control_details(self, rows: Rows, name: str, control: Control, declaration: Value | None) -> None:
+        session, key = rows.context.session, f"controls.{name}"
+        inner = rows.inset()
+        draw_text(
+            inner,
+            self._fields,
+            f"{key} name",
+            "name",
+            name,
+            lambda new: session.apply(RenameControl(name, new)),
+        )
+        draw_text(
+            inner,
+            self._fields,
+            f"{key} label",
+            "label",
+            control.label,
+            lambda label: session.apply(DescribeControl(name, label=label)),
+            hint=name,
+        )
+        draw_text(
+            inner,
+            self._fields,
+            f"{key} doc",
+            "description",
+            control.doc,
+            lambda doc: session.apply(DescribeControl(name, doc=doc)),
+            hint=declaration.doc if declaration else "",
+        )
+        if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
+            rows.act(lambda: go_to(rows.context, control.target))
+        imgui.same_line()
+        if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
+            rows.act(lambda: session.apply(HideControl(name)))
 
     def _candidates(self, rows: Rows) -> None:
         """The values that are not controls yet, by node."""

@@ -83,26 +83,8 @@ class ValueRows:
             menu |= imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
             self._keying.note(rows, port, spoken(value))
         else:
-            mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
-            mixed = any(value_now(session, other_port)[0] != value for other_port in ports[1:])
-            edit = self._field(rows, ports, declaration, value, width - mark, mixed)
-            rows.record(key)
-            released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
-            menu |= released and declaration.type not in ("curve", "ramp", "lights")
-            if moves:
-                self._keying.tint(rows, port, item_rect())
-            if edit:
-                rows.act(lambda: self._take(rows, ports, declaration, edit))
-            if declaration.handle:
-                _crosshair(rows, key)
-            if control:
-                self._mark(rows, port, control)
-            if declaration.type == "path" and isinstance(value, str):
-                self.files.about(rows, value, declaration, _layer_of(graph, port, declaration))
-            if declaration.space and isinstance(value, str):
-                self._about_space(rows, port, value)
-            if declaration.type == "lights" and isinstance(value, tuple):
-                light_rows(rows, key, value, lambda edit: apply(session, ports, declaration, edit))
+            menu |= self._draw_field(rows, ports, declaration, value, control, width, moves)
+            self._draw_notes(rows, ports, declaration, value)
         if self.fields.eyedropper == key:
             context.viewer.picking = key
         self._targets[key] = ports, declaration
@@ -111,6 +93,43 @@ class ValueRows:
         if imgui.begin_popup(f"{_MENU} {key}"):
             self._menu(rows, ports, declaration, value, source, control)
             imgui.end_popup()
+
+    def _draw_field(
+        self,
+        rows: Rows,
+        ports: Ports,
+        declaration: Value,
+        value: Plain,
+        control: str | None,
+        width: float,
+        moves: bool,
+    ) -> bool:
+        """Draw the field of a value with its marks; True if the user opens the menu."""
+        port, key = ports[0], str(ports[0])
+        mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
+        mixed = any(value_now(rows.context.session, other_port)[0] != value for other_port in ports[1:])
+        edit = self._field(rows, ports, declaration, value, width - mark, mixed)
+        rows.record(key)
+        released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+        if moves:
+            self._keying.tint(rows, port, item_rect())
+        if edit:
+            rows.act(lambda: self._take(rows, ports, declaration, edit))
+        if declaration.handle:
+            _crosshair(rows, key)
+        if control:
+            self._mark(rows, port, control)
+        return released and declaration.type not in ("curve", "ramp", "lights")
+
+    def _draw_notes(self, rows: Rows, ports: Ports, declaration: Value, value: Plain) -> None:
+        """Draw what belongs below a field: the file of a path, a color space, the selected light."""
+        session, port = rows.context.session, ports[0]
+        if declaration.type == "path" and isinstance(value, str):
+            self.files.about(rows, value, declaration, _layer_of(session.graph, port, declaration))
+        if declaration.space and isinstance(value, str):
+            self._about_space(rows, port, value)
+        if declaration.type == "lights" and isinstance(value, tuple):
+            light_rows(rows, str(port), value, lambda edit: apply(session, ports, declaration, edit))
 
     def take_abandoned(self, context: InspectorContext, abandoned: tuple[str, Edit]) -> None:
         """Apply text that was typed in a field before the selection changed."""
