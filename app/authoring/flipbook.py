@@ -59,7 +59,7 @@ class FlipbookStrip:
         path = Path(suggest_pattern(str(path), sandbox=sandbox) or path)
         frames = _list_disk_frames(path, sandbox=sandbox)
         if not frames:
-            raise InputError(f"{path}: there is no such picture")
+            raise InputError(f"{path}: this picture does not exist")
         return FlipbookStrip(path, (frames[0], frames[-1]))
 
 

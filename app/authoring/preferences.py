@@ -142,10 +142,10 @@ class PreferenceStore:
                     self.file, json.dumps(_tree(self.current), indent=2, sort_keys=True) + "\n", sandbox=UNRESTRICTED
                 )
         except OSError as fault:
-            self._report(f"preferences cannot be kept in {self.file.parent} ({fault.strerror})")
+            self._report(f"preferences cannot be saved in {self.file.parent} ({fault.strerror})")
             return False
         except OutputError as fault:
-            self._report(f"preferences cannot be kept: {fault}")
+            self._report(f"preferences cannot be saved: {fault}")
             return False
         self._written = self.current
         self._forgotten.clear()
@@ -163,7 +163,7 @@ class PreferenceStore:
         try:
             tree = json.loads(self.file.read_bytes())
             if not isinstance(tree, dict):
-                raise ValueError("it holds no object")
+                raise ValueError("it is not a JSON object")
         except (FileNotFoundError, NotADirectoryError):
             return fallback
         except OSError as fault:

@@ -40,7 +40,7 @@ def test_a_file_stands_for_its_sequence(folder: Path) -> None:
     assert FlipbookStrip.from_file(folder / "alone.png", sandbox=UNRESTRICTED) == FlipbookStrip(
         folder / "alone.png", (1, 1)
     )
-    with pytest.raises(InputError, match="no such picture"):
+    with pytest.raises(InputError, match="does not exist"):
         FlipbookStrip.from_file(folder / "gone.exr", sandbox=UNRESTRICTED)
 
 

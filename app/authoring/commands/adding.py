@@ -219,7 +219,7 @@ def load_group(document: OpenDocument, path: str | Path) -> Group:
     body = load(path, document.types, sandbox=document.sandbox)
     own_path = document.path.resolve() if document.path else None
     if own_path in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
-        raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
+        raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is this document or holds it")
     if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
         return Group(paths.rebase_paths(without_samples(body), document.root.folder))
     return Group(body, paths.make_relative(path, document.root.folder))

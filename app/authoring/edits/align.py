@@ -52,7 +52,7 @@ def _align_spans(spans: Mapping[ElementId, tuple[float, float]], side: str) -> d
             return {key: mean - length / 2.0 for key, (_, length) in spans.items()}
         case "distribute x" | "distribute y":
             return _distribute(spans)
-    raise GraphError(f"'{side}' is no way to align: it is one of {', '.join(get_args(Side))}")
+    raise GraphError(f"'{side}' is not an alignment: use one of {', '.join(get_args(Side))}")
 
 
 def _distribute(spans: Mapping[ElementId, tuple[float, float]]) -> dict[ElementId, float]:

@@ -26,7 +26,7 @@ def find_group(graph: Graph, id: str) -> Group:
     """The group of that id. Raises GraphError."""
     item = graph.node(id)
     if not isinstance(item, Group):
-        raise GraphError(f"node '{id}' is no group")
+        raise GraphError(f"node '{id}' is not a group")
     return item
 
 

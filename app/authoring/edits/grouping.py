@@ -206,6 +206,6 @@ def _check_no_way_back(graph: Graph, ids: set[str]) -> None:
     before = set[str]().union(*(graph.upstream(id) for id in ids)) - ids
     if between := sorted(after & before):
         raise GraphError(
-            f"these nodes cannot be a group, which would feed itself: '{between[0]}' lies between them; "
-            "select it too, or leave out what it feeds"
+            f"these nodes cannot become a group, because it would feed itself: '{between[0]}' lies between them; "
+            "select it too, or deselect the nodes that it feeds"
         )

@@ -70,12 +70,12 @@ def add_dot(graph: Graph, target: Port, at: Place) -> tuple[Graph, ElementId]:
 def join_dot(graph: Graph, dot: ElementId, target: Port) -> Graph:
     """A graph where the link to `target` passes a dot of another link from the same source."""
     if target not in graph.links:
-        raise GraphError(f"nothing is linked to '{target}': only a link can pass a dot")
+        raise GraphError(f"nothing is linked to '{target}': a dot needs a link")
     sources = {str(end): source for end, source in graph.links.items()}
     for end, dots in routes(graph).items():
         if dot.name in dots and sources.get(end) == graph.links[target]:
             return with_routes(graph, {target: dots[: dots.index(dot.name) + 1]})
-    raise GraphError(f"the dot carries another signal than the link to '{target}': links join where they start alike")
+    raise GraphError(f"only links from the same source can share a dot: the link to '{target}' has another source")
 
 
 def remove_dots(graph: Graph, removed: Collection[ElementId]) -> Graph:

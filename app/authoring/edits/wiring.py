@@ -118,7 +118,7 @@ def splice_chain(graph: Graph, ids: Collection[str], target: Port) -> Graph:
     last = [id for id in graph.nodes if id in ids and id not in feeding]
     first = [id for id in graph.nodes if id in ids and id not in fed and list_targets(graph.nodes[id], id)]
     if len(last) != 1 or len(first) != 1:
-        raise GraphError("these nodes are no chain: only one that begins and ends with one node fits into a link")
+        raise GraphError("these nodes are not a chain: only a chain with one first and one last node fits into a link")
     return _put_chain_between(graph, first[0], last[0], target)
 
 
@@ -157,7 +157,7 @@ def extract_nodes(graph: Graph, ids: Collection[str]) -> Graph:
         after = remove_node(after, id)
     inner = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
     if inner.keys() | after.links.keys() == graph.links.keys() and {**after.links, **inner} == graph.links:
-        raise GraphError("nothing to take out of a chain: the nodes have no links to others")
+        raise GraphError("these nodes are in no chain: they have no links to other nodes")
     routes = {end: dots_of(after, end) for end in after.links} | {end: dots_of(graph, end) for end in inner}
     return with_routes(
         replace(graph, links={**after.links, **inner}), routes | {end: () for end in graph.links if end not in routes}
@@ -186,7 +186,9 @@ def swap_inputs(graph: Graph, id: str) -> Graph:
     ports = [Port(id, name) for name in names]
     sources = [graph.links.get(port) for port in ports]
     if len(ports) < 2 or sources == [None, None]:
-        raise GraphError(f"node '{id}' has no two inputs to swap" if len(ports) < 2 else f"nothing is linked to '{id}'")
+        raise GraphError(
+            f"node '{id}' has fewer than two inputs to swap" if len(ports) < 2 else f"nothing is linked to '{id}'"
+        )
     routes = [dots_of(graph, port) for port in ports]
     after = cut_links(graph, [port for port in ports if port in graph.links])
     for port, source in zip(ports, reversed(sources), strict=True):

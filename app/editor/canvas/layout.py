@@ -147,12 +147,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
     """The layout of a node of a graph."""
     node_signature = signature(item)
     sort: NodeSort = "group" if isinstance(item, Group) else "unknown" if isinstance(item, Unknown) else "node"
-    subtitle = find_subtitle(item)
-    category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else sort
-    doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
-    if spell_out(subtitle).lower() == spell_out(id).lower():
-        subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
-
+    heading = _describe_item(id, item, sort)
     input_pins, output_pins = _list_pins(node_signature, facts)
     if facts.collapsed:
         linked = [
@@ -164,10 +159,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
             sort,
             WIDTH,
             HEADER,
-            id,
-            subtitle,
-            category,
-            doc,
+            *heading,
             ins=_spread_pins([*input_pins, *linked]),
             outs=_spread_pins(output_pins),
             collapsed=True,
@@ -191,10 +183,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
         sort,
         WIDTH,
         y,
-        id,
-        subtitle,
-        category,
-        doc,
+        *heading,
         tuple(rows),
         {row.left.name: row.left for row in rows if row.left},
         {row.right.name: row.right for row in rows if row.right},
@@ -203,6 +192,16 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
         hidden,
         is_open,
     )
+
+
+def _describe_item(id: str, item: Item, sort: NodeSort) -> tuple[str, str, str, str]:
+    """The id, subtitle, category and doc of a node; no subtitle where it only repeats the id."""
+    subtitle = find_subtitle(item)
+    category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else sort
+    doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
+    if spell_out(subtitle).lower() == spell_out(id).lower():
+        subtitle = LANGUAGES[item.id] if isinstance(item, CustomNode) else ""
+    return id, subtitle, category, doc
 
 
 def find_subtitle(item: Item) -> str:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from .context import CanvasContext
 
 _FIELD = "canvas "
-"""What the ids of fields on nodes begin with, before the port."""
+"""The prefix of ids of fields on nodes, before the port."""
 
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 

@@ -1,4 +1,4 @@
-"""What a drag in the panel does, from where it began and where it is now. Nothing here draws."""
+"""Drags in the Animation panel: the edit that follows from their start and the mouse. Nothing here draws."""
 
 from __future__ import annotations
 

@@ -157,7 +157,7 @@ class NameColumn:
         return start
 
     def _draw_value(self, frame: CurvesFrame, row: CurveRow, right: float, y: float) -> float:
-        """What the value is now, right-aligned. Returns its width."""
+        """Draw the current value, right-aligned. Returns its width."""
         assert row.port
         session = frame.context.session
         inputs = session.graph, session.root.settings, session.time.frame
@@ -186,7 +186,7 @@ class NameColumn:
         )
 
     def _draw_diamond(self, frame: CurvesFrame, row: CurveRow, y: float, hot: bool) -> None:
-        """Filled where there is a key at the current frame; a click makes or removes it."""
+        """Draw a diamond, filled if there is a key at the current frame; a click toggles the key."""
         assert row.port
         draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         x = frame.list[2] - (_KEY * 0.5 + 2.0) * scale

@@ -204,7 +204,7 @@ def _place_picker(rect: Rect) -> tuple[float, float]:
 
 
 def _draw_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:
-    """Draw a swatch, and short numbers where there is no room to edit them."""
+    """Draw a swatch and short numbers, for narrow fields."""
     background(fields.palette, rect, hovered=hovered)
     draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), rgba(color), hovered)
     text = NO_VALUE if mixed else " ".join(f"{part:.2g}" for part in color)

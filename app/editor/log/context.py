@@ -1,4 +1,4 @@
-"""What the Log panel and the messages uses."""
+"""What the Log panel and the toasts use."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LogContext(PanelContext):
-    """The collaborators of the Log panel and the messages."""
+    """The collaborators of the Log panel and the toasts."""
 
     clipboard: SystemText
 

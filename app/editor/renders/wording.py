@@ -65,7 +65,7 @@ def time_text(seconds: float) -> str:
 
 
 def aim_text(aim: RenderTargets) -> str:
-    """What a render would write."""
+    """The files that a render would write, as text."""
     if aim.files == 1:
         return f"Writes {Path(aim.first).name}"
     return f"Writes {aim.files:,} files: {Path(aim.first).name} \u2026 {Path(aim.last).name}"

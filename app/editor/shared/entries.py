@@ -70,7 +70,7 @@ class CatalogEntry:
 
     @property
     def description(self) -> str:
-        """What is said of this entry alone: sentences that many entries share tell none from another."""
+        """The category and doc that are searched; none for groups, inputs and outputs, whose docs are all alike."""
         return f"{self.category} {self.doc}" if self.category not in (GROUP, GRAPH) else ""
 
 

@@ -1,4 +1,4 @@
-"""What the viewer and the scopes uses."""
+"""What the viewer and the scopes use."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ def row_height() -> float:
 
 
 def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight: Sight, seconds: float) -> list[Word]:
-    """What a side shows; for A also zoom, proxy and render time."""
+    """The text on what a side shows; for A also zoom, proxy and render time."""
     palette, preview = context.palette, context.preview
     words: list[Word] = []
     if context.viewer.compares:

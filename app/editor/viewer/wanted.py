@@ -33,8 +33,7 @@ def effective_scale(context: ViewerContext) -> float:
 def list_wanted_ports(context: ViewerContext) -> tuple[dict[str, Port], float]:
     """The ports to compute, by name, and the scale to compute them at.
 
-    That is A, B where it is compared with, every input of the graph while their values are shown, and what says how far
-    away things are where a handle asks for that.
+    These are A, B while comparing, every input of the graph while the pixel table is open, and depth for handles.
     """
     session, viewer = context.session, context.viewer
     ports = _sides(context)

@@ -28,7 +28,7 @@ class Editor(Services):
     curves: CurvesState = field(default_factory=CurvesState)
     timeline: TimelineState = field(default_factory=TimelineState)
     scope: Scope = "graph"
-    """The panel that keys go to: the one that the mouse was over last."""
+    """The panel whose shortcuts work: the last one under the mouse."""
 
     @property
     def places(self) -> dict[str, Rect]:

@@ -40,7 +40,7 @@ _DELETED: Mapping[Kind, str] = MappingProxyType(
 """What follows for the user from a file that is gone, by what it holds."""
 
 OVER_BUDGET = 2
-"""Seconds in a row, of which each is looked at once, before a warning: a picture alone may need more for a moment."""
+"""Consecutive seconds over the budget before a warning: a single picture may exceed it for a moment."""
 
 
 class FrameUpdater:

@@ -140,7 +140,7 @@ class InputQueue:
         return frozenset(self._held)
 
     def _update_held(self, bits: int) -> frozenset[imgui.Key]:
-        """What the event itself says is held; it knows of a release that happened over another window."""
+        """Update the held modifiers from an event, which knows of a release over another window too."""
         self._held = {modifier for bit, modifier in _BITS.items() if bits & bit}
         return frozenset(self._held)
 

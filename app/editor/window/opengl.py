@@ -22,7 +22,7 @@ def best_version() -> tuple[int, int]:
     """The newest OpenGL of ours that a window here can have. Raises DeviceError.
 
     A refused version would spoil every later attempt of the window library in this process, so a hidden window is
-    asked first. HALATION_WINDOW=none opens windows that no display is needed for, and that nobody sees: for tests.
+    asked first. HALATION_WINDOW=none opens windows without a display, for tests.
     """
     visible = os.environ.get("HALATION_WINDOW") != "none"
     with warnings.catch_warnings():

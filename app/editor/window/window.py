@@ -228,7 +228,7 @@ class Window:
         for name, overlay in self._overlays.items():
             failed_before = name in self.editor.faults
             if not draw_guarded(self.editor, name, overlay.draw) and not failed_before:
-                self.editor.dialogs.close()  # one that nobody can see would keep all keys for itself
+                self.editor.dialogs.close()  # a hidden window would take all keys
         run_shortcuts(self.editor)
 
     def _after_panels(self) -> None:

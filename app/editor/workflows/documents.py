@@ -43,7 +43,7 @@ def _do_nothing() -> None:
 
 @dataclass(frozen=True)
 class DocumentWorkflow:
-    """What the File menu does. Each step that would lose work asks first."""
+    """The actions of the File menu. Each one that would lose work asks first."""
 
     session: Session
     store: PreferenceStore
