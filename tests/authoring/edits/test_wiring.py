@@ -107,7 +107,7 @@ def test_a_chain_is_put_into_a_link_as_a_whole():
         with pytest.raises(GraphError, match=said):
             wiring.splice_chain(graph, ids, port("n1.image"))
     loose = chain(2).add("a", Soften()).add("b", Soften())
-    with pytest.raises(GraphError, match="no chain"):
+    with pytest.raises(GraphError, match="not a chain"):
         wiring.splice_chain(loose, ["a", "b"], port("n1.image"))
 
 
@@ -162,7 +162,7 @@ def test_extracted_nodes_keep_the_links_among_themselves():
         "n2.image": "n1.out",
         "outputs.image": "n3.out",
     }
-    with pytest.raises(GraphError, match="nothing to take out"):
+    with pytest.raises(GraphError, match="in no chain"):
         wiring.extract_nodes(after, ["n1", "n2"])
 
 
@@ -204,7 +204,7 @@ def test_links_from_one_source_share_a_dot():
     assert "dots" in routes.tidy_routes(graph.disconnect(port("n1.image"))).ui, "the other link still passes it"
     gone = routes.tidy_routes(graph.disconnect(port("n1.image")).disconnect(port("blend.first")))
     assert "dots" not in gone.ui
-    with pytest.raises(GraphError, match="another signal"):
+    with pytest.raises(GraphError, match="another source"):
         routes.join_dot(graph, dot, port("outputs.image"))
 
 

@@ -187,10 +187,10 @@ def test_dropped_files(tmp_path):
     session = Session(sandbox=UNRESTRICTED)
     session.files.save_as(tmp_path / "doc.json")
     path = written(tmp_path / "my look.json", Graph(outputs={"image": Output()}))
-    ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0)))
+    ids = session.apply(DropFiles([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 200.0)))
     assert ids == ("shot_1", "b", "my_look")
     assert [session.graph.nodes[id].path for id in ids] == ["plates/shot 1.exr", "/far/b.png", "my look.json"]
-    assert session.selection == set(ids) and session.position(ElementId("shot_1")) == (10.0, 20.0)
+    assert session.selection == set(ids) and session.position(ElementId("shot_1")) == (10.0, 200.0)
     assert session.history.steps == ("Drop 3 files",)
     with pytest.raises(HalationError):
         session.apply(DropFiles([tmp_path / "none.json"]))
