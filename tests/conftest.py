@@ -13,7 +13,7 @@ from halation.nodes import CameraModel, Kind, Node
 from halation.renderer import Renderer, RenderRequest
 from hypothesis import HealthCheck, settings
 
-pytest_plugins = ["children", "costs", "failures", "skips", "time_limits"]
+pytest_plugins = ["selection", "children", "costs", "failures", "skips", "time_limits"]
 
 # A busy machine is no fault of what is tested: examples may take as long as they take.
 settings.register_profile("halation", deadline=None, suppress_health_check=[HealthCheck.too_slow])

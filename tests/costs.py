@@ -14,6 +14,7 @@ from collections.abc import Generator
 from pathlib import Path
 
 import pytest
+from selection import LIST, list_slow
 
 SHOWN = 20
 """The most rows that are printed."""
@@ -48,6 +49,8 @@ class CostTable:
         terminalreporter.write_line(f"together {sum(self._seconds.values()):.0f} s; peak memory: {peaks}")
         table = {"seconds": dict(sorted(self._seconds.items())), "peak_bytes": dict(self._memory)}
         self._path.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
+        if os.environ.get("HALATION_RENEW"):
+            LIST.write_text("".join(f"{name}\n" for name in list_slow(self._seconds)), "utf-8")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

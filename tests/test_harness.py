@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from selection import LIST, name_function
 
 ROOT = Path(__file__).parents[1]
 
@@ -21,7 +22,7 @@ Suite = Callable[..., subprocess.CompletedProcess[str]]
 def suite(tmp_path: Path) -> Suite:
     """`suite(code, *words)` runs the tests in `code` with the plugins of this suite."""
     (tmp_path / "pytest.ini").write_text(
-        "[pytest]\naddopts = -p children -p costs -p failures -p skips -p time_limits\ntimeout_grace = 1\n"
+        "[pytest]\naddopts = -p selection -p children -p costs -p failures -p skips -p time_limits\ntimeout_grace = 1\n"
     )
 
     def run_tests(code: str, *words: str) -> subprocess.CompletedProcess[str]:
@@ -174,6 +175,23 @@ def test_unlisted():
     monkeypatch.setenv("CI", ci)
     said = suite(code).stdout
     assert ended in said and "is skipped (nobody likes it): list the reason in tests/skips.py" in said, said
+
+
+def test_fast_tests_are_those_of_other_rooms_that_are_not_listed(tmp_path: Path) -> None:
+    words = [sys.executable, "-m", "pytest", "--collect-only", "-q", "--fast", "tests/graph", "tests/law"]
+    collected = subprocess.run(words, cwd=ROOT, capture_output=True, text=True).stdout.splitlines()
+    names = {name_function(line) for line in collected if "::" in line}
+    slow = set(LIST.read_text().split("\n"))
+    assert any(name.startswith("tests/graph") for name in names) and not any("tests/law" in name for name in names)
+    assert not names & slow and any(name.startswith("tests/graph") for name in slow)
+
+
+def test_the_list_of_slow_tests_names_tests_that_are_there() -> None:
+    for name in filter(None, LIST.read_text().split("\n")):
+        path, _, function = name.partition("::")
+        assert f"def {function}(" in (ROOT / path).read_text("utf-8"), (
+            f"{name}: HALATION_RENEW=1 ./dev test --costs FILE"
+        )
 
 
 def test_costs_are_written(suite: Suite, tmp_path: Path) -> None:

@@ -284,18 +284,19 @@ def test_an_interruption_leaves_what_is_finished(movie, tmp_path):
 
 
 @POSIX
-def test_kills_leave_no_half_frame_and_resume_ends_the_same(cli, movie, tmp_path):
-    """200 processes killed at random moments of a sequence with history; then one that comes to its end."""
+def test_kills_leave_no_half_frame_and_resume_ends_the_same(cli, movie, tmp_path, is_nightly):
+    """40 processes, 200 at night, killed at random moments of a sequence with history; then one that ends by itself."""
+    count = 200 if is_nightly else 40
     path = movie(*TRAIL)
     rendered(cli, path, "whole.####.exr")
     whole = {frame: (tmp_path / f"whole.{frame:04d}.exr").read_bytes() for frame in FRAMES}
     words = [path, "-o", tmp_path / "out.####.exr", "--precision=float", "--resume"]
     result = subprocess.run(
-        [sys.executable, ZYGOTE, "200", *map(str, words)], capture_output=True, text=True, timeout=600
+        [sys.executable, ZYGOTE, str(count), *map(str, words)], capture_output=True, text=True, timeout=600
     )
     assert result.returncode == 0, result.stderr
     killed, seen = json.loads(result.stdout)
-    assert killed >= 100 and seen >= 50, (killed, seen)
+    assert killed >= count / 2 and seen >= count / 4, (killed, seen)
     assert rendered(cli, path, "out.####.exr", "--resume")["frames"] == list(FRAMES)
     for frame, expected in whole.items():
         assert (tmp_path / f"out.{frame:04d}.exr").read_bytes() == expected

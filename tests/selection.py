@@ -1,0 +1,65 @@
+"""Which tests run: all but those of the night, only fast ones, or also those of the night.
+
+`--fast` leaves out the rooms that start programs and the tests that `slow_tests.txt` lists; with `HALATION_RENEW=1`,
+`--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+TESTS = Path(__file__).parent
+LIST = TESTS / "slow_tests.txt"
+
+SLOW_ROOMS = ("authoring", "bench", "cli", "gui", "hostile", "law", "media", "presets", "regression")
+"""Rooms whose tests start programs, write large files or render whole presets, left out by `--fast`."""
+
+SLOW = 0.3
+"""Seconds of processor time above which a test is slow, all its cases together. The tests of nodes, graphs and the
+renderer that are not slow take 46 s together, those that are take 320 s, measured with Mesa 22.3."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The options that choose."""
+    group = parser.getgroup("selection", "which tests run")
+    group.addoption("--fast", action="store_true", help="only what takes little time: for every save")
+    group.addoption("--nightly", action="store_true", help="repeat more often what happens at random")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not even import the rooms that `--fast` leaves out."""
+    if config.getoption("--fast") and collection_path.parent == TESTS and collection_path.name in SLOW_ROOMS:
+        return True
+    return None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is slow."""
+    if config.getoption("--fast"):
+        slow = set(LIST.read_text("utf-8").split("\n"))
+        left_out = [item for item in items if name_function(item.nodeid) in slow]
+        items[:] = [item for item in items if name_function(item.nodeid) not in slow]
+        config.hook.pytest_deselected(items=left_out)
+
+
+@pytest.fixture(scope="session")
+def is_nightly(request: pytest.FixtureRequest) -> bool:
+    """True where tests repeat more often what happens at random."""
+    return bool(request.config.getoption("--nightly"))
+
+
+def name_function(test: str) -> str:
+    """The name of a test without its case."""
+    return test.partition("[")[0]
+
+
+def list_slow(seconds: Mapping[str, float]) -> list[str]:
+    """The tests of the other rooms that take long, by name."""
+    totals = defaultdict[str, float](float)
+    for test, spent in seconds.items():
+        totals[name_function(test)] += spent
+    return sorted(name for name, spent in totals.items() if spent > SLOW and name.split("/")[1] not in SLOW_ROOMS)
