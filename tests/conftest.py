@@ -19,6 +19,10 @@ pytest_plugins = ["selection", "children", "costs", "failures", "skips", "time_l
 settings.register_profile("halation", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("halation")
 
+BUDGET = 16 * 2**20
+"""Bytes of results that the renderer keeps: few pictures of tests are asked for again. With the 512 MiB of the product
+a worker takes half a gigabyte more."""
+
 Array = np.ndarray
 Run = Callable[..., Array]
 
@@ -28,7 +32,7 @@ _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
 @pytest.fixture(scope="session")
 def renderer() -> Iterator[Renderer]:
     """One renderer for all tests, so that they share its programs."""
-    renderer = open_renderer()
+    renderer = open_renderer(BUDGET)
     yield renderer
     renderer.close()
 

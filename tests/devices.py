@@ -5,12 +5,8 @@ from __future__ import annotations
 import os
 
 from halation.compiler import Form
-from halation.renderer import Renderer, open_device
+from halation.renderer import DEFAULT_BUDGET, Renderer, open_device
 from halation.resources.sandbox import UNRESTRICTED
-
-BUDGET = 16 * 2**20
-"""Bytes of results that a renderer of tests keeps: pictures of tests are small, and few are asked for again. With the
-512 MiB of the product each worker of the suite took half a gigabyte more."""
 
 
 def form_to_test() -> Form | None:
@@ -20,6 +16,6 @@ def form_to_test() -> Form | None:
     return form
 
 
-def open_renderer(budget: int = BUDGET) -> Renderer:
+def open_renderer(budget: int = DEFAULT_BUDGET) -> Renderer:
     """A renderer on a device of its own, on whatever OpenGL this machine has; the caller closes it."""
     return Renderer(open_device(form_to_test(), sandbox=UNRESTRICTED), budget=budget, sandbox=UNRESTRICTED)
