@@ -32,12 +32,13 @@ _PROCESSES = Path("/proc")
 
 def pytest_configure(config: pytest.Config) -> None:
     """Hear signals, and mark what this process starts."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "")
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT"):
         number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) == signal.SIG_IGN and hasattr(config, "workerinput"):
+        if number is not None and signal.getsignal(number) == signal.SIG_IGN and worker:
             signal.signal(number, signal.default_int_handler if name == "SIGINT" else signal.SIG_DFL)
-    if hasattr(config, "workerinput"):
-        os.environ[MARK] = f"{os.environ.get(_RUN, '')} {config.workerinput['workerid']}"
+    if worker:
+        os.environ[MARK] = f"{os.environ.get(_RUN, '')} {worker}"
     else:
         os.environ[_RUN] = uuid4().hex
         os.environ[MARK] = f"{os.environ[_RUN]} alone"

@@ -21,6 +21,7 @@ from typing import Any
 
 import av
 import OpenImageIO as oiio
+from av.error import FFmpegError
 from cases import UNFINISHED
 from pool import Tally
 
@@ -135,7 +136,7 @@ def _is_whole_video(path: Path) -> bool:
     try:
         with av.open(str(path)) as container:
             return len(list(container.decode(video=0))) == VIDEO_FRAMES
-    except av.FFmpegError:
+    except FFmpegError:
         return False
 
 
@@ -144,7 +145,7 @@ def run_kills(count: int, jobs: int, keep: Path | None) -> Tally:
     with ThreadPoolExecutor(jobs) as threads:
         totals = list(threads.map(_count_changes, SCENES))
         moments = _choose_moments(dict(zip(SCENES, totals, strict=True)), count)
-        results = list(threads.map(lambda moment: _kill(*moment, keep), moments))
+        results = list(threads.map(lambda moment: _kill(moment[0], moment[1], moment[2], keep), moments))
     tally = Tally()
     for name, faults in filter(None, results):
         tally.count += 1
