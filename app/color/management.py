@@ -26,7 +26,7 @@ from halation.nodes.color._spaces import SPACES
 from msgspec import Struct
 
 from ..errors import GraphError, HalationError, InputError, UsageError
-from ..resources.input_files import content_hash
+from ..resources.input_files import content_hash, find_special_kind
 from ..resources.library_names import is_utf8
 from ..resources.sandbox import UNRESTRICTED, Sandbox
 from .config_files import find_config_fault, open_config
@@ -238,9 +238,11 @@ class ColorManager:
     def _read_config(self, source: str) -> Any:
         if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
             raise self._error(f"{self._describe_source(source)}: {reason}")
-        if not source.startswith("ocio://") and not Path(source).is_file():
-            folder = Path(source).parent
-            near = difflib.get_close_matches(Path(source).name, _list_names(folder), 1)
+        if not source.startswith("ocio://") and not (path := Path(source)).is_file():
+            if path.exists() and (kind := find_special_kind(path.stat().st_mode)):
+                raise self._error(f"{self._describe_source(source)}: is {kind}, not a file: name a regular file")
+            folder = path.parent
+            near = difflib.get_close_matches(path.name, _list_names(folder), 1)
             raise self._error(f"{self._describe_source(source)}: there is no such color config{_suggest(near)}")
         if not is_utf8(source):  # its tables lie beside it, so links must be resolved first
             raise self._error(f"{self._describe_source(source)}: no color config can have such a name: it is not UTF-8")

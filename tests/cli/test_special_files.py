@@ -239,6 +239,14 @@ def test_commands_wait_for_nothing_that_is_typed(cli, tmp_path, monkeypatch, wor
     assert result.code in (1, 2, 3, 4) and "is a FIFO" in result.out + result.err, result
 
 
+def test_a_color_config_of_the_environment_is_a_file(cli, tmp_path, monkeypatch):
+    write_graphs(tmp_path)
+    make_fifo(tmp_path / "config.ocio")
+    monkeypatch.setenv("OCIO", str(tmp_path / "config.ocio"))
+    result = cli("render", tmp_path / "graph.json", "-o", tmp_path / "out.png")
+    assert result.code == 2 and "is a FIFO" in result.err, result
+
+
 def write_graphs(folder: Path) -> None:
     tree = {
         "halation": 1,
