@@ -20,6 +20,7 @@ from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
 from .assembly import assemble, open_first, take_apart
 from .contexts import Contexts, compose_contexts
+from .dock_shares import DockShares
 from .dropped_files import take_files
 from .editor import Editor
 from .frame_updater import FrameUpdater
@@ -61,6 +62,7 @@ class Window:
         self._updater: FrameUpdater
         self._waker: FrameWaker
         self._worked_at = 0.0
+        self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
         self._input = InputQueue()
         self._title = ""
@@ -171,6 +173,7 @@ class Window:
         editor = self.editor
         self.frames += 1
         self._restyle()
+        self._docks.follow_window()
         editor.places.clear()
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.interface.dragging = False
