@@ -64,9 +64,14 @@ class CatalogEntry:
     """Values of the new node that are not its defaults."""
 
     @cached_property
-    def names(self) -> tuple[tuple[str, ...], ...]:
-        """The words of the title, then of what else it is called."""
-        return tuple(split_words(name) for name in (self.title, *self.aliases))
+    def names(self) -> tuple[tuple[tuple[str, ...], bool], ...]:
+        """The words of each name, and whether it is an alias. The title of a plug-in's node is one with the name of
+        its package and one without: `soft glow (acme glow)`."""
+        titles = (self.title, self.title.partition(" (")[0])
+        return (
+            *((split_words(title), False) for title in titles),
+            *((split_words(alias), True) for alias in self.aliases),
+        )
 
     @property
     def description(self) -> str:
@@ -185,7 +190,7 @@ def rank_entries(entries: Sequence[CatalogEntry], query: str) -> tuple[CatalogEn
     letters = {hit.index: hit.score for hit in match(query, [entry.title for entry in entries])}
     ranked: list[tuple[tuple[float, ...], CatalogEntry]] = []
     for index, entry in enumerate(entries):
-        fit = min(_measure_fit(words, name, place > 0) for place, name in enumerate(entry.names))
+        fit = min(_measure_fit(words, name, is_alias) for name, is_alias in entry.names)
         if fit == _NONE:
             fit = _LETTERS if index in letters else _DESCRIBED if _says(entry, words) else _NONE
         if fit != _NONE:
