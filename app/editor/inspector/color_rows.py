@@ -83,7 +83,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         rows.field_note(fault, rows.palette.error)
     rows.name(
         "working space",
-        "works in",
+        "working space",
         doc="The linear color space of pictures between nodes",
         changed=bool(color.working),
     )
