@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from ..shared.action import Action
+from ..shared.window_commands import PanelTitle
 from ..theme.style import ui_scale
 
 if TYPE_CHECKING:
@@ -52,6 +53,22 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
     ),
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),
     Action("view.smaller", "Smaller Interface", _scale(-0.25), "View", "Ctrl+Minus"),
+    Action(
+        "view.maximize_viewer",
+        "Maximize Viewer",
+        lambda context: context.commands.maximize(PanelTitle.VIEWER),
+        "View",
+        "F11",
+        doc="Let the viewer fill the window, or show the other panels again.",
+    ),
+    Action(
+        "view.maximize_graph",
+        "Maximize Graph",
+        lambda context: context.commands.maximize(PanelTitle.GRAPH),
+        "View",
+        "Shift+F11",
+        doc="Let the graph fill the window, or show the other panels again.",
+    ),
     Action(
         "view.reset_layout", "Reset Panels", lambda context: context.commands.reset_layout(), "View", separated=True
     ),

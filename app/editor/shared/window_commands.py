@@ -29,6 +29,8 @@ class WindowCommands:
     """True lets the window close."""
     resets_layout: bool = False
     saves_screenshot: bool = False
+    maximizes: PanelTitle | None = None
+    """The panel that is to fill the window, or no longer."""
     panels: list[PanelTitle] = field(default_factory=list[PanelTitle])
     """Panels to show and to bring to the front."""
 
@@ -39,6 +41,10 @@ class WindowCommands:
     def reset_layout(self) -> None:
         """Reset all panels to their first places."""
         self.resets_layout = True
+
+    def maximize(self, title: PanelTitle) -> None:
+        """Let a panel fill the window, or show the others again."""
+        self.maximizes = title
 
     def save_screenshot(self) -> None:
         """Ask for a file, and write the window into it as a picture."""

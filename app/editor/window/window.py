@@ -62,6 +62,8 @@ class Window:
         self._updater: FrameUpdater
         self._waker: FrameWaker
         self._worked_at = 0.0
+        self._hidden: tuple[str, ...] = ()
+        """Panels that are hidden while another one fills the window."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
         self._input = InputQueue()
@@ -155,6 +157,8 @@ class Window:
         if self._closed:
             return
         self._closed = True
+        if self._hidden:  # the next window begins with all of them
+            self._maximize("")
         for panel in (*self._panels.values(), *self._overlays.values()):
             getattr(panel, "close", bool)()
         if hasattr(self, "_waker"):
@@ -273,10 +277,25 @@ class Window:
         if commands.saves_screenshot:
             commands.saves_screenshot = False
             self._screenshot()
+        if commands.maximizes is not None:
+            self._maximize(commands.maximizes)
+            commands.maximizes = None
         for title in commands.panels:
             docking.dockable_window_of_name(title).is_visible = True
             self._fronted.add(title)
         commands.panels.clear()
+
+    def _maximize(self, title: str) -> None:
+        """Hide all panels but one, or show again those that were hidden for one."""
+        panels = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        hidden, self._hidden = self._hidden, ()
+        for name in hidden:
+            panels[name].is_visible = True
+        if not hidden:
+            self._hidden = tuple(name for name, panel in panels.items() if panel.is_visible and name != title)
+            for name in self._hidden:
+                panels[name].is_visible = False
+            panels[title].is_visible = True
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
