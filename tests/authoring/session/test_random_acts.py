@@ -17,10 +17,12 @@ from halation.authoring.commands import (
     AddOutput,
     AlignSelection,
     AnimateValue,
+    AppendNode,
     ArrangeElements,
     AssignViewer,
     BakeKeys,
     Connect,
+    ConnectNodes,
     CutLinks,
     CutSelection,
     DeleteSelection,
@@ -171,6 +173,7 @@ ACTS: dict[str, Act] = {
             r.choice([*TOYS, "glsl"]), spot(r), r.choice([None, any_source(s, r), any_target(s, r)]), r.random() < 0.5
         )
     ),
+    "append": lambda s, r: s.apply(AppendNode(AddNode(r.choice([*TOYS, "glsl"]), spot(r)))),
     "insert": lambda s, r: s.apply(
         InsertNode(r.choice([*TOYS, "glsl", any_node(s, r)]), any_target(s, r), r.choice([None, spot(r)]))
     ),
@@ -179,6 +182,7 @@ ACTS: dict[str, Act] = {
     ),
     "abandon": lambda s, r: s.abandon(r.choice(["", "drag"])),
     "connect": lambda s, r: s.apply(Connect(any_source(s, r), any_target(s, r))),
+    "connect_nodes": lambda s, r: s.apply(ConnectNodes(any_source(s, r), any_target(s, r))),
     "disconnect": lambda s, r: s.apply(Disconnect(any_target(s, r))),
     "disconnect_all": lambda s, r: s.apply(DisconnectAll(any_key(s, r))),
     "cut": lambda s, r: s.apply(CutLinks([any_target(s, r), any_target(s, r)])),
