@@ -25,7 +25,7 @@ from .outcome import print_json
 
 if TYPE_CHECKING:
     from ..compiler import Form, Plan, Target
-    from ..graph import Graph
+    from ..graph import Graph, Output
     from ..inputs.lazy_provider import LazyResourceProvider
 
 
@@ -96,21 +96,23 @@ def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) ->
     """Through which view each color output is written into formats for screens, and why; by its name."""
     from halation.nodes import Kind
 
+    return {
+        name: _describe_view(output, plan, name, provider)
+        for name, output in graph.outputs.items()
+        if name in plan.outputs and output.kind is Kind.IMAGE
+    }
+
+
+def _describe_view(output: Output, plan: Plan, name: str, provider: LazyResourceProvider) -> str:
+    if output.view:
+        return f"{output.view}, as the output says"
+    if not plan.uploads:  # so no picture has to be read, and no library be loaded
+        return "that of the config"
     from ..inputs.default_view import choose_default_view
 
-    views: dict[str, str] = {}
-    for name, output in graph.outputs.items():
-        if name not in plan.outputs or output.kind is not Kind.IMAGE:
-            continue
-        if output.view:
-            views[name] = f"{output.view}, as the output says"
-        elif not plan.uploads:
-            views[name] = "that of the config"
-        elif choose_default_view(plan, plan.outputs[name], provider.pictures):
-            views[name] = "none, since its pictures are made for a screen"
-        else:
-            views[name] = "that of the config, since it has light of a scene"
-    return views
+    if choose_default_view(plan, plan.outputs[name], provider.pictures):
+        return "none, since its pictures are made for a screen"
+    return "that of the config, since it has light of a scene"
 
 
 def _choose_target(form: Form | Literal["device"], sandbox: Sandbox) -> Target:

@@ -67,7 +67,7 @@ class _Helper:
     def __init__(self, job: RenderJob, watchdog: Watchdog | None, environment: Mapping[str, str]) -> None:
         from ..renderer.jobs.render_job import worker_command
 
-        self.job, self.watchdog = job, watchdog
+        self.job, self.watchdog, self._is_stopped = job, watchdog, False
         self.process = subprocess.Popen(
             worker_command(),
             stdin=subprocess.PIPE,
@@ -79,8 +79,9 @@ class _Helper:
         )
 
     def stop(self) -> None:
-        """Ask it to end; the files that it has finished stay."""
-        if self.process.poll() is None:
+        """Ask it to end, once: a second signal would interrupt it while it removes what it has begun to write."""
+        if self.process.poll() is None and not self._is_stopped:
+            self._is_stopped = True
             with contextlib.suppress(OSError):
                 self.process.terminate()
 

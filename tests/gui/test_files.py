@@ -25,6 +25,8 @@ def shelf(tmp_path: Path) -> Path:
 
 
 def at(ui, folder: Path) -> None:
+    """Let dialogs begin in a folder: a document without a file begins where a file was chosen last."""
+    ui.editor.session.path = None
     for purpose in ("graph", "image", "export"):
         ui.editor.store.note_folder(purpose, folder / "x")
 

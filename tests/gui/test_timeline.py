@@ -106,7 +106,7 @@ def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
         ui.keys("Space")
         assert not timeline.playback.playing and timeline.report
         ui.settled()
-        assert ui.window.params.fps_idling.enable_idling
+        ui.until(lambda: ui.window.params.fps_idling.enable_idling)
         here = ui.session.time.frame
         ui.keys("RightArrow")
         assert ui.session.time.frame == here % 12 + 1

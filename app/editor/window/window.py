@@ -62,7 +62,7 @@ class Window:
         self._updater: FrameUpdater
         self._waker: FrameWaker
         self._worked_at = 0.0
-        self._hidden: tuple[str, ...] = ()
+        self._hidden: tuple[PanelTitle, ...] = ()
         """Panels that are hidden while another one fills the window."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
@@ -285,7 +285,7 @@ class Window:
             self._fronted.add(title)
         commands.panels.clear()
 
-    def _maximize(self, title: str) -> None:
+    def _maximize(self, title: PanelTitle) -> None:
         """Hide all panels but one, or show again those that were hidden for one."""
         panels = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
         hidden, self._hidden = self._hidden, ()

@@ -243,7 +243,7 @@ def test_graphs_and_pictures_are_offered_to_open(desk: Desk, folder: Path) -> No
         ("", ""),
     ],
 )
-@pytest.mark.skipif(os.sep != "/", reason="paths as on POSIX")
+@pytest.mark.skipif(os.sep != "/", reason="POSIX paths")
 def test_tab_completes_a_path(folder: Path, typed: str, completed: str) -> None:
     for name in ("shot_a.exr", "shot_b.exr", ".hidden.exr", "shot.txt"):
         (folder / "inner" / name).write_text("")
