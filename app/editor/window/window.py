@@ -15,6 +15,7 @@ from ...compiler import Form
 from ...renderer.opening import adopt_window
 from ...resources.sandbox import Sandbox
 from ..shared.dialogs import Browse
+from ..shared.window_commands import PanelTitle
 from ..theme import fonts, style
 from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
