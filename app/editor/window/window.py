@@ -158,8 +158,7 @@ class Window:
         if self._closed:
             return
         self._closed = True
-        if self._hidden:  # the next window begins with all of them
-            self._maximize("")
+        self._restore_panels()  # the next window begins with all of them
         for panel in (*self._panels.values(), *self._overlays.values()):
             getattr(panel, "close", bool)()
         if hasattr(self, "_waker"):
@@ -288,15 +287,20 @@ class Window:
 
     def _maximize(self, title: PanelTitle) -> None:
         """Hide all panels but one, or show again those that were hidden for one."""
+        if self._restore_panels():
+            return
         panels = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        self._hidden = tuple(name for name, panel in panels.items() if panel.is_visible and name != title)
+        for name in self._hidden:
+            panels[name].is_visible = False
+        panels[title].is_visible = True
+
+    def _restore_panels(self) -> bool:
+        """Show the panels that were hidden for one; False if none was."""
         hidden, self._hidden = self._hidden, ()
         for name in hidden:
-            panels[name].is_visible = True
-        if not hidden:
-            self._hidden = tuple(name for name, panel in panels.items() if panel.is_visible and name != title)
-            for name in self._hidden:
-                panels[name].is_visible = False
-            panels[title].is_visible = True
+            self.params.docking_params.dockable_window_of_name(name).is_visible = True
+        return bool(hidden)
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
