@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import signal
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -140,8 +141,11 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         to_renders(ui)
         order("a")
         (first,) = exports.all
-        ui.until(lambda: first.done >= 1)
-        suspend(first, True)  # however slowly the window draws, the render is not done before it is cancelled
+        ui.until(lambda: first.state == "running")
+        while first.done < 1 and first.state == "running":  # without the window, which may draw once a second
+            time.sleep(0.002)
+        suspend(first, True)  # so the render is not done before it is cancelled
+        assert first.state == "running" and first.done < 60
         order("b")
         order("c")
         _, second, third = exports.all
