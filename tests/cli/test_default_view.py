@@ -133,6 +133,18 @@ def test_each_output_is_judged_by_what_it_reads(cli, tmp_path):
     assert np.abs(load(right) - to_display(np.full((1, 1, 3), 0.5, np.float32)).astype(int)).max() <= 1
 
 
+def test_data_and_formats_of_light_have_no_view(cli, graph, tmp_path):
+    source, matte = store(tmp_path / "in.png", CODES, "uint8"), tmp_path / "matte.json"
+    matte.write_text(
+        '{"halation": 1, "inputs": {"beauty": {"type": "Image"}}, "outputs": {"image": {"type": "Field"}}, '
+        '"nodes": {"luma": {"type": "luminance"}}, '
+        '"links": {"outputs.image": "luma.out", "luma.image": "inputs.beauty"}}'
+    )
+    for path, name in ((matte, "matte.png"), (graph, "light.hdr")):
+        result = cli("render", path, "-i", f"beauty={source}", "-o", tmp_path / name, "--json")
+        assert result.code == 0 and json.loads(result.out)["views"] == {}
+
+
 def test_a_video_comes_back(cli, graph, tmp_path):
     source, out = tmp_path / "in.mov", tmp_path / "out.png"
     with av.open(str(source), "w") as container:

@@ -22,6 +22,9 @@ from ...resources.picture import Picture
 from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
 
+_LIGHT_FORMATS = (".exr", ".hdr")
+"""Endings of formats that hold light, which no view changes."""
+
 
 class OutputSettings(Struct, frozen=True):
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
@@ -53,8 +56,6 @@ class Destination(Struct, frozen=True):
     layers: Mapping[str, str]
     kinds: Mapping[str, Kind]
     encoding: Encoding
-    has_automatic_view: bool = False
-    """True if nobody named the view of the encoding: its pictures are made for a screen, and so are only encoded."""
 
     @property
     def view(self) -> str:
@@ -114,12 +115,14 @@ def choose_views(files: Sequence[Destination], plan: Plan, encodings: PictureEnc
 
 
 def _choose_view(file: Destination, plan: Plan, encodings: PictureEncodings) -> Destination:
-    encoding, outputs = file.encoding, tuple(file.layers.values())
+    encoding, layers = file.encoding, tuple(file.layers)
     is_chosen = encoding.view or encoding.display or encoding.look or encoding.space
-    if is_chosen or len(outputs) != 1 or file.path.suffix.casefold() == ".exr":
+    if is_chosen or len(layers) != 1 or file.path.suffix.casefold() in _LIGHT_FORMATS:
         return file
-    view = choose_default_view(plan, plan.outputs[outputs[0]], encodings)
-    return replace(file, encoding=replace(encoding, view=view), has_automatic_view=bool(view))
+    if file.kinds[layers[0]] not in (Kind.IMAGE, Kind.COLOR):
+        return file
+    view = choose_default_view(plan, plan.outputs[file.layers[layers[0]]], encodings)
+    return replace(file, encoding=replace(encoding, view=view))
 
 
 def check_destinations(

@@ -220,12 +220,11 @@ class _Job:
     def _find_unfinished(self, todo: deque[int]) -> _Task | None:
         while todo:
             frame, started = todo.popleft(), time.perf_counter()
-            plan, files = self._frame_renderer.plan_frame(frame), self._files[frame]
+            plan = self._frame_renderer.plan_frame(frame)
             sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            files = choose_views(files, plan, self._renderer.pictures)
-            self.views |= {
-                name: file.view for file in files if file.has_automatic_view for name in file.layers.values()
-            }
+            files = choose_views(self._files[frame], plan, self._renderer.pictures)
+            for planned, file in zip(self._files[frame], files, strict=True):
+                self.views |= dict.fromkeys(file.layers.values(), file.view) if file.view != planned.view else {}
             check_destinations(files, plan, sources, self._settings, sandbox=self._renderer.sandbox)
             task = _Task(
                 frame,
