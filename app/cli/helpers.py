@@ -13,12 +13,14 @@ import os
 import subprocess
 import tempfile
 import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import errors
 from ..errors import HalationError
+from ..resources.interrupts import delay_interrupts
 from .outcome import print_note
 from .watchdog import CHECK_INTERVAL, Watchdog
 
@@ -114,25 +116,25 @@ class _HelperPool:
     def run(self) -> list[dict[str, Any]]:
         """Wait for all helpers and return their reports. Raises HalationError as `run_helpers`."""
         self._progress.report_helpers([helper.process.pid for helper in self._helpers])
-        threads = [threading.Thread(target=self._listen, args=(helper,), daemon=True) for helper in self._helpers]
-        for thread in threads:
-            thread.start()
+        with delay_interrupts():
+            threads = ThreadPoolExecutor(len(self._helpers), thread_name_prefix="helper")
+            ends = [threads.submit(self._listen, helper) for helper in self._helpers]
         try:
-            self._wait(threads)
+            self._wait(ends)
         except KeyboardInterrupt:
             self._stop()
-            self._wait(threads)
+            self._wait(ends)
             raise
         if self._fault:
             raise self._fault
         return self._reports
 
-    def _wait(self, threads: Sequence[threading.Thread]) -> None:
-        for thread in threads:
-            while thread.is_alive():
-                thread.join(CHECK_INTERVAL)
-                for helper in self._helpers:
-                    self._check(helper)
+    def _wait(self, ends: Iterable[Future[None]]) -> None:
+        """Wait for the futures and not for their threads: Python 3.11 takes a thread for ended when an interrupt
+        arrives during `Thread.join`."""
+        while wait(ends, CHECK_INTERVAL).not_done:
+            for helper in self._helpers:
+                self._check(helper)
 
     def _check(self, helper: _Helper) -> None:
         """Kill a helper whose code takes too long, and stop the others."""

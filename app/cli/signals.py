@@ -11,7 +11,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_REQUESTS = tuple(getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name))
+from ..resources.interrupts import END_REQUESTS
 
 _PARENT_INTERVAL = 0.5
 """Seconds between two looks at the parent: a choice, shorter than most frames take."""
@@ -22,7 +22,7 @@ _PATIENCE = 10.0
 
 def raise_on_requests() -> None:
     """Raise KeyboardInterrupt when a signal asks this process to end. Signals that are ignored stay so (`nohup`)."""
-    for number in _REQUESTS:
+    for number in END_REQUESTS:
         if signal.getsignal(number) == signal.SIG_DFL:
             signal.signal(number, signal.default_int_handler)
 
@@ -42,7 +42,7 @@ def relay_requests(process: int) -> Iterator[list[int]]:
                 os.kill(process, number)
 
     # What ignores a signal keeps ignoring it: a shell starts commands in the background so.
-    numbers = [number for number in (signal.SIGINT, *_REQUESTS) if callable(signal.getsignal(number))]
+    numbers = [number for number in (signal.SIGINT, *END_REQUESTS) if callable(signal.getsignal(number))]
     before = {number: signal.signal(number, relay) for number in numbers}
     try:
         yield received

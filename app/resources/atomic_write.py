@@ -26,6 +26,7 @@ from pathlib import Path
 
 from ..errors import OutputError
 from .input_files import find_special_kind
+from .interrupts import delay_interrupts
 from .sandbox import Sandbox
 
 _REASONS = {
@@ -92,19 +93,21 @@ def replace_file(path: str | Path, sandbox: Sandbox, suffix: str = _SUFFIX) -> G
     try:
         check_replaceable(path, sandbox)
         target = Path(os.path.realpath(path))
-        unique = f"{temporary_prefix(os.getpid())}{os.urandom(6).hex()}"
-        replacement = Replacement(path, target.with_name(f"{unique}-{target.name[:_LONGEST_NAME]}{suffix}"), target)
-        replacement.temporary.open("xb").close()
     except ValueError as error:
         raise OutputError(f"{path!s:.200}: cannot be written: no file can have such a name") from error
     except OSError as error:
         raise OutputError(f"{path}: cannot be written: {describe_write_error(error)}") from error
+    unique = f"{temporary_prefix(os.getpid())}{os.urandom(6).hex()}"
+    replacement = Replacement(path, target.with_name(f"{unique}-{target.name[:_LONGEST_NAME]}{suffix}"), target)
     try:
+        # A file is there before Python knows that it is; an interrupt in between would leave it there.
+        with delay_interrupts():
+            replacement.temporary.open("xb").close()
         yield replacement
     except OSError as error:
         raise replacement.explain(error) from error
     finally:
-        with contextlib.suppress(OSError):
+        with delay_interrupts(), contextlib.suppress(OSError):
             replacement.temporary.unlink(missing_ok=True)
 
 
@@ -163,7 +166,7 @@ def write_atomically(path: str | Path, encode: Callable[[str], None], size: int,
 
 def check_writable(path: str | Path, sandbox: Sandbox) -> None:
     """Find out whether a file can be made here, by making a temporary one. Raises OutputError."""
-    with replace_file(path, sandbox):
+    with delay_interrupts(), replace_file(path, sandbox):
         pass
 
 

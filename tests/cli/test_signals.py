@@ -59,10 +59,12 @@ def started(*words: object, ignored: bool = False) -> Iterator[tuple[subprocess.
 
 def wait_for_frames(process: subprocess.Popen[str], count: int = 3) -> None:
     assert process.stderr
+    lines: list[str] = []
     for line in process.stderr:
+        lines.append(line)
         if f'"done": {count}' in line:
             return
-    raise AssertionError("it ended before")
+    raise AssertionError(f"it ended before, with {process.wait()}: {''.join(lines)}")
 
 
 def wait_for_end(mark: str) -> None:
@@ -88,7 +90,8 @@ def test_a_render_that_is_asked_to_end(
         _, said = process.communicate()
         assert process.returncode == 130 and "interrupted; no unfinished file is left" in said, said
         wait_for_end(mark)
-    assert not list(out.glob(".*")) and len(list(out.glob("o.*.exr"))) >= 3
+    assert not [(file, file.stat().st_size) for file in out.glob(".*")], said
+    assert len(list(out.glob("o.*.exr"))) >= 3
 
 
 @pytest.mark.parametrize("words", [(), ("-j", 2)], ids=["one process", "two helpers"])

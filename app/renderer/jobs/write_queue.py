@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Generic, TypeVar
 
+from ...resources.interrupts import delay_interrupts
 from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
@@ -37,7 +38,9 @@ class WriteQueue(Generic[WriteResult]):
             finally:
                 self.arrays.give(outputs.values())
 
-        self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
+        # An interrupt while the thread is started would leave one that nobody waits for.
+        with delay_interrupts():
+            self._writes.append((self._writer.submit(work), sum(array.nbytes for array in outputs.values())))
 
     def collect_finished(self) -> Iterator[WriteResult]:
         """The results of finished writes; waits while too many are unfinished. Raises what they raised."""
