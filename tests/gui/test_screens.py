@@ -15,6 +15,7 @@ from gui_screens import SCREENS, write_many_things
 from halation import presets
 from halation.authoring.edits.element_id import ElementId
 from halation.editor.theme.palette import PALETTES, RGB, Palette
+from halation.editor.theme.style import mix
 from halation.graph import Port
 from imgui_bundle import imgui
 
@@ -111,16 +112,14 @@ def seen(ui, top: float, bottom: float) -> bool:
 
 @pytest.mark.parametrize("palette", PALETTES.values(), ids=PALETTES.keys())
 def test_text_can_be_read(palette: Palette) -> None:
-    grounds = ("window", "panel", "field", "fill", "raised", "hover", "canvas", "node")
-    for ground in grounds:
-        assert contrast(palette.text, getattr(palette, ground)) >= 4.5, ground
-    for ground in ("window", "panel", "field", "canvas", "node"):
-        assert contrast(palette.dim, getattr(palette, ground)) >= 4.5, ground
-    for ground in ("fill", "raised", "hover"):
-        assert contrast(palette.dim, getattr(palette, ground)) >= 3.0, ground
+    grounds = {name: getattr(palette, name) for name in ("window", "panel", "field", "fill", "raised", "hover")}
+    grounds |= {"canvas": palette.canvas, "node": palette.node, "popup": mix(palette.panel, palette.raised, 0.25)}
+    for name, ground in grounds.items():
+        assert contrast(palette.text, ground) >= 4.5, name
+        assert contrast(palette.dim, ground) >= 4.5, name
     for ink in ("accent", "good", "warning", "error"):
-        for ground in ("panel", "field", "node"):
-            assert contrast(getattr(palette, ink), getattr(palette, ground)) >= 4.5, (ink, ground)
+        for name in ("panel", "field", "raised", "canvas", "node", "popup"):
+            assert contrast(getattr(palette, ink), grounds[name]) >= 4.5, (ink, name)
     assert contrast(palette.on_accent, palette.accent) >= 4.5
     for name, color in palette.categories.items():
         assert contrast(palette.text, color) >= 4.5, name

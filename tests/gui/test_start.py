@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from halation import presets
+from imgui_bundle import imgui
 
 
 def test_opens_a_graph_and_shows_its_picture(gui) -> None:
@@ -22,5 +23,17 @@ def test_starts_without_a_graph(gui) -> None:
     def body(ui) -> None:
         assert "start" in ui.editor.dialogs.open
         assert ui.session.graph.nodes == {}
+
+    gui(body)
+
+
+def test_keys_go_to_the_start_screen_whatever_took_the_focus(gui) -> None:
+    """On a real display the bars of the window appear after it, and take the focus."""
+
+    def body(ui) -> None:
+        ui.ask(lambda: imgui.set_window_focus("Viewer"))
+        ui.wait(2)
+        ui.keys("Escape")
+        assert "start" not in ui.editor.dialogs.open
 
     gui(body)

@@ -55,7 +55,9 @@ if TYPE_CHECKING:
 _POPUP = "add to the graph"
 _RECENT = 5
 _FLAGS = int(imgui.WindowFlags_.no_move) | int(imgui.WindowFlags_.no_scrollbar)
-_WIDTH, _HEIGHT = 300.0, 360.0
+_WIDTH, _HEIGHT = 340.0, 380.0
+_FOOT_LINES = 3
+"""Lines below the list: no first line of a node's text is longer at this width."""
 
 
 @dataclass
@@ -167,7 +169,7 @@ class NodeSearch:
         moved = _read_arrows()
         self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
         chosen = None
-        foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2 + 2.0 * ui_scale()
+        foot = imgui.get_text_line_height() * _FOOT_LINES + imgui.get_style().item_spacing.y * 2 + 2.0 * ui_scale()
         if imgui.begin_child("##found", (0, -foot)):
             chosen = self._draw_list(sections, bool(moved) or self._query != before)
         imgui.end_child()

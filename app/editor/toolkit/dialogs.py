@@ -65,7 +65,7 @@ def dialog(
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 8.0 * scale)
     imgui.begin(f"{title}###{title}", None, FIXED | flags)
     imgui.pop_style_var(2)
-    if imgui.is_window_appearing():
+    if imgui.is_window_appearing() or _is_focus_below():
         imgui.set_window_focus()
     _to_front()
     yield
@@ -84,6 +84,14 @@ def escape_pressed() -> bool:
     """True if Escape was pressed in this dialog, with nothing else open in it."""
     inside = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
     return inside and imgui.is_key_pressed(imgui.Key.escape, False)
+
+
+def _is_focus_below() -> bool:
+    """True if what has the focus lies below this dialog: panels and bars that appear at the start take it."""
+    focused = imgui.get_current_context().nav_window
+    if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)):
+        return False
+    return focused is None or imgui.internal.is_window_above(imgui.internal.get_current_window(), focused.root_window)
 
 
 def _to_front() -> None:
