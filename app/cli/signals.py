@@ -10,11 +10,16 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.machinery import ExtensionFileLoader
+from types import FrameType
 
 from ..resources.interrupts import END_REQUESTS
 
 _PARENT_INTERVAL = 0.5
 """Seconds between two looks at the parent: a choice, shorter than most frames take."""
+
+_LOADING_INTERVAL = 0.02
+"""Seconds until an interrupt is tried again while an extension module is loaded: a choice, shorter than a user sees."""
 
 _PATIENCE = 10.0
 """Seconds that a process without a parent may take to remove what it has begun to write: a choice."""
@@ -22,9 +27,30 @@ _PATIENCE = 10.0
 
 def raise_on_requests() -> None:
     """Raise KeyboardInterrupt when a signal asks this process to end. Signals that are ignored stay so (`nohup`)."""
-    for number in END_REQUESTS:
-        if signal.getsignal(number) == signal.SIG_DFL:
-            signal.signal(number, signal.default_int_handler)
+    for number in (signal.SIGINT, *END_REQUESTS):
+        if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
+            signal.signal(number, _interrupt)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt, but a moment later where it would end the process without a word.
+
+    Extension modules call Python while they are loaded, and most are C++ that aborts at an exception there.
+    """
+    if not _is_loading_extension(frame):
+        raise KeyboardInterrupt
+    timer = threading.Timer(_LOADING_INTERVAL, signal.raise_signal, (number,))
+    timer.daemon = True
+    timer.start()
+
+
+def _is_loading_extension(frame: FrameType | None) -> bool:
+    while frame is not None:
+        is_loading = frame.f_code.co_name in ("create_module", "exec_module")
+        if is_loading and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
+            return True
+        frame = frame.f_back
+    return False
 
 
 @contextmanager

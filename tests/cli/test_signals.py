@@ -143,3 +143,40 @@ def test_who_ignores_hangups_goes_on(tmp_path: Path) -> None:
         process.send_signal(signal.SIGHUP)
         listing, _ = process.communicate()
     assert process.returncode == 0 and json.loads(listing)
+
+
+LOADING = """
+import signal, sys, time
+from halation.cli.signals import raise_on_requests
+
+raise_on_requests()
+modules = []
+
+def interrupt(frame, event, _):
+    while event == "call" and frame is not None:
+        if frame.f_code.co_name in ("create_module", "exec_module") and "ExtensionFileLoader" in repr(frame.f_locals):
+            modules.append(frame.f_locals.get("self").name)
+            if len(modules) == {call}:
+                sys.setprofile(None)
+                signal.raise_signal(signal.{name})
+            return
+        frame = frame.f_back
+
+try:
+    sys.setprofile(interrupt)
+    import {module}
+    time.sleep(5 if len(modules) >= {call} else 0)
+except KeyboardInterrupt:
+    sys.exit(130)
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize(
+    "module,call", [("OpenImageIO", 1), ("OpenImageIO", 50), ("OpenImageIO", 200), ("PyOpenColorIO", 3)]
+)
+def test_an_interrupt_while_a_library_is_loaded(module: str, call: int, name: str) -> None:
+    """It calls Python hundreds of times meanwhile; at some of the calls its C++ drops an exception or aborts."""
+    code = LOADING.format(module=module, call=call, name=name)
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert process.returncode == 130, process.stderr
