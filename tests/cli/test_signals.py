@@ -147,6 +147,7 @@ def test_who_ignores_hangups_goes_on(tmp_path: Path) -> None:
 
 LOADING = """
 import signal, sys, time
+from importlib.machinery import ExtensionFileLoader
 from halation.cli.signals import raise_on_requests
 
 raise_on_requests()
@@ -154,7 +155,7 @@ modules = []
 
 def interrupt(frame, event, _):
     while event == "call" and frame is not None:
-        if frame.f_code.co_name in ("create_module", "exec_module") and "ExtensionFileLoader" in repr(frame.f_locals):
+        if frame.f_code.co_name in ("create_module", "exec_module") and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
             modules.append(frame.f_locals.get("self").name)
             if len(modules) == {call}:
                 sys.setprofile(None)
