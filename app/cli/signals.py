@@ -39,9 +39,18 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
     """
     if not _is_loading_extension(frame):
         raise KeyboardInterrupt
-    timer = threading.Timer(_LOADING_INTERVAL, signal.raise_signal, (number,))
+    timer = threading.Timer(_LOADING_INTERVAL, _signal_main_thread, (number,))
     timer.daemon = True
     timer.start()
+
+
+def _signal_main_thread(number: int) -> None:
+    """Send a signal to the main thread, so that a call which waits there ends."""
+    main = threading.main_thread().ident
+    if main is not None and hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(main, number)
+    else:
+        signal.raise_signal(number)
 
 
 def _is_loading_extension(frame: FrameType | None) -> bool:

@@ -155,8 +155,9 @@ modules = []
 
 def interrupt(frame, event, _):
     while event == "call" and frame is not None:
-        if frame.f_code.co_name in ("create_module", "exec_module") and isinstance(frame.f_locals.get("self"), ExtensionFileLoader):
-            modules.append(frame.f_locals.get("self").name)
+        loader = frame.f_locals.get("self") if frame.f_code.co_name in ("create_module", "exec_module") else None
+        if isinstance(loader, ExtensionFileLoader):
+            modules.append(loader.name)
             if len(modules) == {call}:
                 sys.setprofile(None)
                 signal.raise_signal(signal.{name})
