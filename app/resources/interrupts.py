@@ -23,11 +23,15 @@ def delay_interrupts() -> Generator[None]:
         yield
         return
     delayed: list[tuple[int, FrameType | None]] = []
+
+    def delay(number: int, frame: FrameType | None) -> None:
+        delayed.append((number, frame))
+
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, *END_REQUESTS)}
     try:
         for number, handler in handlers.items():
             if callable(handler):
-                signal.signal(number, lambda *arrival: delayed.append(arrival))
+                signal.signal(number, delay)
         yield
     finally:
         for number, handler in handlers.items():
