@@ -198,6 +198,7 @@ def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) 
         "repaired": dict(report.repaired),
         "warnings": dict(report.warnings),
         "views": dict(report.views),
+        "data": list(report.data_outputs),
         "seconds": {name: round(part, 4) for name, part in seconds.items()},
     }
 
@@ -208,6 +209,8 @@ def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> Non
         print_note(f"{path}: {warning}")
     for path, count in report["repaired"].items():
         print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
+    for output in report["data"]:
+        print_note(f"output '{output}' is data: its numbers are written, and no view changes them")
     for output in report["views"]:
         print_note(f"output '{output}' is encoded without a view: its pictures are made for a screen already (--view)")
     if as_json:

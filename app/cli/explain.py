@@ -93,17 +93,21 @@ def explain(
 
 
 def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) -> dict[str, str]:
-    """Through which view each color output is written into formats for screens, and why; by its name."""
+    """Through which view each output is written into formats for screens, and why; by its name. Vectors have none."""
     from halation.nodes import Kind
 
     return {
         name: _describe_view(output, plan, name, provider)
         for name, output in graph.outputs.items()
-        if name in plan.outputs and output.kind is Kind.IMAGE
+        if name in plan.outputs and output.kind is not Kind.VECTOR
     }
 
 
 def _describe_view(output: Output, plan: Plan, name: str, provider: LazyResourceProvider) -> str:
+    from halation.nodes import Kind
+
+    if output.kind not in (Kind.IMAGE, Kind.COLOR):
+        return "none, since it is data: its numbers are written"
     if output.view:
         return f"{output.view}, as the output says"
     if not plan.uploads:  # so no picture has to be read, and no library be loaded

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from msgspec import Struct, field
 
@@ -55,26 +57,24 @@ class Encoding(Struct, frozen=True):
         target = self._target if self.space else self.manager.find(LINEAR_REC709)
         return self._convert(array, target or OcioColorSpace(LINEAR_REC709, False))
 
-    def to_codes(self, array: Array, bits: int) -> Array:
-        """Color [h, w, 3 or 4] as integers, through the view or in the color space; alpha is straight."""
-        depth = 8 if bits == 8 else 16
+    def to_codes(self, array: Array, bits: Literal[8, 10, 16], *, is_data: bool = False) -> Array:
+        """Pixels [h, w, 3 or 4] as integers: color through the view or in the color space, with straight alpha.
+
+        Data is its number times the largest integer: no view and no color space applies. 10 bits are the upper ones
+        of 16.
+        """
+        codes = quantize(self.to_encoded(array, is_data=is_data), bits)
+        return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes
+
+    def to_encoded(self, array: Array, *, is_data: bool = False) -> Array:
+        """The same as numbers of 32 bits, from 0 for black to 1 for the largest integer, or beyond."""
+        if is_data:
+            return np.nan_to_num(array.astype(np.float32), nan=0.0)
         if not self.space:
-            encoded = to_display(
-                array,
-                self.view,
-                bits=32 if bits == 10 else depth,
-                display=self.display,
-                look=self.look,
-                manager=self.manager,
-            )
-        else:
-            encoded = unpremultiply(array)
-            encoded[..., :3] = from_working(encoded[..., :3], self._target, self.manager)
-        if encoded.dtype != np.float32:
-            return encoded
-        if bits == 10:  # in the upper bits of 16
-            return np.rint(quantize(encoded, 10) * (65535 / 1023)).astype(np.uint16)
-        return quantize(encoded, depth)
+            return to_display(array, self.view, bits=32, display=self.display, look=self.look, manager=self.manager)
+        encoded = unpremultiply(array)
+        encoded[..., :3] = from_working(encoded[..., :3], self._target, self.manager)
+        return encoded
 
     @property
     def header_space(self) -> str:

@@ -23,7 +23,14 @@ from .convert import LayerRequest, Pixels
 from .info import read_info
 from .layers import ImageInfo, Layer, find_layer
 from .metadata import TypedAttribute, read_metadata
-from .pictures.writer import check_destination, stores_halves, write_picture
+from .pictures.writer import (
+    PICTURE_ENDINGS,
+    check_destination,
+    holds_light,
+    is_data_kind,
+    stores_halves,
+    write_picture,
+)
 from .pixels import read_layer, read_layers
 
 if TYPE_CHECKING:
@@ -31,6 +38,7 @@ if TYPE_CHECKING:
     from .video.writer import VideoWriter, check_video
 
 __all__ = [
+    "PICTURE_ENDINGS",
     "FrameSequence",
     "ImageInfo",
     "Layer",
@@ -43,6 +51,8 @@ __all__ = [
     "find_frame_file",
     "find_layer",
     "find_sequence",
+    "holds_light",
+    "is_data_kind",
     "read_info",
     "read_layer",
     "read_layers",

@@ -23,7 +23,9 @@ from ...graph.frames import (
     parse_frames,
     remove_frame_number,
 )
+from ...media import PICTURE_ENDINGS
 from ...media.sequences import find_sequence
+from ...media.video.codecs import WRITABLE as VIDEO_ENDINGS
 from ...media.video.library import load_pyav
 from ...resources.sandbox import Sandbox
 
@@ -39,10 +41,8 @@ DEPTHS: tuple[tuple[Depth, str], ...] = (
     ("half", "16 bit"),
     ("float", "32 bit (16 in PNG and TIFF)"),
 )
-PICTURES = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
-VIDEOS = (".mp4", ".mov", ".mkv", ".webm")
-VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", *VIDEOS})
-"""Formats for display-referred pictures, which need a view."""
+_OTHER_ENDINGS = (".jpeg", ".tiff", ".m4v")
+"""Second names of formats, which need not be offered."""
 
 _FRESH = 1.0
 """Seconds for which the last look at the disk is reused."""
@@ -191,7 +191,8 @@ class RenderForm:
 
 def formats() -> tuple[str, ...]:
     """The formats to choose from; those of videos only if PyAV is installed."""
-    return (*PICTURES, *VIDEOS) if load_pyav() is not None else PICTURES
+    endings = (*PICTURE_ENDINGS, *VIDEO_ENDINGS) if load_pyav() is not None else PICTURE_ENDINGS
+    return tuple(ending for ending in endings if ending not in _OTHER_ENDINGS)
 
 
 @lru_cache(maxsize=8)

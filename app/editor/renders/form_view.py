@@ -12,6 +12,7 @@ from imgui_bundle import imgui
 
 from ...color.display import list_views
 from ...graph.frames import format_frames
+from ...media import holds_light
 from ..shared.coloring import find_color_manager
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale, vec4
@@ -19,7 +20,7 @@ from ..toolkit.buttons import main_button, quiet_button, width_of_buttons
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
 from ..toolkit.words import SMALL, cut_end, cut_middle, draw_dim, draw_wrapped, font, tip
-from .form import DEPTHS, VIEWED, Extent, RenderForm, RenderTargets, Sizing, formats
+from .form import DEPTHS, Extent, RenderForm, RenderTargets, Sizing, formats
 from .wording import aim_text, exist_text
 
 if TYPE_CHECKING:
@@ -151,7 +152,7 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
     depth = dict(DEPTHS)
     if chosen := choose(context, "Precision", depth[form.precision], tuple(depth.values())):
         form.precision = next(name for name, text in DEPTHS if text == chosen)
-    if format in VIEWED or format == "mixed":
+    if not holds_light(f"file{format}"):
         own = "as the output states"
         if chosen := choose(context, "View", form.view or own, (own, *list_views(manager=find_color_manager(context)))):
             form.view = "" if chosen == own else chosen

@@ -24,7 +24,7 @@ def find_data_range(pixels: Array) -> tuple[float, float]:
     if high <= low:
         low, high = float(finite.min()), float(finite.max())
     if high <= low:
-        return (low, low + 1.0) if low else (0.0, 1.0)
+        return (low, low + 1.0) if not 0.0 <= low <= 1.0 else (0.0, 1.0)  # a solid matte is as bright as its number
     return low, high
 
 

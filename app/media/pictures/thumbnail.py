@@ -9,7 +9,7 @@ import OpenImageIO as oiio
 from halation.nodes import Kind
 
 from ...color.display import NO_VIEW, to_display
-from ...color.transforms import Array
+from ...color.transforms import Array, quantize
 from ...errors import InputError
 from ...graph.frames import VIDEO_ENDINGS
 from ...resources.atomic_write import write_atomically
@@ -25,7 +25,8 @@ _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
     """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
 
-    Floating-point color is shown through the default view; data and encoded pictures are shown unchanged.
+    Floating-point color is shown through the default view, encoded pictures are shown unchanged. The numbers of data
+    are gray: 0 is black and 1 is white.
 
     Raises:
         InputError: as `media.read`.
@@ -40,7 +41,9 @@ def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) 
         roi = oiio.ROI(0, across, 0, down)
         resized = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
         small = np.asarray(resized.get_pixels(oiio.FLOAT), np.float32)
-    return to_display(small, "" if layer.format.startswith("float") and not layer.is_data else NO_VIEW)
+    if layer.is_data:
+        return quantize(np.nan_to_num(small, nan=0.0), 8)
+    return to_display(small, "" if layer.format.startswith("float") else NO_VIEW)
 
 
 def list_readable_endings() -> frozenset[str]:

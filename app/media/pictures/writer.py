@@ -35,6 +35,10 @@ _FORMATS = {
     ".hdr": "hdr",
     ".dpx": "dpx",
 }
+PICTURE_ENDINGS = tuple(_FORMATS)
+"""The endings of pictures that can be written."""
+
+_LIGHT_FORMATS = ("openexr", "hdr")
 _EXR_LOSSY = ("pxr24", "b44", "b44a", "dwaa", "dwab")
 _COMPRESSIONS = {
     "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY),
@@ -67,9 +71,10 @@ def write_picture(
     EXR: linear; one layer has plain channels (RGBA; Z or Y; XYZW), several become parts whose channels are
     `name.R` and so on, "" staying plain. Color is stored in `precision` (beyond the range of half: clamped),
     data always as float and never with a lossy `compression`. HDR: linear RGB of the first Image.
-    PNG, JPEG, TIFF, WebP, DPX: the first Image (or Field, as gray) seen through `view` at 8 bits (DPX 10), 16 in PNG,
-    TIFF and DPX with `precision="float"`, alpha straight and only where something is transparent; JPEG and DPX show it
-    over black. An `encoding` says more than a view: see there.
+    PNG, JPEG, TIFF, WebP, DPX: the first Image seen through `view` at 8 bits (DPX 10), 16 in PNG, TIFF and DPX with
+    `precision="float"`, alpha straight and only where something is transparent; JPEG and DPX show it over black.
+    Without an Image, the first Field as gray: its number times the largest integer. An `encoding` says more than a
+    view: see there.
     `metadata` is kept as far as the format can: all of it in EXR, text in PNG.
 
     Raises:
@@ -85,11 +90,22 @@ def write_picture(
         parts = encode_exr_parts(layers, kinds, precision, compression, encoding)
     else:
         layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
-        parts = [_encode_picture(layers[layer_name], format, precision, compression, encoding)]
+        is_data = is_data_kind(kinds[layer_name])
+        parts = [_encode_picture(layers[layer_name], is_data, format, precision, compression, encoding)]
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     write_atomically(path, _make_encoder(path, format, parts), room, sandbox=sandbox)
+
+
+def holds_light(path: str | Path) -> bool:
+    """True for a format that stores light as it is. All others, videos too, show color through a view."""
+    return _FORMATS.get(Path(path).suffix.casefold()) in _LIGHT_FORMATS
+
+
+def is_data_kind(kind: Kind) -> bool:
+    """True for data: its numbers are written unchanged, and no view applies to them."""
+    return kind not in (Kind.IMAGE, Kind.COLOR)
 
 
 def stores_halves(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
@@ -149,7 +165,7 @@ def encode_exr_parts(
     """The parts of an EXR that holds these layers, and their numbers."""
     parts: list[EncodedPart] = []
     for name, array in layers.items():
-        color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
+        color = not is_data_kind(kinds[name])
         half = _is_stored_as_half(kinds[name], precision)
         height, width, count = array.shape
         spec = oiio.ImageSpec(width, height, count, "half" if half else "float")
@@ -169,7 +185,7 @@ def encode_exr_parts(
 
 
 def _is_stored_as_half(kind: Kind, precision: Precision) -> bool:
-    return kind in (Kind.IMAGE, Kind.COLOR) and precision == "half"
+    return precision == "half" and not is_data_kind(kind)
 
 
 def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
@@ -192,7 +208,7 @@ def _channel_names(name: str, kind: Kind, count: int) -> str:
 
 def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     """The layer that a format without layers shows: the first color layer, else the first field."""
-    candidates = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
+    candidates = [name for name in kinds if not is_data_kind(kinds[name])]
     candidates = candidates or [name for name in kinds if kinds[name] is not Kind.VECTOR]
     if not candidates:
         raise UsageError(f"{path}: vectors are data, not a picture: write them to an .exr file")
@@ -200,18 +216,19 @@ def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
 
 
 def _encode_picture(
-    array: Array, format: str, precision: Precision, compression: str, encoding: Encoding
+    array: Array, is_data: bool, format: str, precision: Precision, compression: str, encoding: Encoding
 ) -> EncodedPart:
-    """The picture of a format that holds no layers."""
+    """The picture of a format that holds no layers. Data keeps its numbers in all of them."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
     if format in ("hdr", "jpeg", "dpx") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
         array = array[..., :3]
     deep = precision == "float" and format in ("png", "tiff", "dpx")
     if format == "hdr":
-        array = np.nan_to_num(np.maximum(encoding.to_radiance(array), 0.0), nan=0.0).astype(np.float32)
+        light = array if is_data else encoding.to_radiance(array)
+        array = np.nan_to_num(np.maximum(light, 0.0), nan=0.0).astype(np.float32)
     else:
-        array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8)
+        array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8, is_data=is_data)
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)
@@ -221,9 +238,9 @@ def _encode_picture(
     if format == "dpx":
         spec.attribute("oiio:BitsPerSample", 16 if deep else 10)
     elif format != "hdr":
-        spec.attribute("oiio:ColorSpace", choose_png_space(encoding.display_space))
+        spec.attribute("oiio:ColorSpace", "" if is_data else choose_png_space(encoding.display_space))
         spec.attribute("oiio:UnassociatedAlpha", 1)
-    if format == "png" and encoding.display_space != "srgb_rec709_scene":
+    if format == "png" and not is_data and encoding.display_space != "srgb_rec709_scene":
         spec.attribute(COLOR_TAG, encoding.display_space)
     return EncodedPart(spec, np.ascontiguousarray(array))
 

@@ -16,7 +16,7 @@ from ...color.encoding import Encoding
 from ...errors import OutputError
 from ...resources.atomic_write import check_writable, replace_file
 from ...resources.sandbox import Sandbox
-from ..pictures.writer import choose_shown_layer
+from ..pictures.writer import choose_shown_layer, is_data_kind
 from .codecs import find_codec
 from .library import load_pyav
 from .signals import Array, code_ranges, rgb_to_chroma
@@ -89,12 +89,13 @@ class VideoWriter:
 
     def add(self, layers: Mapping[str, Array], kinds: Mapping[str, Kind]) -> None:
         """Write one more frame: the first picture among the layers, [h, w, c]. Raises OutputError."""
-        picture = layers[choose_shown_layer(self.path, kinds)]
+        name = choose_shown_layer(self.path, kinds)
+        picture = layers[name]
         height, width = picture.shape[:2]
         if (width, height) != self.size:
             here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
             raise OutputError(f"{self.path}: frame {self._count + 1} is {here}, those before it {there}: give --size")
-        frame = self._make_frame(picture)
+        frame = self._make_frame(picture, is_data_kind(kinds[name]))
         frame.pts, frame.time_base = self._count, 1 / self._rate
         self._count += 1
         self._encode_frame(frame)
@@ -160,7 +161,7 @@ class VideoWriter:
         except self._av.FFmpegError:
             return
 
-    def _make_frame(self, picture: Array) -> Any:
+    def _make_frame(self, picture: Array, is_data: bool) -> Any:
         """The planes of a picture."""
         if picture.shape[2] < 3:
             picture = picture[..., :1].repeat(3, axis=2)
@@ -169,10 +170,11 @@ class VideoWriter:
         format = self._av.VideoFormat(self._format)
         bits = max(part.bits for part in format.components)
         if self._format.startswith("yuv"):
-            codes = self._encoding.to_codes(picture, 16) / np.float32(65535.0)
-            planes = _chroma_planes(codes, self._matrix, self._format, bits)
+            encoded = np.clip(self._encoding.to_encoded(picture, is_data=is_data), 0.0, 1.0)
+            planes = _chroma_planes(encoded, self._matrix, self._format, bits)
         else:
-            planes = _rgb_planes(self._encoding.to_codes(picture, 16 if bits == 16 else 8), self._format)
+            codes = self._encoding.to_codes(picture, 16 if bits == 16 else 8, is_data=is_data)
+            planes = _rgb_planes(codes, self._format)
         frame = self._av.VideoFrame(*self.size, self._format)
         frame.colorspace, frame.color_range, frame.color_primaries, frame.color_trc = self._color
         for plane, numbers in zip(frame.planes, planes, strict=True):

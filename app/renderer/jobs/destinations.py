@@ -22,9 +22,6 @@ from ...resources.picture import Picture
 from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
 
-_LIGHT_FORMATS = (".exr", ".hdr")
-"""Endings of formats that hold light, which no view changes."""
-
 
 class OutputSettings(Struct, frozen=True):
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
@@ -56,6 +53,13 @@ class Destination(Struct, frozen=True):
     layers: Mapping[str, str]
     kinds: Mapping[str, Kind]
     encoding: Encoding
+
+    @property
+    def data_outputs(self) -> tuple[str, ...]:
+        """The outputs that are data, where the format shows color through a view; their numbers are written."""
+        if media.holds_light(self.path):
+            return ()
+        return tuple(name for layer, name in self.layers.items() if media.is_data_kind(self.kinds[layer]))
 
     @property
     def view(self) -> str:
@@ -117,9 +121,7 @@ def choose_views(files: Sequence[Destination], plan: Plan, encodings: PictureEnc
 def _choose_view(file: Destination, plan: Plan, encodings: PictureEncodings) -> Destination:
     encoding, layers = file.encoding, tuple(file.layers)
     is_chosen = encoding.view or encoding.display or encoding.look or encoding.space
-    if is_chosen or len(layers) != 1 or file.path.suffix.casefold() in _LIGHT_FORMATS:
-        return file
-    if file.kinds[layers[0]] not in (Kind.IMAGE, Kind.COLOR):
+    if is_chosen or len(layers) != 1 or media.holds_light(file.path) or media.is_data_kind(file.kinds[layers[0]]):
         return file
     view = choose_default_view(plan, plan.outputs[file.layers[layers[0]]], encodings)
     return replace(file, encoding=replace(encoding, view=view))

@@ -82,6 +82,8 @@ class JobReport(Struct, frozen=True):
     warnings: Mapping[str, str] = field(default_factory=dict[str, str])
     views: Mapping[str, str] = field(default_factory=dict[str, str])
     """The views that were chosen for outputs because nobody named one and their pictures are made for a screen."""
+    data_outputs: tuple[str, ...] = ()
+    """The outputs that are data and whose numbers were written without a view into a format for a screen."""
 
     @property
     def written(self) -> tuple[Path, ...]:
@@ -120,6 +122,7 @@ def run_job(
         job.seconds,
         dict(renderer.pictures.warnings),
         job.views,
+        job.data_outputs,
     )
 
 
@@ -158,6 +161,7 @@ class _Job:
         self._video_writers = VideoWriters(settings, self._find_rate, renderer.sandbox)
         self._row_writers: ScanlineWriters | None = None
         self.videos: tuple[Path, ...] = ()
+        self.data_outputs = tuple(dict.fromkeys(name for file in first for name in file.data_outputs))
         self.views: dict[str, str] = {}
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
