@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import av
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -67,7 +68,6 @@ def test_data_that_is_not_finite_is_written(tmp_path):
 
 
 def test_a_video_of_a_matte_is_its_number(tmp_path):
-    av = pytest.importorskip("av")
     ramp = np.linspace(0.0, 1.0, 64, dtype=np.float32)[None, :, None].repeat(16, axis=0)
     path = tmp_path / "a.mkv"
     video = VideoWriter(path, (64, 16), 24, sandbox=UNRESTRICTED)
