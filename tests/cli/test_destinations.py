@@ -107,6 +107,7 @@ def test_a_folder_that_may_not_be_written(graphs, shot):
         result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         folder.chmod(0o755)
         said = "halation: out.exr: cannot be written: the folder may not be written: choose another"
+        said = f"{said}; the old file is unchanged"
         assert (result.returncode, result.stderr.splitlines()[-1]) == (1, said)
         assert old.read_bytes() == b"precious" and len(list(folder.iterdir())) == 3
 

@@ -10,6 +10,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from film_scans import write_cineon
+from halation.color.file_space import CHROMATICITIES
 from halation.color.header_space import REC709, HeaderSpace, make_gamut_matrix
 from halation.color.management import get_color_manager, get_default_color_manager
 from halation.errors import InputError
@@ -38,6 +39,17 @@ def rgb(path: Path, color: ColorSettings | None = None) -> Array:
     return read_layer(
         path, "", Kind.IMAGE, manager=get_color_manager(color or ColorSettings(), UNRESTRICTED), sandbox=UNRESTRICTED
     ).array[..., :3]
+
+
+def test_every_gamut_is_opencolorios():
+    """The chromaticities of each space that has a name, as a matrix, against the built-in config's own."""
+    assert len(CHROMATICITIES) >= 6
+    for name, gamut in CHROMATICITIES.items():
+        colors = np.eye(3, dtype=np.float32)
+        studio().getProcessor(name, "lin_rec709_scene").getDefaultCPUProcessor().applyRGB(colors)
+        matrix = make_gamut_matrix(gamut)
+        assert matrix is not None
+        np.testing.assert_allclose(matrix, colors.T, atol=2e-4, err_msg=name)
 
 
 def name_and_reason(path: Path) -> tuple[str, ...]:

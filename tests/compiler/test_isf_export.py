@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from halation.compiler.ir import PictureShape, UniformConstant
 from halation.compiler.isf import IsfExport, export_isf
-from halation.compiler.isf.affine import find_length_formula
+from halation.compiler.isf.affine import Knob, find_length_formula, fit_slopes, take_apart
+from halation.compiler.isf.controls import find_controls
 from halation.custom_nodes import CustomNode
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.inputs.lazy_provider import LazyResourceProvider
-from halation.nodes import Kind, Node, catalogue
+from halation.nodes import Filter, Image, Kind, Node, Value, catalogue
 from halation.renderer import Renderer, RenderRequest
 from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given
@@ -137,6 +141,64 @@ def test_what_no_shader_can_do_is_listed_by_node() -> None:
     assert export_isf(graph, TARGET, LazyResourceProvider(sandbox=UNRESTRICTED)).reasons == (
         ("n0", "makes every frame of the one before"),
     )
+
+
+def program(*parts: object) -> Any:
+    return SimpleNamespace(ops=(parts,), outputs={})
+
+
+def number(value: float) -> UniformConstant:
+    return UniformConstant(value)
+
+
+def shape(width: int) -> PictureShape:
+    return PictureShape((width, 8), 4, False)
+
+
+@pytest.mark.parametrize(
+    ("lower_at", "resizes", "slopes"),
+    [
+        (lambda x: program("op", number(3.0 * x + 1.0), number(-x), number(7.0)), False, [3.0, -1.0, 0.0]),
+        (lambda x: program("op", number(x * x), number(x), number(0.0)), False, None),
+        (lambda x: program("op" if x < 1.5 else "other", number(x), number(x), number(0.0)), False, None),
+        (lambda x: program("op", number(x), number(x), *[number(0.0)] * (1 if x < 1.5 else 2)), False, None),
+        (lambda x: program("op", number(x), shape(round(16 * x))), False, None),
+        (lambda x: program("op", number(x), shape(round(16 * x))), True, [1.0]),
+        (lambda x: program("op", number(x), shape(16)), False, [1.0]),
+        (lambda x: program("op", number(x)) if x < 1.5 else None, False, None),
+    ],
+    ids=["lines", "parabola", "operation", "count", "sizes", "sizes that may", "same sizes", "none"],
+)
+def test_slopes_are_those_of_straight_lines(lower_at: Any, resizes: bool, slopes: list[float] | None) -> None:
+    """The numbers of a program as known functions of a knob."""
+    knob = Knob("x", "x", 1.0, 1.0, 0.5, resizes=resizes)
+    base = take_apart(lower_at(knob.base))
+    found = fit_slopes(lambda point: lower_at(point["x"]), base, knob)
+    assert found == (None if slopes is None else pytest.approx(slopes))
+
+
+@pytest.mark.parametrize(
+    ("value", "low", "high"),
+    [
+        (Value("v", "float", 0.25, low=-2.0, high=3.0), -2.0, 3.0),
+        (Value("v", "float", 0.25, low=-2.0, high=3.0, minimum=0.0, maximum=2.0), 0.0, 2.0),
+        (Value("v", "float", 5.0, low=-2.0, high=3.0), -2.0, 5.0),
+        (Value("v", "float", -7.0, low=-2.0, high=3.0), -7.0, 3.0),
+        (Value("v", "float", 0.25, low=-math.inf, high=3.0), 0.0, 1.0),
+        (Value("v", "float", 0.25, low=0.0, high=math.inf), 0.0, 1.0),
+        (Value("v", "float", 0.25, low=3.0, high=3.0), 0.0, 1.0),
+        (Value("v", "float", 0.25, low=3.0, high=2.0), 0.0, 1.0),
+    ],
+    ids=["its own", "limits", "above", "below", "no low", "no high", "empty", "turned around"],
+)
+def test_the_range_of_an_input_is_finite_and_holds_its_value(value: Value, low: float, high: float) -> None:
+    """JSON has no infinity, and a slider needs two ends."""
+    kind = type("Knobbed", (Filter,), {"image": Image(), "__annotations__": {}})
+    kind.values, kind.v = {"v": value}, value.default
+    graph = Graph().add("n", kind()).add_control("c", Control(Port("n", "v")))
+    ((control,), notes) = find_controls(graph, ())
+    assert not notes and (control.entry["MIN"], control.entry["MAX"]) == (low, high)
+    json.dumps(control.entry, allow_nan=False)
 
 
 @given(some.integers(1, 64), some.integers(0, 63), some.lists(some.integers(64, 4000), min_size=4, max_size=4))

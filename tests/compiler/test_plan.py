@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import pytest
 from halation.compiler import NULL, Plan
+from halation.graph import Graph, Input, Output, Port
+from halation.nodes import Kind
+from halation.nodes.merge.mix_images import MixImages
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 from random_graphs import random_graph
 
 SEEDS = st.integers(0, 100_000)
@@ -35,8 +40,6 @@ def check_lives(plan: Plan) -> None:
 @settings(max_examples=60)
 @given(SEEDS, st.booleans(), st.sampled_from(["compute", "fragment"]))
 def test_slots_never_overlap_in_life(plan, seed, fusion, form):
-    from msgspec.structs import replace
-
     check_lives(plan(random_graph(seed), fusion=fusion, target=replace(NULL, form=form)))
 
 
@@ -87,10 +90,27 @@ def test_keys_tell_different_pixels_apart(plan, seed):
 
 @pytest.mark.parametrize("limit", [2, 4, 8])
 def test_a_pass_stays_within_the_device_limits(plan, limit):
-    from msgspec.structs import replace
-
     for seed in range(20):
         target = replace(NULL, form="fragment", max_samplers=limit)
         for one in plan(random_graph(seed, 14), target=target).passes:
             # A node that reads more by itself cannot be helped.
             assert len(one.textures) <= limit or len(one.nodes) == 1
+
+
+@pytest.mark.parametrize("limit", [3, 4, 5, 8])
+def test_a_pass_uses_all_image_units_and_no_more(plan, limit):
+    """Each pass reads one picture fewer than there are units, for it writes one: a chain of blends takes as many passes
+    as n - 1 pictures take that are joined k - 2 at a time."""
+    target = replace(NULL, form="compute", max_images=limit)
+    assert target.loads_images
+    for count in range(2, 14):
+        graph = Graph(inputs={f"p{number}": Input() for number in range(count)})
+        source = Port("inputs", "p0")
+        for number in range(1, count):
+            graph = graph.add(f"mix{number}", MixImages(factor=0.5)).connect(source, Port(f"mix{number}", "a"))
+            graph = graph.connect(Port("inputs", f"p{number}"), Port(f"mix{number}", "b"))
+            source = Port(f"mix{number}", "out")
+        graph = graph.add_output("out", Output(Kind.IMAGE)).connect(source, Port("outputs", "out"))
+        passes = plan(graph, target=target).passes
+        assert len(passes) == math.ceil((count - 1) / (limit - 2))
+        assert all(len(one.textures) + len(one.targets) <= limit for one in passes)

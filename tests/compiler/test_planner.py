@@ -16,6 +16,7 @@ from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewrite_passes
 from halation.compiler.lowering.lower import lower
 from halation.compiler.planner import MAX_REMEMBERED_PLANS, graph_library
+from halation.compiler.scheduling.differences import find_changed_numbers
 from halation.errors import GraphError, HalationError
 from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
 from halation.inputs.provider import MediaProvider
@@ -109,6 +110,32 @@ def test_numbers_decide_nothing_about_passes(seed):
     passes = fuse(program, NULL)
     assert fuse(blank, NULL) == passes
     assert rewrite_passes(blank, passes, NULL, library) == rewrite_passes(program, passes, NULL, library)
+
+
+def lowered(graph: Graph):
+    return lower(graph, asked(graph), graph_library(graph, Headers(SIZE)), Headers(SIZE)).program
+
+
+def test_programs_that_differ_in_numbers_alone():
+    """Another number is found at its operation; whatever else differs, the passes must be planned anew."""
+    graph = chain(GaussianBlur(sigma=3.0), Exposure(stops=1.0), GaussianBlur(sigma=5.0))
+    program, other = lowered(graph), lowered(graph.put(Port("b", "stops"), 2.0))
+    changed = {index for index, (a, b) in enumerate(zip(program.ops, other.ops, strict=True)) if a != b}
+    assert changed and find_changed_numbers(program, other) == changed
+    assert find_changed_numbers(program, program) == set()
+    (output,) = program.outputs.values()
+    for fields in (
+        {"outputs": {**program.outputs, "second": output}},
+        {"memories": {"b": output}},
+        {"scale": 0.5},
+        {"results": {}},
+        {"ops": program.ops[:-1]},
+        {"ops": (*program.ops, program.ops[0])},
+    ):
+        assert getattr(program, next(iter(fields))) != next(iter(fields.values()))
+        assert find_changed_numbers(program, structs.replace(program, **fields)) is None, fields
+    moved = tuple(structs.replace(op, owner="other") if n in changed else op for n, op in enumerate(other.ops))
+    assert find_changed_numbers(program, structs.replace(other, ops=moved)) is None
 
 
 # --- what is not done again ------------------------------------------------------------------------------------------

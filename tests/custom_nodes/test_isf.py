@@ -107,6 +107,29 @@ def test_every_type_of_value(run: Run) -> None:
     assert values["spot"].handle and values["spot"].default == (0.25, 0.875) and not values["step"].handle
 
 
+def test_defaults_that_nobody_wrote() -> None:
+    """The middle of a point's range, opaque black, and of a number 0 or the end of the range that is nearest to it."""
+    kind = shader(
+        isf(
+            "gl_FragColor = vec4(1.0);",
+            {"NAME": "point", "TYPE": "point2D", "MIN": [2.0, -10.0], "MAX": [6.0, 30.0]},
+            {"NAME": "free", "TYPE": "point2D"},
+            {"NAME": "tint", "TYPE": "color"},
+            {"NAME": "number", "TYPE": "float"},
+            {"NAME": "above", "TYPE": "float", "MIN": 2.0, "MAX": 5.0},
+            {"NAME": "below", "TYPE": "float", "MIN": -5.0, "MAX": -1.0},
+        )
+    )
+    assert {name: value.default for name, value in kind.values.items() if name != "light"} == {
+        "point": (4.0, 10.0),
+        "free": (0.0, 0.0),
+        "tint": (0.0, 0.0, 0.0, 1.0),
+        "number": 0.0,
+        "above": 2.0,
+        "below": -1.0,
+    }
+
+
 def test_values_change_no_program(renderer: Renderer) -> None:
     body = "gl_FragColor = vec4(level + TIME * float(PASSINDEX));"
     level = {"NAME": "level", "TYPE": "float", "DEFAULT": 0.5}

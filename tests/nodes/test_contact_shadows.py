@@ -140,3 +140,25 @@ def test_soft_edges_grow_with_the_distance(run):
     assert half.sum() > 40
     error = (found - part)[half]
     assert abs(error.mean()) < 0.05 and np.sqrt((error**2).mean()) < 0.1
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["rows", "columns"])
+def test_soft_shadows_hide_the_period_of_their_noise(run, turned):
+    """Below a bar from edge to edge every pixel along it sees the same light: 4 x 4 pixels hold all its directions."""
+    width, height = (48, 64) if turned else (64, 48)
+    up = (0.0, 1.0, 0.0)
+    camera = look_at((0.0, 0.0, 4.0), (0.0, 0.0, 0.0), (1.2, 1.2 * width / height), up)
+    way, eye = rays(camera, width, height), np.array([0.0, 0.0, 4.0])
+    across = 0 if turned else 1
+    top = eye + 3.5 * way
+    bar = np.abs(top[..., across]) < 0.3
+    depth = np.where(bar, 3.5, 4.0)
+    normal = np.broadcast_to((0.0, 0.0, 1.0), (height, width, 3))
+    sun = (-0.8, 0.0, 1.0) if turned else (0.0, -0.8, 1.0)
+    shadow = shaded(run, camera, depth, normal, direction=sun, softness=40.0, quality="preview")
+    lines = shadow.T if turned else shadow
+    lines = lines[4:-4, 12:-12]
+    half = (lines.mean(1) > 0.1) & (lines.mean(1) < 0.9)
+    assert half.sum() > 5
+    # Few neighbors differ: by the rank of a direction within its sixteenth, which is blue noise.
+    assert (np.diff(lines[half], axis=1) == 0.0).mean() > 0.6

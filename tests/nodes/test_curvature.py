@@ -109,3 +109,19 @@ def test_normals_alone_see_a_ball_from_afar(run, camera):
     found = run(Curvature(), inputs | {"normal": normal}, output="mean")[..., 0]
     np.testing.assert_allclose(found[square < 0.7], 1.0 / radius, rtol=2e-3)
     assert (found[~there] == 0.0).all()
+
+
+@pytest.mark.parametrize("reach", [1.0, 3.0])
+def test_normals_alone_stop_at_holes_and_at_the_border(run, reach):
+    """A ball larger than the picture, with pixels that have no normal: beside them it still bends by 1 / radius."""
+    height, width, radius = 48, 64, 2.0
+    y, x = np.mgrid[:height, :width]
+    right, up = (x + 0.5 - width / 2) / height / radius, -(y + 0.5 - height / 2) / height / radius
+    normal = np.dstack([right, up, np.sqrt(1.0 - right**2 - up**2)])
+    holes = np.zeros((height, width), bool)
+    holes[8:-8:11, 8:-8:11] = True
+    normal[holes] = 0.0
+    found = run(Curvature(reach=reach), {"normal": normal}, output="mean")[..., 0]
+    assert (found[holes] == 0.0).all()
+    # A difference to one side is of the place half of the reach away, where the ball is at another angle.
+    np.testing.assert_allclose(found[~holes], 1.0 / radius, rtol=0.02 * reach)

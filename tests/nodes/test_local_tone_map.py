@@ -75,6 +75,16 @@ def test_it_is_the_papers_operator(run, values):
     assert (np.abs(found - expected) / np.maximum(1.0, expected))[sure].max() < 2e-6
 
 
+def test_colors_end_at_white(run):
+    """The paper's operator, then numpy's clip: channels of strong colors exceed 1 long before luminance does."""
+    image = scene()
+    expected, margin = reinhard(image[..., :3])
+    shown = run(LocalToneMap(), {"image": image})[..., :3]
+    sure = margin > 5e-3
+    assert (expected[sure] > 1.1).sum() > 10
+    np.testing.assert_allclose(shown[sure], np.clip(expected, 0.0, 1.0)[sure], atol=2e-6)
+
+
 def test_wide_areas_are_as_exact_as_the_blur(run):
     """Sigmas above 7 pixels are blurred at a small size, to 3e-4 of the brightest light nearby."""
     image = scene()

@@ -107,6 +107,26 @@ def test_planes_have_no_curvature_and_corners_do(run):
     assert column.min() < -2.0 and column.max() < 5e-3  # a corner seen from within is hollow
 
 
+@pytest.mark.parametrize("height", [0.5, 1.0, 3.0])
+def test_creases_are_hollow_on_both_sides(run, height):
+    """Floor and wall from any height: half of the turn over the way across the crease, from the planes themselves."""
+    camera = look_at((5.0, 0.0, height), (0.0, 0.0, 0.02), (0.9, 0.9 * WIDTH / HEIGHT))
+    y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+    seen = np.stack([(x + 0.5) / WIDTH, (y + 0.5) / HEIGHT, np.ones_like(x, float)], -1)
+    ray = seen @ np.reshape(camera.inverse, (3, 4))[:, :3].T
+    with np.errstate(divide="ignore"):
+        floor, wall = -height / ray[..., 2], -5.0 / ray[..., 0]
+    floor = np.where(floor > 0.0, floor, np.inf)
+    depth, is_floor = np.minimum(floor, wall), floor < wall
+    place, normal = depth[..., None] * ray, np.where(is_floor[..., None], (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
+    way, turn = place[4:] - place[:-4], normal[4:] - normal[:-4]
+    expected = 0.5 * (turn * way).sum(-1) / (way[..., ::2] ** 2).sum(-1)
+    found = run(NormalFromDepth(), {"depth": depth, "camera": camera}, output="curvature")[2:-2, :, 0]
+    crease = expected != 0.0
+    assert crease.sum() == 4 * WIDTH
+    np.testing.assert_allclose(found[crease], expected[crease], rtol=0.02)
+
+
 def test_silhouettes_are_no_curvature(run):
     wall, (ball, _) = plane((1, 0, 0), (-6, 0, 0)), sphere((1.0, 0.0, 0.6), 1.2)
     found = curvature(run, np.minimum(wall, ball))
