@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from .compiler import Precision
     from .graph import Graph
     from .inputs.provider import Binding
+    from .resources.render_choices import Dither
 
 __all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
 
@@ -124,15 +125,25 @@ def render_frames(
 
 
 def write(
-    path: str | Path, picture: np.ndarray, *, view: str = "", precision: Precision = "half", compression: str = "zip"
+    path: str | Path,
+    picture: np.ndarray,
+    *,
+    view: str = "",
+    precision: Precision = "half",
+    compression: str = "zip",
+    dither: Dither = "blue",
+    frame: int = 1,
 ) -> None:
     """Write one picture, whole or not at all; the suffix says the format.
 
-    EXR keeps the numbers; PNG, JPEG, TIFF and WebP show them through an OpenColorIO `view`. Raises OutputError.
+    EXR keeps the numbers; PNG, JPEG, TIFF, WebP and DPX show colors through an OpenColorIO `view`, and hold the
+    numbers of a Field, which has one channel. Colors of 8 and 10 bits are dithered by blue noise, whose
+    pattern `frame` chooses, unless `dither` is "none". Raises OutputError.
     """
     from halation.nodes import Kind
 
     from . import media
+    from .color.encoding import Encoding
     from .resources.sandbox import read_process_sandbox
     from .scripting import arguments
 
@@ -148,7 +159,10 @@ def write(
         kinds={"image": kind},
         precision=arguments.check_choice("precision", precision, ("half", "float")),
         compression=arguments.check_text("compression", compression),
-        view=arguments.check_text("view", view),
+        encoding=Encoding(
+            arguments.check_text("view", view), dither=arguments.check_choice("dither", dither, ("blue", "none"))
+        ),
+        frame=arguments.check_frame_number(frame),
         sandbox=read_process_sandbox(),
     )
 

@@ -178,6 +178,7 @@ def _render_here(
         job.look,
         job.colorspace,
         job.codec,
+        job.dither,
     )
     with progress_reporter(progress, len(job.frames)) as reporter:
         report = run_job(renderer, graph, request, output_settings, job.frames, resume=job.resume, progress=reporter)

@@ -13,6 +13,7 @@ from ..errors import GraphError, UsageError
 if TYPE_CHECKING:
     from ..compiler import Form, Precision
     from ..graph import Graph, Port
+    from ..resources.render_choices import Dither
 
 _Word = TypeVar("_Word", bound=str)
 
@@ -171,6 +172,11 @@ def parse_form_or_device(text: str) -> Form | Literal["device"]:
 def parse_precision(text: str) -> Precision:
     """The precision that --precision names."""
     return _parse_choice(text, ("half", "float"), "--precision")
+
+
+def parse_dither(text: str) -> Dither:
+    """How --dither says that colors are rounded."""
+    return _parse_choice(text, ("blue", "none"), "--dither")
 
 
 def parse_progress(text: str) -> Literal["bar", "json"]:

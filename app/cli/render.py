@@ -74,6 +74,13 @@ def render(
             help="Codec of videos: h264, h265, prores, prores4444, ffv1, qtrle or vp9; the default depends on the file."
         ),
     ] = "",
+    dither: Annotated[
+        str,
+        typer.Option(
+            metavar="blue|none",
+            help="Round colors to 8 and 10 bits with blue noise, which prevents bands, or to the nearest code.",
+        ),
+    ] = "blue",
     form: Form = None,
     deterministic: Annotated[
         bool,
@@ -123,6 +130,7 @@ def render(
         colorspace=colorspace,
         compression=compression,
         codec=codec,
+        dither=parsing.parse_dither(dither),
         resume=resume,
         processes=jobs,
         timeout=timeout,

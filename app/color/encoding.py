@@ -8,7 +8,9 @@ import numpy as np
 from msgspec import Struct, field
 
 from ..errors import UsageError
+from ..resources.render_choices import Dither
 from .display import check_view, find_display, find_view, to_display
+from .dithering import make_dither
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_default_color_manager
 from .primaries import find_chromaticities
 from .transforms import Array, convert_premultiplied, from_working, is_matrix, quantize, unpremultiply
@@ -26,6 +28,8 @@ class Encoding(Struct, frozen=True):
     display: str = ""
     look: str = ""
     space: str = ""
+    dither: Dither = "none"
+    """How `to_codes` rounds colors to 8 or 10 bits."""
     manager: ColorManager = field(default_factory=get_default_color_manager)
     """The color manager; by default the one for graphs without color settings."""
 
@@ -57,14 +61,23 @@ class Encoding(Struct, frozen=True):
         target = self._target if self.space else self.manager.find(LINEAR_REC709)
         return self._convert(array, target or OcioColorSpace(LINEAR_REC709, False))
 
-    def to_codes(self, array: Array, bits: Literal[8, 10, 16], *, is_data: bool = False) -> Array:
+    def to_codes(self, array: Array, bits: Literal[8, 10, 16], *, is_data: bool = False, frame: int = 1) -> Array:
         """Pixels [h, w, 3 or 4] as integers: color through the view or in the color space, with straight alpha.
 
         Data is its number times the largest integer: no view and no color space applies. 10 bits are the upper ones
-        of 16.
+        of 16. Color is dithered up to 10 bits, alpha and data are not. `frame` chooses the pattern.
         """
-        codes = quantize(self.to_encoded(array, is_data=is_data), bits)
+        encoded = self.to_encoded(array, is_data=is_data)
+        if bits < 16 and self.dithers(is_data):
+            height, width = encoded.shape[:2]
+            noise = make_dither(width, height, frame) / np.float32((1 << bits) - 1)
+            encoded[..., :3] += noise[..., None]  # the same for all channels, so that gray stays gray
+        codes = quantize(encoded, bits)
         return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes
+
+    def dithers(self, is_data: bool = False) -> bool:
+        """True if numbers are dithered where they are rounded to 10 bits or fewer."""
+        return self.dither == "blue" and not is_data and not (self.space and self._target.data)
 
     def to_encoded(self, array: Array, *, is_data: bool = False) -> Array:
         """The same as numbers of 32 bits, from 0 for black to 1 for the largest integer, or beyond."""

@@ -77,7 +77,7 @@ def _run_rendering(case: Case, renderer: Renderer, options: RunOptions) -> Outco
         actual = [folder / golden.path.name for folder, golden in zip(folders, case.goldens, strict=True)]
         files = tuple((golden.output, path) for golden, path in zip(case.goldens, actual, strict=True))
         precision = "float" if case.precision == "float" else "half"
-        run_job(renderer, graph, request, OutputSettings(files, case.view, precision=precision), frames)
+        run_job(renderer, graph, request, OutputSettings(files, case.view, precision=precision, dither="none"), frames)
         checks, blessed = list[PictureCheck](), list[str]()
         for frame in frames:
             for golden, path in zip(case.goldens, actual, strict=True):

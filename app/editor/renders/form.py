@@ -27,6 +27,7 @@ from ...media import PICTURE_ENDINGS
 from ...media.sequences import find_sequence
 from ...media.video.codecs import WRITABLE as VIDEO_ENDINGS
 from ...media.video.library import load_pyav
+from ...resources.render_choices import Dither
 from ...resources.sandbox import Sandbox
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ Sizing = Literal["full size", "scale", "size"]
 Extent = Literal["this frame", "all frames", "playback range", "listed frames"]
 Depth = Literal["", "half", "float"]
 
+DITHERS: tuple[tuple[Dither, str], ...] = (("blue", "blue noise"), ("none", "none: bands in dark ramps"))
 DEPTHS: tuple[tuple[Depth, str], ...] = (
     ("", "default of the format"),
     ("half", "16 bit"),
@@ -72,6 +74,7 @@ class RenderForm:
     size: tuple[int, int] = (1920, 1080)
     precision: Depth = ""
     view: str = ""
+    dither: Dither = "blue"
     extent: Extent | None = None
     """The chosen frames; None for all frames if there are several."""
     listed: str = ""
@@ -168,6 +171,7 @@ class RenderForm:
             frames=frames,
             precision=self.precision or None,
             view=self.view,
+            dither=self.dither,
             resume=self.resume and not any(is_video(str(self.file(name))) for name in self.list_chosen_outputs()),
             processes=self.jobs if len(frames) > 1 else 1,
         )

@@ -20,7 +20,7 @@ from ..toolkit.buttons import main_button, quiet_button, width_of_buttons
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
 from ..toolkit.words import SMALL, cut_end, cut_middle, draw_dim, draw_wrapped, font, tip
-from .form import DEPTHS, Extent, RenderForm, RenderTargets, Sizing, formats
+from .form import DEPTHS, DITHERS, Extent, RenderForm, RenderTargets, Sizing, formats
 from .wording import aim_text, exist_text
 
 if TYPE_CHECKING:
@@ -156,6 +156,9 @@ def _draw_options(context: RendersContext, form: RenderForm) -> None:
         own = "as the output states"
         if chosen := choose(context, "View", form.view or own, (own, *list_views(manager=find_color_manager(context)))):
             form.view = "" if chosen == own else chosen
+        dithers = dict(DITHERS)
+        if chosen := choose(context, "Dither", dithers[form.dither], tuple(dithers.values())):
+            form.dither = next(name for name, text in DITHERS if text == chosen)
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]
     record(context, "render resume")

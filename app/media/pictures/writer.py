@@ -64,6 +64,7 @@ def write_picture(
     view: str = "",
     metadata: Mapping[str, Any] | None = None,
     encoding: Encoding | None = None,
+    frame: int = 1,
     sandbox: Sandbox,
 ) -> None:
     """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
@@ -75,6 +76,7 @@ def write_picture(
     `precision="float"`, alpha straight and only where something is transparent; JPEG and DPX show it over black.
     Without an Image, the first Field as gray: its number times the largest integer. An `encoding` says more than a
     view: see there.
+    Where the encoding dithers, `frame` chooses the pattern.
     `metadata` is kept as far as the format can: all of it in EXR, text in PNG.
 
     Raises:
@@ -91,7 +93,7 @@ def write_picture(
     else:
         layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
         is_data = is_data_kind(kinds[layer_name])
-        parts = [_encode_picture(layers[layer_name], is_data, format, precision, compression, encoding)]
+        parts = [_encode_picture(layers[layer_name], is_data, frame, format, precision, compression, encoding)]
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
@@ -216,7 +218,13 @@ def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
 
 
 def _encode_picture(
-    array: Array, is_data: bool, format: str, precision: Precision, compression: str, encoding: Encoding
+    array: Array,
+    is_data: bool,
+    frame: int,
+    format: str,
+    precision: Precision,
+    compression: str,
+    encoding: Encoding,
 ) -> EncodedPart:
     """The picture of a format that holds no layers. Data keeps its numbers in all of them."""
     if array.shape[2] < 3:
@@ -228,7 +236,7 @@ def _encode_picture(
         light = array if is_data else encoding.to_radiance(array)
         array = np.nan_to_num(np.maximum(light, 0.0), nan=0.0).astype(np.float32)
     else:
-        array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8, is_data=is_data)
+        array = encoding.to_codes(array, 16 if deep else 10 if format == "dpx" else 8, is_data=is_data, frame=frame)
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from halation.nodes import Kind, Size
 
+from ...color.dithering import make_dither
 from ...color.encoding import Encoding
 from ...errors import OutputError
 from ...resources.atomic_write import check_writable, replace_file
@@ -38,6 +39,8 @@ _TAGS = MappingProxyType(
 """Display color spaces -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
 
 _NTSC = 1001
+_DITHERED_BITS = 10
+"""The most bits that are dithered: with more, no eye sees steps."""
 
 
 def check_video(
@@ -169,11 +172,13 @@ class VideoWriter:
             picture = picture[..., :3]
         format = self._av.VideoFormat(self._format)
         bits = max(part.bits for part in format.components)
+        noise_frame = self._count if bits <= _DITHERED_BITS and self._encoding.dithers(is_data) else None
         if self._format.startswith("yuv"):
             encoded = np.clip(self._encoding.to_encoded(picture, is_data=is_data), 0.0, 1.0)
-            planes = _chroma_planes(encoded, self._matrix, self._format, bits)
+            planes = _chroma_planes(encoded, self._matrix, self._format, bits, noise_frame)
         else:
-            codes = self._encoding.to_codes(picture, 16 if bits == 16 else 8, is_data=is_data)
+            depth = 16 if bits == 16 else 8
+            codes = self._encoding.to_codes(picture, depth, is_data=is_data, frame=self._count)
             planes = _rgb_planes(codes, self._format)
         frame = self._av.VideoFrame(*self.size, self._format)
         frame.colorspace, frame.color_range, frame.color_primaries, frame.color_trc = self._color
@@ -212,8 +217,8 @@ def _rgb_planes(codes: Array, format: str) -> list[Array]:
     return [codes[..., order].reshape(height, width * 4)]
 
 
-def _chroma_planes(codes: Array, matrix: int, format: str, bits: int) -> list[Array]:
-    """Luma, both color differences and alpha, rounded to the limited range."""
+def _chroma_planes(codes: Array, matrix: int, format: str, bits: int, noise_frame: int | None) -> list[Array]:
+    """Luma, both color differences and alpha, rounded to the limited range; color is dithered for a frame."""
     black, white, none, all = code_ranges(bits, True)
     luma, blue, red = rgb_to_chroma(codes[..., :3], matrix)
     across, down = ("420" in format or "422" in format), "420" in format
@@ -221,6 +226,8 @@ def _chroma_planes(codes: Array, matrix: int, format: str, bits: int) -> list[Ar
         luma * white + black,
         *(_halve_chroma(difference, across, down) * all + none for difference in (blue, red)),
     ]
+    if noise_frame is not None:
+        planes = [plane + make_dither(*plane.shape[::-1], noise_frame, index) for index, plane in enumerate(planes)]
     if format.startswith("yuva"):
         alpha = codes[..., 3] if codes.shape[2] == 4 else np.ones_like(codes[..., 0])
         planes.append(alpha * np.float32((1 << bits) - 1))

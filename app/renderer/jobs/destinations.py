@@ -19,6 +19,7 @@ from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
 from ...inputs.default_view import PictureEncodings, choose_default_view
 from ...resources.picture import Picture
+from ...resources.render_choices import Dither
 from ...resources.sandbox import Sandbox
 from ..engine import RenderRequest
 
@@ -39,6 +40,8 @@ class OutputSettings(Struct, frozen=True):
     space: str = ""
     codec: str = ""
     """The codec of videos; "" for the default of the file format."""
+    dither: Dither = "blue"
+    """How colors are rounded to 8 and 10 bits."""
 
     @property
     def videos(self) -> tuple[Path, ...]:
@@ -181,7 +184,15 @@ def _describe_destination(
     first = _find_port(request, names[0]) if names else Port("", "")
     own_view = graph.outputs[first.socket].view if first.node == OUTPUTS and not settings.space else ""
     manager = get_color_manager(color_settings(graph), sandbox)
-    encoding = Encoding(settings.view or own_view, settings.display, settings.look, settings.space, manager)
+    has_light = media.holds_light(path) or all(media.is_data_kind(kind) for kind in kinds.values())
+    encoding = Encoding(
+        settings.view or own_view,
+        settings.display,
+        settings.look,
+        settings.space,
+        "none" if has_light else settings.dither,
+        manager,
+    )
     return Destination(path, layers, kinds, encoding)
 
 

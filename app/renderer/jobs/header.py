@@ -80,6 +80,7 @@ def record_settings(
         look=settings.look,
         colorspace=settings.space,
         compression=settings.compression,
+        dither=file.encoding.dither,
         frame=request.frame,
         outputs=tuple(name for name in file.layers.values() if name not in request.targets),
         frames=frames,
@@ -111,6 +112,8 @@ def compute_frame_key(
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     view_settings = (file.view, settings.display, settings.look, settings.space, file.encoding.manager.digest)
     encoding_settings = (file.path.suffix, *view_settings, settings.compression, settings.precision)
+    if file.encoding.dither != "none":
+        encoding_settings = (*encoding_settings, file.encoding.dither, request.frame)
     return _hash_parts(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), encoding_settings)
 
 

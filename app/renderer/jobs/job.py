@@ -322,6 +322,7 @@ class _Job:
                     compression=self._settings.compression,
                     metadata=said,
                     encoding=file.encoding,
+                    frame=task.frame,
                     sandbox=self._renderer.sandbox,
                 )
             self.seconds["write"] += time.perf_counter() - started

@@ -9,7 +9,7 @@ import msgspec
 from halation.nodes import Size
 from msgspec import Struct
 
-from ...resources.render_choices import Form, Precision
+from ...resources.render_choices import Dither, Form, Precision
 
 
 class PictureSettings(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -26,6 +26,8 @@ class PictureSettings(Struct, frozen=True, kw_only=True, omit_defaults=True):
     look: str = ""
     colorspace: str = ""
     compression: str = "zip"
+    dither: Dither = "none"
+    """`none` where a header does not say it: earlier versions did not dither."""
 
     def to_json(self) -> str:
         """The settings as one line of JSON in ASCII, which can hold names of files in any encoding."""

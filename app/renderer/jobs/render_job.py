@@ -16,7 +16,7 @@ from msgspec import field
 
 from ...errors import UsageError
 from ...graph.frames import is_video
-from ...resources.render_choices import DEFAULT_TIMEOUT
+from ...resources.render_choices import DEFAULT_TIMEOUT, Dither
 from ...resources.sandbox import Sandbox
 from .picture_settings import PictureSettings
 
@@ -43,6 +43,7 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     deterministic: bool = False
     destinations: tuple[tuple[str, str], ...] = ()
     codec: str = ""
+    dither: Dither = "blue"
     resume: bool = False
     processes: int = 1
     timeout: float = DEFAULT_TIMEOUT

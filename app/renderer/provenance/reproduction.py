@@ -109,6 +109,7 @@ def reproduce(
             recorded.display,
             recorded.look,
             recorded.colorspace,
+            dither=recorded.dither,
         )
         run_job(renderer, graph, request, output_settings, (recorded.frame,))
         layers = compare_layers(*(read_stored_codes(path, renderer.sandbox) for path in (rendered_file, recipe.path)))
