@@ -48,7 +48,7 @@ def test_names_are_frozen():
         "precision: 'Precision | None' = None)",
         "save": "(graph: 'Graph', path: 'str | Path')",
         "write": "(path: 'str | Path', picture: 'np.ndarray', *, view: 'str' = '', precision: 'Precision' = 'half', "
-        "compression: 'str' = 'zip')",
+        "compression: 'str' = 'zip', dither: 'Dither' = 'blue', frame: 'int' = 1)",
     }
     for name in hal.__all__:
         assert inspect.getdoc(getattr(hal, name)), name
@@ -115,7 +115,7 @@ def test_load_render_write_save(graph, tmp_path):
 
 def test_write_shows_through_a_view(tmp_path):
     picture = np.full((4, 4, 3), 0.5)
-    hal.write(tmp_path / "a.png", picture, view="none")
+    hal.write(tmp_path / "a.png", picture, view="none", dither="none")
     assert round(float(read(tmp_path / "a.png")[0, 0, 0]) * 255) == round((1.055 * 0.5 ** (1 / 2.4) - 0.055) * 255)
     hal.write(tmp_path / "b.exr", picture[..., :2])
     hal.write(tmp_path / "c.exr", picture[..., 0])

@@ -141,8 +141,8 @@ def test_videos_are_dithered(tmp_path, ramp, monkeypatch, name, codec, bits):
     monkeypatch.setattr(VideoWriter, "_encode_frame", keep)
     encoding = Encoding("none", dither="blue")
     video = VideoWriter(tmp_path / name, (1120, 256), 24, codec=codec, encoding=encoding, sandbox=UNRESTRICTED)
-    for _ in range(2):
-        video.add({"": light.astype(np.float32)}, IMAGE)
+    for frame in (1, 2):
+        video.add({"": light.astype(np.float32)}, IMAGE, frame)
     video.close()
     step = 1 << (bits - 8)
     wanted = encode_srgb(exact) * (255 if codec == "ffv1" else 219 * step) + (0 if codec == "ffv1" else 16 * step)

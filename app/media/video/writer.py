@@ -90,18 +90,21 @@ class VideoWriter:
             self.abort()
             raise
 
-    def add(self, layers: Mapping[str, Array], kinds: Mapping[str, Kind]) -> None:
-        """Write one more frame: the first picture among the layers, [h, w, c]. Raises OutputError."""
+    def add(self, layers: Mapping[str, Array], kinds: Mapping[str, Kind], frame: int = 1) -> None:
+        """Write one more picture: the first one among the layers, [h, w, c]; `frame` chooses the pattern of dithering.
+
+        Raises OutputError.
+        """
         name = choose_shown_layer(self.path, kinds)
         picture = layers[name]
         height, width = picture.shape[:2]
         if (width, height) != self.size:
             here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
             raise OutputError(f"{self.path}: frame {self._count + 1} is {here}, those before it {there}: give --size")
-        frame = self._make_frame(picture, is_data_kind(kinds[name]))
-        frame.pts, frame.time_base = self._count, 1 / self._rate
+        encoded = self._make_frame(picture, is_data_kind(kinds[name]), frame)
+        encoded.pts, encoded.time_base = self._count, 1 / self._rate
         self._count += 1
-        self._encode_frame(frame)
+        self._encode_frame(encoded)
 
     def close(self) -> None:
         """Finish the file and give it its name. Raises OutputError; then there is no file."""
@@ -164,21 +167,21 @@ class VideoWriter:
         except self._av.FFmpegError:
             return
 
-    def _make_frame(self, picture: Array, is_data: bool) -> Any:
-        """The planes of a picture."""
+    def _make_frame(self, picture: Array, is_data: bool, number: int) -> Any:
+        """The planes of a picture; `number` is that of the frame."""
         if picture.shape[2] < 3:
             picture = picture[..., :1].repeat(3, axis=2)
         if not self._codec.alpha:
             picture = picture[..., :3]
         format = self._av.VideoFormat(self._format)
         bits = max(part.bits for part in format.components)
-        noise_frame = self._count if bits <= _DITHERED_BITS and self._encoding.dithers(is_data) else None
+        noise_frame = number if bits <= _DITHERED_BITS and self._encoding.dithers(is_data) else None
         if self._format.startswith("yuv"):
             encoded = np.clip(self._encoding.to_encoded(picture, is_data=is_data), 0.0, 1.0)
             planes = _chroma_planes(encoded, self._matrix, self._format, bits, noise_frame)
         else:
             depth = 16 if bits == 16 else 8
-            codes = self._encoding.to_codes(picture, depth, is_data=is_data, frame=self._count)
+            codes = self._encoding.to_codes(picture, depth, is_data=is_data, frame=number)
             planes = _rgb_planes(codes, self._format)
         frame = self._av.VideoFrame(*self.size, self._format)
         frame.colorspace, frame.color_range, frame.color_primaries, frame.color_trc = self._color

@@ -312,7 +312,7 @@ class _Job:
                 said = self._make_header(task, file)
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 if file.path in self._settings.videos:
-                    self._video_writers.add_frame(file, layers, said)
+                    self._video_writers.add_frame(file, layers, task.frame, said)
                     continue
                 media.write_picture(
                     file.path,

@@ -22,7 +22,9 @@ class VideoWriters:
         self._settings, self._find_rate, self._sandbox = settings, find_rate, sandbox
         self._open: dict[Path, media.VideoWriter] = {}
 
-    def add_frame(self, file: Destination, layers: Mapping[str, Array], metadata: Mapping[str, Any]) -> None:
+    def add_frame(
+        self, file: Destination, layers: Mapping[str, Array], frame: int, metadata: Mapping[str, Any]
+    ) -> None:
         """Write one more frame. The metadata of the first frame is that of the video. Raises OutputError."""
         if file.path not in self._open:
             height, width = next(iter(layers.values())).shape[:2]
@@ -36,7 +38,7 @@ class VideoWriters:
                 metadata=metadata,
                 sandbox=self._sandbox,
             )
-        self._open[file.path].add(layers, file.kinds)
+        self._open[file.path].add(layers, file.kinds, frame)
 
     def finish(self) -> tuple[Path, ...]:
         """Complete all videos; their paths. Raises OutputError."""
