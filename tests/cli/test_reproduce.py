@@ -13,6 +13,7 @@ from exr_files import header, read, write_exr
 from halation.presets import paths as presets
 from halation.renderer.jobs.picture_settings import RecordedSettings
 from halation.renderer.provenance.recipe import read_recipe
+from halation.renderer.provenance.reproduction import compare_layers
 from halation.resources.sandbox import UNRESTRICTED
 from msgspec import structs
 
@@ -123,6 +124,25 @@ def test_one_pixel_of_an_input_is_noticed(cli, graphs, shot, tmp_path):
     assert found["inputs"][0]["state"] == "changed" and found["inputs"][0]["then"] != found["inputs"][0]["now"]
     assert layer["max_abs"] == 1.0 and layer["failing"] == pytest.approx(1 / (48 * 32)), "0.25 and 0.75, doubled"
     assert again(cli, picture, "--tolerance", "1")["same"]
+
+
+def test_the_farthest_number_is_relative_above_one():
+    """|a - b|, divided by what was expected where that is above 1; by the largest code of integers; NaN is NaN."""
+    cases = {
+        "small": (np.float32([[[0.25, 0.5]]]), np.float32([[[0.25, 0.75]]]), 0.25),
+        "large": (np.float32([[[404.0, 8.0]]]), np.float32([[[400.0, 8.5]]]), 0.5 / 8.5),
+        "negative": (np.float32([[[-6.0]]]), np.float32([[[-4.0]]]), 0.5),
+        "codes": (np.uint8([[[10, 255]]]), np.uint8([[[10, 204]]]), 0.2),
+        "deep": (np.uint16([[[0]]]), np.uint16([[[65535]]]), 1.0),
+        "nan": (np.float32([[[np.nan, np.inf]]]), np.float32([[[np.nan, np.inf]]]), 0.0),
+        "one nan": (np.float32([[[np.nan]]]), np.float32([[[2.0]]]), np.inf),
+        "size": (np.zeros((2, 3, 1), np.float32), np.zeros((3, 2, 1), np.float32), np.inf),
+        "type": (np.zeros((2, 3, 1), np.float32), np.zeros((2, 3, 1), np.uint8), np.inf),
+    }
+    actual, expected = ({name: case[at] for name, case in cases.items()} for at in (0, 1))
+    layers = compare_layers(actual | {"more": actual["small"]}, expected | {"less": expected["small"]})
+    found = {layer.name: layer.farthest for layer in layers}
+    assert found == pytest.approx({name: case[2] for name, case in cases.items()} | {"more": np.inf, "less": np.inf})
 
 
 def test_another_layer_of_the_input_makes_the_same_picture(cli, graphs, shot, tmp_path):

@@ -11,6 +11,7 @@ from types import FrameType
 import pytest
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems, rules
+from halation.graph.unmerged import find_unmerged
 from halation.nodes import Kind
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -230,3 +231,31 @@ def test_ten_thousand_nodes_in_a_row() -> None:
     assert len(graph.upstream("outputs")) == 10_000
     assert problems(graph) == ()
     assert "form a loop" in problems(linked(graph, "n0.image", "n9999.out"), TOYS)[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("keys", "node", "socket"),
+    [
+        ("nodes a", "a", ""),
+        ("nodes a values stops", "a", "stops"),
+        ("nodes a code", "a", ""),
+        ("links a.image", "a", "image"),
+        ("animation a.stops", "a", "stops"),
+        ("inputs beauty", "inputs", "beauty"),
+        ("outputs image file", "outputs", "image"),
+        ("settings size", "", ""),
+        ("nodes g graph", "g", ""),
+        ("nodes g graph inputs", "g/inputs", ""),
+        ("nodes g graph settings", "g", ""),
+        ("nodes g graph links a.image", "g/a", "image"),
+        ("nodes g graph nodes a values stops", "g/a", "stops"),
+        ("nodes g graph nodes h graph nodes a values stops", "g/h/a", "stops"),
+        ("nodes g graph nodes h graph controls glow", "g/h/controls", "glow"),
+    ],
+)
+def test_conflicts_are_shown_at_their_nodes(keys: str, node: str, socket: str) -> None:
+    """In groups within groups, too: the problem is of the node that a user must open."""
+    entry = {"at": tuple(keys.split()), "ours": 1, "theirs": 2}
+    (found,) = find_unmerged({"": {"conflicts": (entry,)}})
+    assert found[:2] == (node, socket) and found[3] == keys.replace(" ", ".")
+    assert "ours has 1, theirs has 2" in found[2]

@@ -9,6 +9,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import UsageError
+from halation.media.comparison import side_by_side
 from halation.media.comparison.metrics import (
     EIGHT_BIT_STEP,
     amplify_difference,
@@ -16,6 +17,8 @@ from halation.media.comparison.metrics import (
     measure_flip,
     measure_ssim,
 )
+from halation.media.comparison.side_by_side import PicturePair, write_side_by_side
+from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -230,3 +233,45 @@ def test_measures_stay_within_their_bounds(pair: tuple[Array, Array]) -> None:
     light = amplify_difference(*pair)
     assert light.shape == (*pair[0].shape[:2], 3) and light.min() >= 0.0 and light.max() <= 1.0
     assert compare_pictures(pair[0], pair[0].copy()).equal
+
+
+def test_pairs_stand_side_by_side(tmp_path, monkeypatch):
+    """Data of a pair has one range, black to white (IEC 61966-2-1 by hand); what one side lacks is black and named."""
+    cells = {}
+    make_sheet = side_by_side.make_sheet
+    monkeypatch.setattr(
+        side_by_side, "make_sheet", lambda given, columns: cells.update(given) or make_sheet(given, columns)
+    )
+    ramp = np.linspace(0.0, 1.0, 40, dtype=np.float32).reshape(1, 40, 1).repeat(20, 0)
+    pairs = {
+        "depth": PicturePair(ramp, 4.0 * ramp - 1.0, False),
+        "new": PicturePair(None, ramp, False),
+        "old": PicturePair(ramp, None, False),
+        "flat": PicturePair(0.5 * np.ones_like(ramp), 0.5 * np.ones_like(ramp), False),
+        "light": PicturePair(np.dstack([ramp] * 3), np.dstack([ramp] * 3), True, "Un-tone-mapped"),
+    }
+    path = tmp_path / "pairs.png"
+    write_side_by_side(path, pairs, ("a", "b"), UNRESTRICTED)
+    assert list(cells) == [
+        *("depth: a", "depth: b", "depth: difference"),
+        *("new: not in a", "new: b", "new: difference"),
+        *("old: a", "old: not in b", "old: difference"),
+        *("flat: a", "flat: b", "flat: difference"),
+        *("light: a", "light: b", "light: difference"),
+    ]
+
+    def shown(codes):
+        return np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4).repeat(3, 2)
+
+    np.testing.assert_allclose(cells["depth: a"], shown((ramp + 1.0) / 4.0), atol=1e-6)
+    np.testing.assert_allclose(cells["depth: b"], shown(ramp), atol=1e-6)
+    np.testing.assert_allclose(cells["depth: difference"], (np.abs(3.0 * ramp - 1.0) / 2.0).repeat(3, 2), atol=1e-6)
+    for name in ("new: b", "old: a"):
+        np.testing.assert_allclose(cells[name], shown(ramp), atol=1e-6)
+    for name in ("new: not in a", "old: not in b", "flat: a", "flat: difference", "light: difference"):
+        assert cells[name].shape == (20, 40, 3) and not cells[name].any()
+    for name in ("new: difference", "old: difference"):
+        np.testing.assert_allclose(cells[name], ramp.repeat(3, 2), atol=1e-6)
+    np.testing.assert_allclose(cells["light: a"], np.dstack([ramp] * 3), atol=4e-3)  # sRGB there and back
+    spec = oiio.ImageInput.open(str(path)).spec()
+    assert spec.width > 3 * 40 and spec.height > 5 * 20

@@ -8,15 +8,19 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from clocks import FakeClock
 from halation.media.pictures.stored import StoredPart
+from halation.regression import case_runner
 from halation.regression import parallel as crew
 from halation.regression.cases import Case
 from halation.regression.comparison import find_unusable
+from halation.regression.results import Outcome
 from halation.renderer import Renderer
 from halation.renderer.pinned_device import pin_driver
 from halation.resources.sandbox import UNRESTRICTED
@@ -334,3 +338,27 @@ def test_pinning_leaves_the_environment_as_it_was(monkeypatch) -> None:
         assert os.environ["GALLIUM_DRIVER"] == "llvmpipe" and "LP_DEBUG" not in os.environ
         raise ZeroDivisionError
     assert dict(os.environ) == before
+
+
+def test_times_are_those_of_a_clock(monkeypatch, tmp_path) -> None:
+    """A case takes as long as its renders, skipped ones nothing, and the suite as long as all of it."""
+    clock = FakeClock(monkeypatch, case_runner, crew)
+    case = Case(tmp_path / "s.toml", "a", tmp_path / "g.json")
+    renders = {"a": (7.5, "passed"), "b": (0.25, "failed")}
+
+    def render(case, renderer, options):
+        seconds, status = renders[case.name]
+        clock.spend(seconds)
+        return Outcome(case, status)
+
+    monkeypatch.setattr(case_runner, "_run_rendering", render)
+    monkeypatch.setattr(crew, "_open_renderer", lambda *_: clock.spend(100.0))
+    monkeypatch.setattr(crew, "_run_and_describe", lambda case, *rest: described(case_runner.run_case(case, *rest)))
+    cases = [case, replace(case, name="b"), replace(case, name="c", skip="later")]
+    found = crew.run_cases(cases, case_runner.RunOptions(UNRESTRICTED))
+    assert [outcome.seconds for outcome in found.outcomes] == [7.5, 0.25, 0.0]
+    assert found.seconds == 107.75
+
+
+def described(outcome: Outcome) -> SimpleNamespace:
+    return SimpleNamespace(outcome=outcome, device="a device", software=True)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from conftest import graph_of
@@ -11,7 +9,6 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest
 from halation.renderer.execution.costs import PassCosts
-from halation.resources.sandbox import UNRESTRICTED
 
 
 def planned(renderer: Renderer, node, side: int = 32):
@@ -37,20 +34,3 @@ def test_before_that_it_is_estimated_by_what_is_read(renderer):
     assert 0.0 < cheap < dear
     costs.record_time(point, point.passes[0], 0.5)
     assert costs.estimate(point, point.passes[0]) == cheap
-
-
-def test_a_file_costs_what_it_took_to_decode(renderer):
-    engine = Renderer(renderer.device, sandbox=UNRESTRICTED)
-    load = engine.runner._load
-
-    def slow(picture):
-        time.sleep(0.05)
-        return load(picture)
-
-    engine.runner._load = slow
-    plan = planned(engine, Exposure(stops=0.7))
-    engine.runner.run(plan)
-    numbers = plan.uploads[0].surface, plan.outputs["out"]
-    picture, result = (engine.runner.find_texture(plan.surfaces[number].key) for number in numbers)
-    assert picture.cost >= 0.05 and result.cost > 0.0
-    engine.close()
