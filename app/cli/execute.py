@@ -212,8 +212,10 @@ def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> Non
         print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
     for output in report["data"]:
         print_note(f"output '{output}' is data: its numbers are written, and no view changes them")
-    for output in report["views"]:
-        print_note(f"output '{output}' is encoded without a view: its pictures are made for a screen already (--view)")
+    for output, view in report["views"].items():
+        screen = " of video (BT.1886)" if view == "bt1886" else ""
+        reason = f"its pictures are made for a screen{screen} already (--view)"
+        print_note(f"output '{output}' is encoded without a view: {reason}")
     if as_json:
         print_json(report)
         return

@@ -2,13 +2,15 @@
 
 A view of a display is a transform that a config offers, such as ACES tone mapping for an sRGB screen. `none` is a view
 of Halation: it only encodes as sRGB. If nobody chose a config, views come from OpenColorIO's built-in config and the
-working space from its studio config, so the processor is made across both (`_make_builtin_view_processor`).
+working space from its studio config, so the processor is made across both (`_make_builtin_view_processor`). `bt1886`
+does the same for a video display (ITU-R BT.1886: a power of 2.4), as BT.709 video is encoded for one.
 """
 
 from __future__ import annotations
 
 import difflib
 from functools import lru_cache
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -25,8 +27,11 @@ from .management import (
 from .transforms import Array, apply_processor, quantize, unpremultiply
 
 NO_VIEW = "none"
+VIDEO_VIEW = "bt1886"
 NO_LOOK = "none"
-_DISPLAY = "sRGB - Display"
+_PLAIN_DISPLAYS = MappingProxyType({NO_VIEW: "sRGB - Display", VIDEO_VIEW: "Rec.1886 Rec.709 - Display"})
+"""Views of Halation -> the display of the built-in config for which they only encode."""
+
 _PLAIN_VIEW = "Un-tone-mapped"
 """The view of the built-in config that only encodes."""
 
@@ -43,7 +48,7 @@ def list_displays(manager: ColorManager | None = None) -> tuple[str, ...]:
 
 
 def list_views(display: str = "", manager: ColorManager | None = None) -> tuple[str, ...]:
-    """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
+    """The views that a picture on a display may have, the default first; `none` and `bt1886` only encode.
 
     Raises:
         UsageError: unknown display.
@@ -52,7 +57,7 @@ def list_views(display: str = "", manager: ColorManager | None = None) -> tuple[
     config, screen = (manager or get_default_color_manager()).config, find_display(display, manager)
     first = config.getDefaultView(screen) if screen else ""
     names = tuple(config.getViews(screen)) if screen else ()
-    return (*([first] if first in names else ()), *(name for name in names if name != first), NO_VIEW)
+    return (*([first] if first in names else ()), *(name for name in names if name != first), *_PLAIN_DISPLAYS)
 
 
 def list_looks(manager: ColorManager | None = None) -> tuple[str, ...]:
@@ -135,23 +140,24 @@ def make_display_processor(view: str, display: str, look: str = "", manager: Col
         UsageError: unknown view, display or look.
         GraphError, UsageError: no config, or one that lacks something.
     """
-    if view.casefold() == NO_VIEW and look in ("", NO_LOOK):
-        return _make_plain_processor(manager or get_default_color_manager())
+    if view.casefold() in _PLAIN_DISPLAYS and look in ("", NO_LOOK):
+        return _make_plain_processor(manager or get_default_color_manager(), view.casefold())
     screen, chosen_view, chosen_look = (
         find_display(display, manager),
         find_view(view, display, manager),
         find_look(look, manager),
     )
-    if chosen_view == NO_VIEW and chosen_look in ("", NO_LOOK):
-        return _make_plain_processor(manager or get_default_color_manager())
+    if chosen_view in _PLAIN_DISPLAYS and chosen_look in ("", NO_LOOK):
+        return _make_plain_processor(manager or get_default_color_manager(), chosen_view)
     return _make_view_processor((manager or get_default_color_manager()), screen, chosen_view, chosen_look)
 
 
 @lru_cache(maxsize=64)
-def _make_plain_processor(manager: ColorManager) -> Any:
-    """The processor from the working space to sRGB."""
+def _make_plain_processor(manager: ColorManager, view: str) -> Any:
+    """The processor from the working space to a display, without change of tone."""
+    display = _PLAIN_DISPLAYS[view]
     return manager.attempt(
-        lambda: _make_builtin_view_processor(manager, load_builtin_config(BUILT_IN), _DISPLAY, _PLAIN_VIEW)
+        lambda: _make_builtin_view_processor(manager, load_builtin_config(BUILT_IN), display, _PLAIN_VIEW)
     )
 
 
@@ -173,9 +179,10 @@ def _make_view_processor(manager: ColorManager, display: str, view: str, look: s
         group, space = manager.bridge_to_views()
         if look not in ("", NO_LOOK):
             group.appendTransform(api.LookTransform(space, space, look))
-        if view == NO_VIEW:
+        if plain_display := _PLAIN_DISPLAYS.get(view):
+            built_in, forward = load_builtin_config(BUILT_IN), api.TRANSFORM_DIR_FORWARD
             plain = api.Config.GetProcessorFromConfigs(
-                manager.config, space, load_builtin_config(BUILT_IN), _DISPLAY, _PLAIN_VIEW, api.TRANSFORM_DIR_FORWARD
+                manager.config, space, built_in, plain_display, _PLAIN_VIEW, forward
             )
             group.appendTransform(plain.createGroupTransform())
             return manager.config.getProcessor(group)

@@ -9,13 +9,16 @@ from msgspec import Struct, field
 
 from ..errors import UsageError
 from ..resources.render_choices import Dither
-from .display import check_view, find_display, find_view, to_display
+from .display import VIDEO_VIEW, check_view, find_display, find_view, to_display
 from .dithering import make_dither
 from .management import LINEAR_REC709, ColorManager, OcioColorSpace, get_default_color_manager
 from .primaries import find_chromaticities
 from .transforms import Array, convert_premultiplied, from_working, is_matrix, quantize, unpremultiply
 
 SRGB = "srgb_rec709_scene"
+VIDEO_SPACE = "g24_rec709_scene"
+"""What a BT.1886 display shows with primaries of BT.709."""
+
 _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")
 _USE_DISPLAY_NAME = "<USE_DISPLAY_NAME>"
 
@@ -108,6 +111,8 @@ class Encoding(Struct, frozen=True):
         """The name of the space of `codes` in a header."""
         if self.space:
             return self.manager.find_header_name(self._target)
+        if self.view.casefold() == VIDEO_VIEW:
+            return VIDEO_SPACE
         if not self.display and self.manager.is_plain:
             return SRGB
         config, display = self.manager.config, find_display(self.display, self.manager)

@@ -10,7 +10,7 @@ from halation.nodes import Kind
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
 from ..resources.sandbox import Sandbox
-from .display import NO_VIEW, find_view
+from .display import NO_VIEW, VIDEO_VIEW, find_view
 from .file_space import find_requested_space
 from .management import get_color_manager
 
@@ -30,7 +30,7 @@ def find_color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
     of inputs."""
     color = color_settings(graph)
     manager = get_color_manager(color, sandbox)
-    views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}
+    views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW, VIDEO_VIEW)}
     spaces = {
         name: end.color_space
         for name, end in graph.inputs.items()

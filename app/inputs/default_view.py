@@ -12,7 +12,7 @@ from typing import Protocol
 
 from halation.nodes import Kind
 
-from ..color.display import NO_VIEW
+from ..color.display import NO_VIEW, VIDEO_VIEW
 from ..compiler import Plan
 from ..resources.picture import Picture
 
@@ -20,8 +20,8 @@ from ..resources.picture import Picture
 class PictureEncodings(Protocol):
     """Knows how files encode color."""
 
-    def is_display_referred(self, picture: Picture) -> bool | None:
-        """True for color that is encoded for a screen, False for light of a scene, None for data.
+    def find_plain_view(self, picture: Picture) -> str | None:
+        """The view that encodes color as a picture for a screen has it, "" for light of a scene, None for data.
 
         Raises InputError for a file that cannot be read.
         """
@@ -30,6 +30,8 @@ class PictureEncodings(Protocol):
 
 def choose_default_view(plan: Plan, surface: int, encodings: PictureEncodings) -> str:
     """`none` where a surface of a plan is made of display-referred pictures alone, else "": the view of the config.
+
+    If all of them are video for a BT.1886 display, it is `bt1886`, so that video comes back with the codes that it had.
 
     Raises InputError for a file that cannot be read.
     """
@@ -40,5 +42,7 @@ def choose_default_view(plan: Plan, surface: int, encodings: PictureEncodings) -
                 return ""
             surfaces.update(render_pass.textures)
     pictures = (upload.picture for upload in plan.uploads if upload.surface in surfaces)
-    answers = {encodings.is_display_referred(picture) for picture in pictures if picture.kind is Kind.IMAGE}
-    return NO_VIEW if answers - {None} == {True} else ""
+    views = {encodings.find_plain_view(picture) for picture in pictures if picture.kind is Kind.IMAGE} - {None}
+    if not views or "" in views:
+        return ""
+    return VIDEO_VIEW if views == {VIDEO_VIEW} else NO_VIEW

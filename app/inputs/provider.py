@@ -51,7 +51,7 @@ class MediaProvider:
         """Replaces `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
         self._fingerprints: dict[str, str] = {}
-        self._encodings: dict[tuple[str, str, str, ColorSettings], bool | None] = {}
+        self._encodings: dict[tuple[str, str, str, ColorSettings], str | None] = {}
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
@@ -123,13 +123,13 @@ class MediaProvider:
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
-    def is_display_referred(self, picture: Picture) -> bool | None:
-        """True for color that is encoded for a screen, False for light of a scene, None for data.
+    def find_plain_view(self, picture: Picture) -> str | None:
+        """The view that encodes color as a picture for a screen has it, "" for light of a scene, None for data.
 
         Raises InputError for a file that cannot be read.
         """
         if picture.in_memory:
-            return False
+            return ""
         key = (picture.path, picture.layer, picture.space, picture.color)
         if key not in self._encodings:
             self._encodings[key] = self._find_encoding(picture)
@@ -206,17 +206,17 @@ class MediaProvider:
             self._infos[path] = read_info(path, sandbox=self.sandbox)
         return self._infos[path]
 
-    def _find_encoding(self, picture: Picture) -> bool | None:
-        """The answer of `is_display_referred` for a file."""
+    def _find_encoding(self, picture: Picture) -> str | None:
+        """The answer of `find_plain_view` for a file."""
         from ..color.management import get_color_manager
-        from ..media.color_spaces import is_layer_display_referred
+        from ..media.color_spaces import find_plain_view
         from .layer_choice import find_input_layer
 
         layer = find_input_layer(self.find_info(picture.path), picture.layer, self.sandbox)
         if layer.is_data:
             return None
         manager = get_color_manager(picture.color, self.sandbox)
-        return is_layer_display_referred(picture.path, layer, manager, picture.space, sandbox=self.sandbox)
+        return find_plain_view(picture.path, layer, manager, picture.space, sandbox=self.sandbox)
 
     def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
         """Inputs whose default is another layer of a replaced file follow it to the new file.

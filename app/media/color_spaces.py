@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from ..color.display import NO_VIEW, VIDEO_VIEW
+from ..color.encoding import VIDEO_SPACE
 from ..color.file_space import FileSpace, find_file_space, find_requested_space
 from ..color.management import ColorManager, get_default_color_manager
 from ..color.transforms import is_display_referred
@@ -38,22 +40,29 @@ def find_layer_spaces(
     return spaces
 
 
-def is_layer_display_referred(
-    path: str, layer: Layer, manager: ColorManager, space: str = "", *, sandbox: Sandbox
-) -> bool:
-    """True if a layer of color is encoded for a screen, False if it is light of a scene; errors of `find_layer_spaces`.
+def find_plain_view(path: str, layer: Layer, manager: ColorManager, space: str = "", *, sandbox: Sandbox) -> str:
+    """The view that encodes color as a layer for a screen has it: `none` or `bt1886`; "" for light of a scene.
 
-    A video says so by its transfer characteristics, unless the user says which `space` it is in.
+    A video says so by its transfer characteristics, unless the user says which `space` it is in. Raises the errors of
+    `find_layer_spaces`.
     """
     if not is_video(path):
         spaces = find_layer_spaces(path, manager, space, sandbox=sandbox)
-        return is_display_referred(spaces[layer.full_name], manager)
+        return _choose_plain_view(spaces[layer.full_name], manager)
     if requested := find_requested_space(space, manager):
-        return is_display_referred(FileSpace(requested.name, "", requested), manager)
+        return _choose_plain_view(FileSpace(requested.name, "", requested), manager)
     from .video import read_video_info
-    from .video.signals import SCENE_TRANSFERS
+    from .video.signals import SCENE_TRANSFERS, VIDEO_TRANSFERS
 
-    return read_video_info(path, sandbox=sandbox).transfer not in SCENE_TRANSFERS
+    transfer = read_video_info(path, sandbox=sandbox).transfer
+    return "" if transfer in SCENE_TRANSFERS else VIDEO_VIEW if transfer in VIDEO_TRANSFERS else NO_VIEW
+
+
+def _choose_plain_view(file_space: FileSpace, manager: ColorManager) -> str:
+    if not is_display_referred(file_space, manager):
+        return ""
+    is_for_video = file_space.space is not None and manager.find_header_name(file_space.space) == VIDEO_SPACE
+    return VIDEO_VIEW if is_for_video else NO_VIEW
 
 
 def describe_color_spaces(path: str | Path, sandbox: Sandbox) -> list[tuple[str, ...]]:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...color.display import NO_LOOK, NO_VIEW, list_displays, list_looks, list_views
+from ...color.display import NO_LOOK, NO_VIEW, VIDEO_VIEW, list_displays, list_looks, list_views
 from ..shared.coloring import find_color_manager
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, tool, width_of_buttons
@@ -268,7 +268,8 @@ def _range(context: ViewerContext) -> list[_ViewerTool]:
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
-_VIEW_WORDS = {"": "the default", NO_VIEW: "no view"}
+_VIEW_WORDS = {"": "the default", NO_VIEW: "no view", VIDEO_VIEW: "no view, BT.1886"}
+_VIEW_TITLES = {NO_VIEW: "No view", VIDEO_VIEW: "No view (BT.1886)"}
 
 
 def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
@@ -296,7 +297,7 @@ def _view(context: ViewerContext, asked_view: str) -> _ViewerTool:
                 imgui.end_menu()
 
     view_name = viewer.view or asked_view or "Default"
-    label = f"{icons.ICON_FA_DISPLAY}  {'No view' if view_name == NO_VIEW else view_name}"
+    label = f"{icons.ICON_FA_DISPLAY}  {_VIEW_TITLES.get(view_name, view_name)}"
     return _dropdown(context, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
 
 

@@ -36,8 +36,8 @@ _UNSPECIFIED = (UNKNOWN, 3)
 _SMALL = (1024, 576)
 """The largest size of video in standard definition: 576 lines of PAL, with square pixels in 16:9."""
 
-_BT709_ALPHA, _BT709_BETA = 1.09929682680944, 0.018053968510807
-"""The constants of the camera curve (ITU-R BT.2020-2, table 4), with all digits."""
+_BT1886_GAMMA = 2.4
+"""The exponent of the reference display (ITU-R BT.1886, annex 1)."""
 
 _PQ_WHITE = 203.0
 _HLG_WHITE = 0.75
@@ -45,6 +45,9 @@ _HLG_WHITE = 0.75
 
 GAMUTS = MappingProxyType({9: "lin_rec2020_scene", 12: "lin_p3d65_scene"})
 """Primaries that differ much from Rec.709, as linear spaces of OpenColorIO."""
+
+VIDEO_TRANSFERS = frozenset({1, 6, 14, 15})
+"""Transfer characteristics (H.273) of video for a BT.1886 display: BT.709, BT.601, BT.2020 with 10 and with 12 bits."""
 
 SCENE_TRANSFERS = frozenset({8, 9, 10, 16, 18})
 """Transfer characteristics (H.273) of light of a scene, or of more light than a screen of standard range shows: linear,
@@ -110,20 +113,15 @@ def enlarge_plane(plane: Array, axis: int, length: int, factor: int, offset: flo
 
 
 def decode_transfer(encoded: Array, transfer: int) -> Array:
-    """Scene-linear light of R'G'B' by the number of the transfer characteristics in H.273, without change of primaries.
+    """Linear light of R'G'B' by the number of the transfer characteristics in H.273, without change of primaries.
 
-    Camera curves are inverted (BT.709, BT.601, BT.2020); PQ and HLG are scaled so that reference white (BT.2408: 203
-    cd/m2, 75 %) is 1. An unspecified curve is taken as sRGB, as for 8-bit pictures.
+    Video (BT.709, BT.601, BT.2020) is decoded as its display does (BT.1886 with a black of 0), not by the inverse of the
+    camera's curve: a grade is judged on that display, and the camera's curve leaves the contrast out that the display
+    adds. PQ and HLG are scaled so that reference white (BT.2408: 203 cd/m2, 75 %) is 1. An unspecified curve is taken
+    as sRGB, as for 8-bit pictures.
     """
-    if transfer in (1, 6, 14, 15):
-        return _mirror_curve(
-            encoded,
-            lambda size: np.where(
-                size < 4.5 * _BT709_BETA,
-                size / 4.5,
-                ((size + (_BT709_ALPHA - 1.0)) / _BT709_ALPHA) ** (1.0 / 0.45),
-            ),
-        )
+    if transfer in VIDEO_TRANSFERS:
+        return _mirror_curve(encoded, lambda size: size**_BT1886_GAMMA)
     if transfer in (0, 2, 13):
         return decode_srgb(encoded).astype(np.float32)
     if transfer == 8:
