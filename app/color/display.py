@@ -48,7 +48,7 @@ def list_displays(manager: ColorManager | None = None) -> tuple[str, ...]:
 
 
 def list_views(display: str = "", manager: ColorManager | None = None) -> tuple[str, ...]:
-    """The views that a picture on a display may have, the default first; `none` and `bt1886` only encode.
+    """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
 
     Raises:
         UsageError: unknown display.
@@ -57,7 +57,7 @@ def list_views(display: str = "", manager: ColorManager | None = None) -> tuple[
     config, screen = (manager or get_default_color_manager()).config, find_display(display, manager)
     first = config.getDefaultView(screen) if screen else ""
     names = tuple(config.getViews(screen)) if screen else ()
-    return (*([first] if first in names else ()), *(name for name in names if name != first), *_PLAIN_DISPLAYS)
+    return (*([first] if first in names else ()), *(name for name in names if name != first), NO_VIEW)
 
 
 def list_looks(manager: ColorManager | None = None) -> tuple[str, ...]:
@@ -66,12 +66,14 @@ def list_looks(manager: ColorManager | None = None) -> tuple[str, ...]:
 
 
 def find_view(name: str, display: str = "", manager: ColorManager | None = None) -> str:
-    """The view that `name`, or its beginning in any case, means; "" is the default.
+    """The view that `name`, or its beginning in any case, means; "" is the default. `bt1886` has to be spelled out.
 
     Raises:
         UsageError: there is none, or more than one.
     """
     choices = list_views(display, manager)
+    if name.casefold() == VIDEO_VIEW:
+        return VIDEO_VIEW
     return choices[0] if not name else _match_name(name, choices, "view")
 
 

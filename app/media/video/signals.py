@@ -115,10 +115,10 @@ def enlarge_plane(plane: Array, axis: int, length: int, factor: int, offset: flo
 def decode_transfer(encoded: Array, transfer: int) -> Array:
     """Linear light of R'G'B' by the number of the transfer characteristics in H.273, without change of primaries.
 
-    Video (BT.709, BT.601, BT.2020) is decoded as its display does (BT.1886 with a black of 0), not by the inverse of the
-    camera's curve: a grade is judged on that display, and the camera's curve leaves the contrast out that the display
-    adds. PQ and HLG are scaled so that reference white (BT.2408: 203 cd/m2, 75 %) is 1. An unspecified curve is taken
-    as sRGB, as for 8-bit pictures.
+    Video (BT.709, BT.601, BT.2020) is decoded as its display does (BT.1886 with a black of 0), not by the inverse of
+    the camera's curve: a grade is judged on that display, and the camera's curve leaves the contrast out that the
+    display adds. PQ and HLG are scaled so that reference white (BT.2408: 203 cd/m2, 75 %) is 1. An unspecified curve is
+    taken as sRGB, as for 8-bit pictures.
     """
     if transfer in VIDEO_TRANSFERS:
         return _mirror_curve(encoded, lambda size: size**_BT1886_GAMMA)
