@@ -2,11 +2,25 @@
 
 from __future__ import annotations
 
-import threading
+import subprocess
+import sys
 
+import pytest
 from halation.renderer import Renderer, open_device
-from halation.renderer.opengl.warming import warm
+from halation.renderer.opengl.warming import wait_for_driver, warm
 from halation.resources.sandbox import UNRESTRICTED
+
+IMPORTS = """
+import sys
+from halation.renderer.opengl.warming import wait_for_driver, warm
+
+warm()
+changes = []
+sys.addaudithook(lambda event, words: changes.append(words) if event in ("os.putenv", "os.unsetenv") else None)
+import numpy, OpenImageIO, PyOpenColorIO, moderngl, halation, halation.media, halation.renderer
+wait_for_driver()
+print(changes)
+"""
 
 
 def test_a_device_is_the_same_while_and_after_its_driver_is_loaded(renderer: Renderer) -> None:
@@ -17,6 +31,11 @@ def test_a_device_is_the_same_while_and_after_its_driver_is_loaded(renderer: Ren
             assert other.target == renderer.device.target
         finally:
             other.close()
-        for thread in threading.enumerate():
-            if thread.name == "warm":
-                thread.join()
+        wait_for_driver()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="this system has no early loading")
+def test_the_environment_stays_while_a_driver_is_loaded() -> None:
+    """Drivers read it meanwhile, and another thread that changes it may take the memory from under them."""
+    process = subprocess.run([sys.executable, "-c", IMPORTS], capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "[]"

@@ -10,11 +10,12 @@ import moderngl
 from ...errors import DeviceError
 from .device import OLDEST, OpenGLDevice, describe_target
 from .driver_settings import DriverSettings
-from .warming import EGL_LIBRARY, GL
+from .warming import EGL_LIBRARY, GL, wait_for_driver
 
 
 def open_standalone(driver: DriverSettings) -> OpenGLDevice:
     """A device without a window. Raises DeviceError where OpenGL cannot be opened, or is too old."""
+    wait_for_driver()
     with driver.apply():
         context = _create_context()
         return OpenGLDevice(context, describe_target(context))

@@ -1,8 +1,8 @@
 """What the driver of OpenGL is told by variables of the environment, as a value that is handed to whoever opens it.
 
 Mesa reads these variables when it is loaded and when a context is made, from the environment of the process and
-nowhere else: EGL has no attributes for them. So `apply` is the one place that changes the environment, for the moment
-in which a context is opened. Nothing else of this process may open one or start processes meanwhile.
+nowhere else: EGL has no attributes for them. So `apply` changes the environment for the moment in which a context is
+opened. Nothing else of this process may open one or start processes meanwhile.
 """
 
 from __future__ import annotations

@@ -5,7 +5,9 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from threading import Thread
+import threading
+from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 EGL_LIBRARY = "libEGL.so.1"
@@ -14,13 +16,36 @@ _DEVICE = 0x313F
 """EGL_PLATFORM_DEVICE_EXT."""
 
 
+_THREAD = "driver"
+
+
 def warm() -> None:
     """Begin to load the driver of a context without a window on another thread, on Linux.
 
     It is only an optimization: opening a device works without it, and only that reports errors.
     """
     if sys.platform.startswith("linux"):
-        Thread(target=_load, name="warm", daemon=True).start()
+        _set_import_variables()
+        threading.Thread(target=_load, name=_THREAD, daemon=True).start()
+
+
+def wait_for_driver() -> None:
+    """Wait until the thread that loads the driver has ended, if there is one, so that no two threads are in EGL."""
+    for thread in threading.enumerate():
+        if thread.name == _THREAD:
+            thread.join()
+
+
+def _set_import_variables() -> None:
+    """Set the variables of the environment that numpy and OpenImageIO would set when they are imported.
+
+    Drivers read the environment while they are loaded, and on Linux it may not be changed by another thread meanwhile.
+    """
+    os.environ.setdefault("OPENBLAS_MAIN_FREE", "1")
+    oiio = find_spec("OpenImageIO")
+    folder = Path(oiio.origin).parent if oiio is not None and oiio.origin else Path()
+    if all((folder / part).exists() for part in ("share", "bin", "lib")):  # as it asks itself
+        os.environ.setdefault("OpenImageIO_ROOT", str(folder))
 
 
 def _load() -> None:
