@@ -19,6 +19,7 @@ av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install h
 from exr_files import read  # noqa: E402
 from halation import media  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
+from halation.renderer.execution.executor import Executor  # noqa: E402
 from videos import decode_frames, number_in, write_numbers  # noqa: E402
 
 COUNT = 9
@@ -127,7 +128,8 @@ def test_the_rate_of_the_graph_counts(cli, graphs, clip, tmp_path):
     assert str(media.find_sequence(str(tmp_path / "a.mp4"), sandbox=UNRESTRICTED).rate) == "30000/1001"
 
 
-def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie):
+def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie, monkeypatch):
+    monkeypatch.setattr(Executor, "execute", lambda *_: pytest.fail("something was rendered"))
     graph = movie()
     for words, code, said in (
         (("-o", "a.mp4", "--codec", "vp9"), 2, "such a file holds no codec 'vp9'"),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from halation.compiler.lowering.expand import make_zero
 from halation.errors import GraphError, UsageError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown
-from halation.nodes import Kind, catalogue
+from halation.nodes import Field, Image, Kind, Vector, catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.input.checker import Checker
 from headers import Headers
@@ -153,6 +154,11 @@ def test_a_muted_group_that_makes_pictures_makes_none(plan):
     made = plan(muted)
     assert "checker" not in {name for one in made.passes for name in one.functions}
     assert {made.surfaces[number].channels for number in made.outputs.values()} == {4, 1}
+
+
+def test_nothing_is_zero_in_every_channel():
+    for socket, zero in ((Field(), 0.0), (Vector(width=3), (0.0, 0.0, 0.0)), (Image(), (0.0, 0.0, 0.0, 0.0))):
+        assert make_zero(socket) == zero
 
 
 def test_inside_a_muted_group_nothing_matters(plan):

@@ -65,6 +65,18 @@ def test_everything_that_a_parameter_can_be() -> None:
     assert issubclass(kind, Pointwise) and kind(amount=1.0).with_values(steps=4).values is kind.values
 
 
+def test_labels_are_what_is_between_quotes() -> None:
+    for note, label, doc in (
+        ('= 1, "How much"', "How much", ""),
+        ('= 1, "  How much "', "How much", ""),
+        ('= 1, ""', "", ""),
+        ('= 1, "a, b"', "a, b", ""),
+        ('= 1, "": of it', "", "of it"),
+    ):
+        value = glsl(f"vec4 f(vec4 image, float b // {note}\n) {{ return image * b; }}").values["b"]
+        assert (value.label, value.doc) == (label, doc)
+
+
 def test_what_looks_around_is_a_filter() -> None:
     kind = glsl("vec4 soften(vec4 image, float near /* optional */) { return image_at(pixel + 1) + near; }")
     assert issubclass(kind, Filter) and list(kind.inputs) == ["image", "near"]
@@ -123,6 +135,9 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
         ("vec4 f(float b // = 2, <= 1\n) { return vec4(b); }", 1, "lies beyond its limits"),
         ("vec4 f(float b // = 2, 3..1\n) { return vec4(b); }", 1, "the range of 'b' is empty"),
         ("vec4 f(float b // = 2, meters\n) { return vec4(b); }", 1, "'meters' says nothing of a parameter"),
+        ('vec4 f(float b // = 1, "meters\n) { return vec4(b); }', 1, "says nothing of a parameter"),
+        ('vec4 f(float b // = 1, meters"\n) { return vec4(b); }', 1, "says nothing of a parameter"),
+        ('vec4 f(float b // = 1, "\n) { return vec4(b); }', 1, "says nothing of a parameter"),
         ("vec4 f(vec3 b // = (1, 2)\n) { return vec4(1); }", 1, "a vec3 is 3 numbers"),
         ("vec4 f(int b // = 1.5\n) { return vec4(b); }", 1, "an int is a whole number"),
         ("vec4 f(bool b // = 1.5\n) { return vec4(b); }", 1, "a bool is true or false"),

@@ -44,6 +44,16 @@ def test_hints_come_after_problems_and_not_in_a_graph_with_errors() -> None:
     assert find_remarks(meant, NODES) == ()
 
 
+def test_a_value_that_decides_what_a_node_does_is_looked_at_anew() -> None:
+    """There and back: what is told after an edit is what the graph tells that was never anything else."""
+    first = chain(TURN, DIM, MOVE)
+    second = first.put(Port("c", "position"), (0.0, 0.0))
+    told = [find_remarks(graph, NODES) for graph in (first, second)]
+    assert told[0] and not told[1]
+    assert recheck_remarks(second, first, told[0], NODES) == told[1]
+    assert recheck_remarks(first, second, told[1], NODES) == told[0]
+
+
 @settings(max_examples=25)
 @given(st.integers(0, 2**32))
 def test_any_graph_can_be_looked_at(seed) -> None:

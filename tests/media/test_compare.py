@@ -18,6 +18,7 @@ from halation.media.comparison.metrics import (
     measure_ssim,
 )
 from halation.media.comparison.side_by_side import PicturePair, write_side_by_side
+from halation.media.pictures.stored import StoredPart, encode_for_viewing
 from halation.resources.sandbox import UNRESTRICTED
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -275,3 +276,21 @@ def test_pairs_stand_side_by_side(tmp_path, monkeypatch):
     np.testing.assert_allclose(cells["light: a"], np.dstack([ramp] * 3), atol=4e-3)  # sRGB there and back
     spec = oiio.ImageInput.open(str(path)).spec()
     assert spec.width > 3 * 40 and spec.height > 5 * 20
+
+
+def test_parts_of_files_as_they_are_shown():
+    """Data from black to white over its span, integers as they are stored, light through the view, without alpha."""
+    numbers = np.array([[-np.inf, 2.0, 3.0, 4.0, 6.0, 9.0, np.inf, np.nan]], np.float32)[..., None]
+    depth = encode_for_viewing(StoredPart(numbers, ("Z",), False), span=(2.0, 6.0))
+    assert depth[0, :, 0].tolist() == [0, 0, 64, 128, 255, 255, 255, 0] and depth.shape == (1, 8, 3)
+    flat = encode_for_viewing(StoredPart(numbers[:, 1:6], ("Z",), False), span=(2.0, 2.0))
+    assert flat[0, :, 0].tolist() == [0, 255, 255, 255, 255]
+    half = encode_for_viewing(StoredPart(np.full((1, 1, 1), 2.5, np.float32), ("Z",), False), span=(2.0, 2.0))
+    assert half[0, 0].tolist() == [128] * 3
+    codes = np.array([[[0.0, 0.5, 1.0, 0.25]]], np.float32)
+    assert encode_for_viewing(StoredPart(codes, tuple("RGBA"), True), "none")[0, 0].tolist() == [0, 128, 255]
+    light = np.array([[[0.18, 1.0, 0.0, 0.5], [0.5, 0.5, 0.5, 1.0]]], np.float32)
+    shown = encode_for_viewing(StoredPart(light, tuple("RGBA"), False), "Un-tone-mapped")
+    curve = np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)[..., :3]
+    assert shown.shape == (1, 2, 3) and np.abs(shown - 255.0 * curve).max() <= 1.0
+    assert np.abs(encode_for_viewing(StoredPart(light, tuple("RGBA"), False)) - 255.0 * curve).max() > 5.0

@@ -82,3 +82,12 @@ def test_it_is_added_on_what_is_covered(run, hdr):
     expected[..., :3] += np.array([0.3, 0.75, 1.5]) * rim * mask[..., None] * picture[..., 3:]
     np.testing.assert_allclose(run(node, inputs), expected, rtol=1e-5, atol=1e-6)
     np.testing.assert_array_equal(run(RimLight(intensity=0.0), inputs), picture)
+
+
+def test_masks_end_at_nothing_and_at_all(run):
+    inputs = {"image": np.ones((40, 60, 4)), "normal": BALL["normal"], "camera": CAMERA}
+    none, half, whole = (run(RimLight(), inputs | {"mask": np.full((40, 60), mask)}) for mask in (0.0, 0.5, 1.0))
+    assert (none[..., :3] == 1.0).all() and whole.max() > half.max() > 1.0
+    np.testing.assert_allclose(half - 1.0, 0.5 * (whole - 1.0), atol=1e-6)
+    for mask, expected in ((-1.0, none), (3.0, whole), (np.nan, none)):
+        np.testing.assert_array_equal(run(RimLight(), inputs | {"mask": np.full((40, 60), mask)}), expected)

@@ -198,3 +198,22 @@ def test_jitter_is_no_motion(renderer):
     place = found["position"][seen]
     now, before, after = (project(camera_of(node, frame), place) for frame in (4, 3, 5))
     assert np.abs(found["velocity"][seen] - np.concatenate([now - before, after - now], 1)).max() < 1e-3
+
+
+def test_colors_cover_what_is_there_and_data_stay_data(renderer):
+    """Alpha is 1 on surfaces and 0 beside them; colors may be half floats, and everything else may not."""
+    node = Scene(scene="blocks")
+    found = rendered(renderer, node)
+    there = found["depth"][..., 0] < 1e9
+    assert 0.1 < there.mean() < 1.0
+    for name in ("albedo", "emission"):
+        np.testing.assert_array_equal(found[name][..., 3], there)
+        assert not found[name][~there].any()
+    graph = Graph().add("scene", node)
+    for name in CHANNELS:
+        socket = Scene.outputs[name].socket
+        graph = graph.add_output(name, Output(socket.kind, socket.channels))
+        graph = graph.connect(Port("scene", name), Port("outputs", name))
+    plan = renderer.compile(graph, RenderRequest({}, {}, SIZE, precision="half"))
+    depths = {name: plan.surfaces[number].depth for name, number in plan.outputs.items()}
+    assert {name for name, depth in depths.items() if depth == "f2"} == {"albedo", "emission"}

@@ -205,6 +205,23 @@ def test_the_frame_before_tells_motion(tmp_path: Path) -> None:
     assert found.scale == pytest.approx((WIDTH, -WIDTH), rel=1e-3)
 
 
+def test_cameras_prove_motion_only_where_both_are_solved(tmp_path: Path) -> None:
+    """A camera that a header names, of either frame, is no proof; nor is a frame before without any camera."""
+    layers = {"P.XYZ": SEEN.position, "motionvector.XY": motion()}
+    bare, header, other = {"motionvector.XY": motion()}, {"worldToNDC": ndc(CAMERA)}, {"worldToNDC": ndc(BEFORE)}
+    now = written(tmp_path / "2.exr", layers)
+    named = written(tmp_path / "3.exr", bare, header)
+    solved = written(tmp_path / "1.exr", {"P.XYZ": cast_rays(BEFORE, WIDTH, HEIGHT).position})
+    for frame, before in (
+        (now, written(tmp_path / "0.exr", bare, other)),
+        (now, written(tmp_path / "0b.exr", bare)),
+        (named, solved),
+        (named, written(tmp_path / "0c.exr", bare, other)),
+    ):
+        assert not analyze_render(frame, before, sandbox=UNRESTRICTED).conventions[Role.VELOCITY].is_measured
+    assert analyze_render(now, solved, sandbox=UNRESTRICTED).conventions[Role.VELOCITY].is_measured
+
+
 def test_blender_motion_keeps_its_other_half(tmp_path: Path) -> None:
     four = np.concatenate([motion(), motion()], axis=2)
     now = written(tmp_path / "2.exr", {"Position.XYZ": SEEN.position, "Vector.XYZW": four}, {"Software": "Blender 4.5"})

@@ -200,3 +200,32 @@ def test_an_interrupt_during_compilation_is_heard_after_it(engine, monkeypatch):
         engine.render(graph, RenderRequest({"image": PICTURE}))["out"][..., 0], PICTURE[..., 0] * 2.0
     )
     assert len(reached) == 2
+
+
+@pytest.mark.parametrize(
+    ("log", "line", "fault"),
+    [
+        ("linking failed\n  error: too many uniforms \nmore\nerror: another", 1, "error: too many uniforms"),
+        ("\n  the driver gave up  \n", 1, "the driver gave up"),
+        ("ERROR: out of registers", 1, "ERROR: out of registers"),
+    ],
+)
+def test_a_fault_without_a_line_is_of_the_whole_program(renderer, monkeypatch, log, line, fault):
+    """The last file of the pass is the node's own; those before it are what it includes."""
+    graph = chain(1.25, 2.0, 0.5)
+    engine = Renderer(renderer.device, budget=0, sandbox=UNRESTRICTED)
+
+    def refuse(*_):
+        raise DeviceError(log)
+
+    for name in ("create_program", "create_compute_program"):
+        monkeypatch.setattr(type(renderer.device), name, refuse)
+    plan = engine.compile(graph, RenderRequest({"image": PICTURE}))
+    for render_pass in plan.passes:
+        with pytest.raises(ShaderError) as caught:
+            engine.runner.compile(render_pass)
+        assert (caught.value.line, caught.value.fault) == (line, fault)
+        assert caught.value.file == render_pass.shader.files[-1]
+        assert f"{caught.value.node}" == ", ".join(render_pass.nodes)
+    assert len(plan.passes[-1].shader.files) > 1 or len(plan.passes[0].shader.files) > 1
+    engine.close()

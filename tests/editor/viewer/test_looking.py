@@ -15,6 +15,7 @@ from halation.editor.viewer.looking import (
     choose_view,
     display_pixels,
     look_of,
+    measures,
     picture_only,
 )
 from halation.editor.viewer.measuring import make_opaque_color
@@ -147,3 +148,22 @@ def test_picked_colors_are_straight_and_opaque() -> None:
     assert make_opaque_color((0.2, 0.1, 0.4, 0.5)) == pytest.approx((0.4, 0.2, 0.8, 1.0))
     assert make_opaque_color((0.2, 0.1, 0.4, 0.0)) == pytest.approx((0.2, 0.1, 0.4, 1.0))
     assert make_opaque_color((0.3,)) == pytest.approx((0.3, 0.3, 0.3, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("meaning", "kind", "range_", "needed"),
+    [
+        ("auto", Kind.IMAGE, (0.0, 0.0), False),
+        ("auto", Kind.FIELD, (0.0, 0.0), True),
+        ("auto", Kind.VECTOR, (0.0, 1.0), True),
+        ("image", Kind.FIELD, (0.0, 0.0), False),
+        ("normal", Kind.VECTOR, (0.0, 0.0), False),
+        ("field", Kind.IMAGE, (0.0, 0.0), True),
+        ("vector", Kind.VECTOR, (3.0, 3.0), True),
+        ("field", Kind.FIELD, (0.0, 5.0), False),
+        ("vector", Kind.VECTOR, (-1.0, 1.0), False),
+    ],
+)
+def test_the_picture_is_measured_where_its_range_is_open(meaning, kind, range_, needed) -> None:
+    """Shown as data without a range of the user, or with a meaning that its numbers decide."""
+    assert measures(ViewerState(meaning=meaning, low=range_[0], high=range_[1]), kind) is needed
