@@ -13,11 +13,11 @@ from types import MappingProxyType
 from typing import Annotated, Any, Literal, cast, get_type_hints
 
 import msgspec
-import platformdirs
 
 from ..errors import OutputError, UsageError
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import UNRESTRICTED
+from ..resources.user_folders import PREFERENCES, state_folder
 from .recovery.file_locks import hold_lock
 
 MAX_RECENT = 20
@@ -25,12 +25,6 @@ MAX_SCALE = 3.0
 MIN_SCALE = 0.75
 
 Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
-
-
-def state_folder() -> Path:
-    """The folder of preferences and recovered work: HALATION_STATE, else the system's folder for settings."""
-    folder = os.environ.get("HALATION_STATE")
-    return Path(folder).absolute() if folder else platformdirs.user_state_path("halation", appauthor=False)
 
 
 def _scale(number: float) -> float:
@@ -57,8 +51,8 @@ class Preferences:
     """`ui_scale` is 0 for what the system says; `shortcuts` are those that differ, by action; "" stands for none.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
-    `memory_budget` in MiB. `isf_folders` hold shaders that can be added. `extra` keeps what another version of
-    Halation wrote.
+    `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `extra` keeps what
+    another version of Halation wrote.
     """
 
     theme: Literal["dark", "light"] = "dark"
@@ -74,6 +68,7 @@ class Preferences:
     hint_seen: bool = False
     proxy_while_dragging: bool = True
     isf_folders: tuple[str, ...] = ()
+    preset_folders: tuple[str, ...] = ()
     extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
 
 
@@ -90,7 +85,7 @@ class PreferenceStore:
     """
 
     def __init__(self, folder: Path | None = None) -> None:
-        self.file = (folder or state_folder()) / "preferences.json"
+        self.file = (folder or state_folder()) / PREFERENCES
         self.faults: list[str] = []
         self.current = self._read(Preferences())
         self._written = self.current

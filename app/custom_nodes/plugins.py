@@ -1,4 +1,4 @@
-"""Presets by name, those of plug-ins included."""
+"""Presets by name: those of Halation, of the user's folders and of plug-ins."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from pathlib import Path
 from halation import presets
 from halation.nodes import plugins
 
+from ..resources.user_folders import list_preset_folders
+
 
 def preset_paths() -> tuple[Path, ...]:
-    """Every preset: those of Halation, then those that plug-ins have in their folder `presets`."""
+    """Every preset: those of Halation, of the user's folders, then those that plug-ins have in their `presets`."""
     return tuple(name_presets().values())
 
 
@@ -18,8 +20,18 @@ def name_presets() -> dict[str, Path]:
     """Every preset by its name: `soft_bloom`, or `acme_glow.dream` for one of a plug-in."""
     loaded = {plugin.namespace: plugin.folder / "presets" for plugin in plugins() if plugin.folder and not plugin.fault}
     names = {path.stem: path for path in presets.paths()}
+    names |= {name: path for name, path in name_library().items() if name not in names}
     for namespace, folder in loaded.items():
         names |= {f"{namespace}.{path.stem}": path for path in sorted(folder.glob("*.json"))}
+    return names
+
+
+def name_library() -> dict[str, Path]:
+    """The graphs in the user's folders by name; in the first folder that has the name, if several have it."""
+    names: dict[str, Path] = {}
+    for folder in list_preset_folders():
+        for path in sorted(folder.glob("*.json")):
+            names.setdefault(path.stem, path)
     return names
 
 
@@ -27,7 +39,7 @@ def find_preset(name: str) -> Path | None:
     """The file of a preset, or None. Plug-ins are imported only for names that have a namespace."""
     if "." in name:
         return name_presets().get(name)
-    return next((path for path in presets.paths() if path.stem == name), None)
+    return next((path for path in presets.paths() if path.stem == name), None) or name_library().get(name)
 
 
 def find_graph_or_preset(name: str | Path) -> Path:

@@ -13,7 +13,6 @@ from import_graph import ROOT
 APP = ROOT / "app"
 
 ENVIRONMENT = {
-    "authoring/preferences.py": "HALATION_STATE, the folder of the editor's own files",
     "authoring/render_queue/queued_render.py": "the environment of a process that it starts",
     "cli/__init__.py": "settings of libraries, before they are loaded at the start of the process",
     "cli/helpers.py": "the environment of processes that it starts",
@@ -30,6 +29,7 @@ ENVIRONMENT = {
     "renderer/opengl/warming.py": "the device that the user chose",
     "resources/library_messages.py": "what libraries are told to print",
     "resources/sandbox.py": "HALATION_ROOT",
+    "resources/user_folders.py": "HALATION_STATE and HALATION_PATH, the user's folders",
 }
 """Modules that read or change the environment, and what for. What a graph decides is never among it."""
 
@@ -42,6 +42,7 @@ OPENERS = {
     "cli/outcome.py": "the null device, in place of a stream that is closed",
     "cli/watchdog.py": "the heartbeat, in a temporary folder of ours",
     "authoring/preferences.py": "the editor's own file",
+    "resources/user_folders.py": "the editor's own file",
     "authoring/recovery/recovery.py": "the editor's own files",
     "authoring/recovery/file_locks.py": "the editor's own files",
     "authoring/recovery/claims.py": "the editor's own files",
@@ -74,6 +75,8 @@ OPENERS = {
 UNRESTRICTED = {
     "resources/sandbox.py": "its home",
     "authoring/background/shader_files.py": "folders of shaders that the user's preferences name",
+    "authoring/document_pictures.py": "small pictures that the editor keeps",
+    "authoring/library.py": "presets in folders that the user names",
     "authoring/flipbook.py": "a graph that is made of text and names pictures that the user chose",
     "authoring/preferences.py": "the editor's own file",
     "authoring/recovery/recovery.py": "the editor's own files",
@@ -81,7 +84,9 @@ UNRESTRICTED = {
     "cli/gallery.py": "presets",
     "cli/specimen.py": "a provider that reads no files",
     "color/management.py": "the config of $OCIO, which the user trusts",
-    "editor/start/screen.py": "small pictures of presets",
+    "editor/library/dialog.py": "a preset in a folder of the user",
+    "editor/start/gallery.py": "small pictures of presets",
+    "editor/start/recent.py": "small pictures that the editor keeps",
     "editor/toolkit/thumbnails.py": "small pictures that the editor keeps",
     "editor/window/screenshot.py": "where the user of the editor says",
     "renderer/calibration.py": "two nodes of ours, which name no file",

@@ -54,6 +54,23 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),
     Action("view.smaller", "Smaller Interface", _scale(-0.25), "View", "Ctrl+Minus"),
     Action(
+        "view.maximize",
+        "Maximize Panel",
+        lambda context: context.commands.maximize_pointed(),
+        "View",
+        "Ctrl+Space",
+        doc="Let the panel under the pointer fill the window, or show the other panels again.",
+        separated=True,
+    ),
+    Action(
+        "view.full_screen",
+        "Full Screen Viewer",
+        lambda context: context.commands.toggle_full_screen(),
+        "View",
+        "Ctrl+F11",
+        doc="Let the viewer fill the screen, without menus, or go back to the window.",
+    ),
+    Action(
         "view.maximize_viewer",
         "Maximize Viewer",
         lambda context: context.commands.maximize(PanelTitle.VIEWER),

@@ -9,6 +9,7 @@ from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
     from ...authoring.background.shader_files import ShaderFiles
+    from ...authoring.library import PresetLibrary
     from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
     from ...authoring.session import Session
@@ -32,6 +33,7 @@ class CanvasContext(PanelContext):
     actions: Actions
     dialogs: Dialogs
     shaders: ShaderFiles
+    library: PresetLibrary
     viewer: PixelPicker
     documents: DocumentWorkflow
     code_files: CodeFileWorkflow
@@ -56,6 +58,7 @@ class CanvasContext(PanelContext):
             services.actions,
             services.dialogs,
             services.shaders,
+            services.library,
             viewer,
             documents,
             code_files,

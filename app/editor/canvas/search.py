@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 from halation.nodes import Kind
@@ -25,7 +24,6 @@ from ...authoring.edits.coding import with_code_type
 from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.wiring import fits_picture, list_fitting_types
 from ...authoring.state.group_files import GroupFiles
-from ...custom_nodes.plugins import preset_paths
 from ...graph import Port
 from ...graph.names import fresh_name
 from ..shared.entries import (
@@ -80,37 +78,27 @@ class NodeSearch:
     _arranged: tuple[object, tuple[Section, ...]] = ((), ())
     _groups: GroupFiles = field(default_factory=GroupFiles)
 
-    @cached_property
-    def _fixed(self) -> tuple[CatalogEntry, ...]:
-        return (*code_entries(), *preset_entries(preset_paths()), *graph_entries())
-
     def begin(self, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open the search at a canvas position; with a port, for nodes that can be linked with it."""
         session = self.context.session
         self._replaced = ""
+        presets = self.context.library.list_presets()
         nodes = (*node_entries(session.types), *mode_entries(session.types))
+        entries = (*nodes, *code_entries(), *preset_entries(presets), *graph_entries())
         if port is None:
-            self._link, self._entries = None, (*nodes, *self._fixed)
+            self._link, self._entries = None, entries
         else:
             self._link = port, output
-            fits = (
-                self.context.log.attempt(
-                    lambda: list_fitting_types(session.graph, port, output, with_code_type(session.types)), ()
-                )
-                or ()
-            )
-            files = (
-                self.context.log.attempt(lambda: self._groups.list_fitting(preset_paths(), session, port, output), ())
-                or ()
-            )
-            self._entries = keep_fitting((*nodes, *self._fixed), {*fits, *map(str, files)})
+            fitting = self.context.log.attempt(lambda: self._list_fitting(port, output), frozenset())
+            self._entries = keep_fitting(entries, fitting or ())
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 
     def _list_fitting(self, port: Port, output: bool) -> frozenset[str]:
         """The node types and presets that could be linked with a port."""
         session = self.context.session
         types = list_fitting_types(session.graph, port, output, with_code_type(session.types))
-        files = self._groups.list_fitting(preset_paths(), session, port, output)
+        presets = [preset.path for preset in self.context.library.list_presets() if not preset.fault]
+        files = self._groups.list_fitting(presets, session, port, output)
         return frozenset((*types, *map(str, files)))
 
     def begin_replacing(self, id: str) -> None:

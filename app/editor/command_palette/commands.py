@@ -13,11 +13,16 @@ from ...authoring.edits.element_id import ElementId
 from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
 from ..shared.action import ListedAction
-from ..shared.entries import code_entries, spell_out
+from ..shared.entries import code_entries, is_word_match, mode_entries, spell_out
 from ..shared.fuzzy import Match, match
 
 if TYPE_CHECKING:
     from .context import PaletteContext
+
+
+_ALIAS = 4.0
+"""How much less a name of another program counts than a label: half the start of a word, so that initials of a label
+(`gb`, Gaussian Blur) come before the beginning of an alias (`gbuffer`)."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +36,8 @@ class Command:
     shortcut: str = ""
     doc: str = ""
     reason: str = ""
+    aliases: tuple[str, ...] = ()
+    """What other programs call it."""
     weight: float = 0.0
     """Added to the score of a match: commands that are used less often rank lower."""
 
@@ -47,6 +54,7 @@ def rank_commands(
     labels = tuple(command.label for command in offered)
     matches = [(offered[ranked.index], ranked) for ranked in match(query, labels)]
     if query.strip():
+        matches = _add_aliases(query, offered, matches)
 
         def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:
             return bool(pair[0].reason), -pair[1].score - pair[0].weight, pair[1].index
@@ -55,6 +63,24 @@ def rank_commands(
     order = {id: place for place, id in enumerate(reversed(tuple(recent)))}
     last = len(order)
     return tuple(sorted(matches, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
+
+
+def _add_aliases(
+    query: str, offered: tuple[Command, ...], matches: list[tuple[Command, Match]]
+) -> list[tuple[Command, Match]]:
+    """The matches, and the commands that other programs call so; what fits both ways counts as the better one.
+
+    The words of the query must begin words of the alias: letters in order, which do for labels, would be too many.
+    """
+    by_index = {ranked.index: ranked for _, ranked in matches}
+    for index, command in enumerate(offered):
+        fitting = [alias for alias in command.aliases if is_word_match(query, alias)]
+        if not fitting:
+            continue
+        score = max((ranked.score for ranked in match(query, fitting)), default=0.0) - _ALIAS
+        if index not in by_index or by_index[index].score < score:
+            by_index[index] = Match(index, score, ())
+    return [(offered[index], ranked) for index, ranked in by_index.items()]
 
 
 def explain_disabled(context: PaletteContext, action: ListedAction) -> str:
@@ -92,6 +118,17 @@ def _all(context: PaletteContext) -> Iterator[Command]:
             spell_out(type.category).capitalize(),
             partial(_add, context, id),
             doc=doc[0] if doc else "",
+            aliases=type.aliases,
+        )
+    for entry in mode_entries(context.session.types):
+        yield Command(
+            f"merge {entry.title}",
+            f"Add Merge {entry.title.title()}",
+            spell_out(entry.category).capitalize(),
+            partial(_append, context, AddNode(entry.id, context.canvas.pointer, values=entry.values)),
+            doc=entry.doc,
+            aliases=entry.aliases,
+            weight=-1.0,
         )
     for entry in code_entries():
         yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, context, entry.id), doc=entry.doc)

@@ -28,6 +28,7 @@ from ...authoring.commands import (
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import value_label
+from ...document.about import find_about
 from ...graph import Control, Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..fields.color_field import color_field
@@ -72,13 +73,20 @@ class GraphView:
             rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else "")
         )
         draw_faults(rows, NO_ELEMENT)
-        if not inside:
+        has_controls = bool(session.graph.controls)
+        if doc := find_about(session.graph).doc:
+            rows.note(doc)
+        if has_controls:
+            self._controls(rows)
+        # What the graph offers comes first. So the settings of the project, which are set once, are folded then.
+        if not inside and rows.fold("Project", "project", is_open=not has_controls):
             self._size(rows)
             self._time(rows)
             color_rows(rows, self._fields)
         self._ends(rows, "inputs")
         self._ends(rows, "outputs")
-        self._controls(rows)
+        if not has_controls:
+            self._controls(rows)
 
     def frame(self, rows: Rows, frame: ElementId) -> None:
         """Draw the title and color of a frame."""

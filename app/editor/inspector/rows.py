@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ..theme.palette import RGB
-from ..theme.style import mix, u32, ui_scale
+from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import quiet_button
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, draw_wrapped, font, tip, write
@@ -105,6 +105,21 @@ class Rows:
         imgui.get_window_draw_list().add_line(
             (rect[0] + used + self.gap, middle), (rect[2], middle), u32(self.palette.raised), ui_scale()
         )
+
+    def fold(self, text: str, key: str, *, is_open: bool) -> bool:
+        """Draw the title of a section that a click folds and unfolds; True if it is open, as `is_open` says at first.
+
+        A section that begins open and one that begins folded remember their states apart.
+        """
+        imgui.spacing()
+        flags = int(imgui.TreeNodeFlags_.no_tree_push_on_open) | int(imgui.TreeNodeFlags_.span_avail_width)
+        flags |= int(imgui.TreeNodeFlags_.default_open) if is_open else 0
+        imgui.push_style_color(imgui.Col_.text, vec4(mix(self.palette.dim, self.palette.text, 0.35)))
+        with font(self.context, "bold", SMALL):
+            opened = imgui.tree_node_ex(f"{text}##{key} {is_open}", flags)
+        imgui.pop_style_color()
+        self.context.places[f"fold {key}"] = item_rect()
+        return opened
 
     def note(self, text: str, color: RGB | None = None, *, icon: str = "") -> None:
         """Draw a sentence over the whole width."""

@@ -12,6 +12,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...authoring.background.shader_files import CUSTOMARY
 from ...authoring.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ...authoring.recovery.recovery import LONGEST
+from ...resources.user_folders import PRESETS_VARIABLE, own_presets_folder
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
@@ -37,7 +38,7 @@ class PreferencesDialog:
         self._page = _PAGES[0]
         self._shortcuts = ShortcutEditor(context)
         self._edited: dict[str, float] = {}
-        self._folder = ""
+        self._folders: dict[str, str] = {}
 
     def draw(self) -> None:
         """Draw the dialog, if it is open."""
@@ -108,8 +109,18 @@ class PreferencesDialog:
         draw_wrapped(
             self._context.palette.dim, "Memory on the graphics card that keeps results. Takes effect at the next start."
         )
+        _draw_heading(self._context, "Presets")
+        self._draw_folders(
+            "preset",
+            f"Folders with graphs that everybody here shares. Your own are in {own_presets_folder()}; folders in "
+            f"${PRESETS_VARIABLE} are listed too.",
+        )
         _draw_heading(self._context, "Shaders")
-        self._draw_folders()
+        self._draw_folders(
+            "isf",
+            "Folders with .fs files in the Interactive Shader Format; their shaders can be "
+            f"added to the graph. {', '.join(CUSTOMARY)} are always searched too.",
+        )
         _draw_heading(self._context, "Files")
         folder = str(self._context.store.file.parent)
         draw_wrapped(self._context.palette.dim, f"Preferences, recovered work and thumbnails are in {folder}")
@@ -118,39 +129,40 @@ class PreferencesDialog:
         imgui.same_line()
         default = Preferences()
         if imgui.button("Reset all preferences"):
-            lists = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders")
+            lists = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders", "preset_folders")
             _change(self._context, **{name: value for name, value in vars(default).items() if name not in lists})
         record(self._context, "reset preferences")
 
-    def _draw_folders(self) -> None:
-        """Draw the folders of ISF shaders."""
-        folders = self._context.store.current.isf_folders
-        draw_wrapped(
-            self._context.palette.dim,
-            "Folders with .fs files in the Interactive Shader Format; their shaders can be "
-            f"added to the graph. {', '.join(CUSTOMARY)} are always searched too.",
-        )
+    def _draw_folders(self, kind: str, sentence: str) -> None:
+        """Draw the list `<kind>_folders` of the preferences, and a field that adds a folder to it."""
+        name, context = f"{kind}_folders", self._context
+        folders: tuple[str, ...] = getattr(context.store.current, name)
+        draw_wrapped(context.palette.dim, sentence)
         for index, folder in enumerate(folders):
-            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget isf {index}", "Remove this folder"):
-                _change(
-                    self._context, isf_folders=tuple(kept_folder for kept_folder in folders if kept_folder != folder)
-                )
+            if quiet_button(context, icons.ICON_FA_XMARK, f"forget {kind} {index}", "Remove this folder"):
+                _change(context, **{name: tuple(other for other in folders if other != folder)})
+                context.store.flush()
             imgui.same_line()
             imgui.align_text_to_frame_padding()
             note = "" if os.path.isdir(folder) else "  (folder not found)"  # noqa: PTH112
             imgui.text_unformatted(f"{folder}{note}")
         imgui.set_next_item_width(320 * ui_scale())
-        entered, self._folder = imgui.input_text_with_hint(
-            "##isf folder", "path of a folder", self._folder, int(imgui.InputTextFlags_.enter_returns_true)
+        entered, text = imgui.input_text_with_hint(
+            f"##{kind} folder",
+            "path of a folder",
+            self._folders.get(kind, ""),
+            int(imgui.InputTextFlags_.enter_returns_true),
         )
-        record(self._context, "field isf folder")
+        self._folders[kind] = text
+        record(context, f"field {kind} folder")
         imgui.same_line()
-        typed = self._folder.strip().strip('"')
-        if (imgui.button("Add") or entered) and typed:
+        typed = text.strip().strip('"')
+        if (imgui.button(f"Add##{kind}") or entered) and typed:
             whole = str(Path(typed).expanduser().absolute())
-            _change(self._context, isf_folders=tuple(dict.fromkeys((*folders, whole))))
-            self._folder = ""
-        record(self._context, "button add isf")
+            _change(context, **{name: tuple(dict.fromkeys((*folders, whole)))})
+            context.store.flush()
+            self._folders[kind] = ""
+        record(context, f"button add {kind}")
 
     def _draw_number(
         self,

@@ -55,7 +55,7 @@ class Dialogs:
     browse: Browse | None = None
     question: Question | None = None
     open: set[str] = field(default_factory=set[str])
-    """Names of open dialogs: "palette", "shortcuts", "preferences", "export", "about", "start", "search"."""
+    """Names of open dialogs: "palette", "shortcuts", "preferences", "export", "about", "start", "search", "preset"."""
 
     def toggle(self, name: str) -> None:
         """Open a dialog, or close it."""

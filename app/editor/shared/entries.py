@@ -6,13 +6,13 @@ import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from types import MappingProxyType
 
 from halation.nodes import Kind, Node, Plain
 
 from ...authoring.background.shader_files import ShaderFile
 from ...authoring.edits.coding import CODE, make_starter_node
+from ...authoring.library import PresetFacts
 from .fuzzy import match
 
 GROUP, GRAPH, SHADER = "group", "graph", "code"
@@ -126,11 +126,17 @@ def shader_entries(files: Iterable[ShaderFile]) -> tuple[CatalogEntry, ...]:
     )
 
 
-def preset_entries(files: Iterable[Path]) -> tuple[CatalogEntry, ...]:
-    """The presets."""
+def preset_entries(presets: Iterable[PresetFacts]) -> tuple[CatalogEntry, ...]:
+    """The presets, which are found by their tags too."""
     return tuple(
-        CatalogEntry(str(path), spell_out(path.stem), GROUP, "A preset: a ready graph, added as a group.")
-        for path in files
+        CatalogEntry(
+            str(preset.path),
+            spell_out(preset.path.stem),
+            GROUP,
+            preset.fault or preset.about.doc or "A preset: a ready graph, added as a group.",
+            aliases=preset.about.tags,
+        )
+        for preset in presets
     )
 
 
@@ -199,6 +205,11 @@ def rank_entries(entries: Sequence[CatalogEntry], query: str) -> tuple[CatalogEn
             key = (_BEHIND_NODES if stands_back else fit, fit, order, -letters.get(index, 0.0), index)
             ranked.append((key, entry))
     return tuple(entry for _, entry in sorted(ranked, key=lambda pair: pair[0]))
+
+
+def is_word_match(query: str, name: str) -> bool:
+    """True if every word of a query begins a word of a name, or all of them are its beginning."""
+    return _measure_fit(split_words(query), split_words(name), is_alias=True) != _NONE
 
 
 def split_words(text: str) -> tuple[str, ...]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from ...authoring.edits.element_id import ElementId
     from ...authoring.edits.elements import Sizes
     from ...authoring.session import Session
+    from ...color.transforms import Array
 
 
 class SystemText(Protocol):
@@ -50,6 +51,13 @@ class PixelPicker(Protocol):
 
     picking: str
     """`node.value` that the next click on the picture sets; "" for none."""
+
+
+class SnapshotSource(Protocol):
+    """The viewer, for dialogs that need a small picture of what it shows."""
+
+    snapshot: Callable[[Array], object] | None
+    """Takes the next picture of the viewer, [h, w, 3] of uint8; the viewer calls it once."""
 
 
 class Player(Protocol):

@@ -31,6 +31,10 @@ class WindowCommands:
     saves_screenshot: bool = False
     maximizes: PanelTitle | None = None
     """The panel that is to fill the window, or no longer."""
+    maximizes_pointed: bool = False
+    """True lets the panel under the pointer fill the window, or no longer."""
+    toggles_full_screen: bool = False
+    """True lets the viewer fill the screen, or no longer."""
     panels: list[PanelTitle] = field(default_factory=list[PanelTitle])
     """Panels to show and to bring to the front."""
 
@@ -45,6 +49,14 @@ class WindowCommands:
     def maximize(self, title: PanelTitle) -> None:
         """Let a panel fill the window, or show the others again."""
         self.maximizes = title
+
+    def maximize_pointed(self) -> None:
+        """Let the panel under the pointer fill the window, or show the others again."""
+        self.maximizes_pointed = True
+
+    def toggle_full_screen(self) -> None:
+        """Let the viewer fill the screen, without menus, or go back to the window."""
+        self.toggles_full_screen = True
 
     def save_screenshot(self) -> None:
         """Ask for a file, and write the window into it as a picture."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.library import PresetLibrary
     from ...authoring.preferences import PreferenceStore
     from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
@@ -21,6 +22,7 @@ class StartContext(PanelContext):
     """The collaborators of the start screen."""
 
     store: PreferenceStore
+    library: PresetLibrary
     dialogs: Dialogs
     actions: Actions
     recovery: RecoveryFile
@@ -33,6 +35,7 @@ class StartContext(PanelContext):
             services.interface,
             services.log,
             services.store,
+            services.library,
             services.dialogs,
             services.actions,
             services.recovery,

@@ -2,31 +2,24 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from time import localtime, strftime
 from typing import TYPE_CHECKING
 
-from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...authoring.preferences import Recent
 from ...authoring.recovery.recovery import RecoveredWork
-from ...custom_nodes.plugins import preset_paths
-from ...media.pictures.thumbnail import load_thumbnail
-from ...resources.sandbox import UNRESTRICTED
-from ..theme.style import mix, u32, ui_scale, vec4
-from ..toolkit.buttons import main_button, outline, quiet_button
+from ..theme.style import ui_scale, vec4
+from ..toolkit.buttons import main_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
 from ..toolkit.keys import chord
 from ..toolkit.places import record
-from ..toolkit.textures import Textures
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
+from .gallery import PresetGallery
+from .recent import RecentList
 
 if TYPE_CHECKING:
     from .context import StartContext
-
-_CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
 HINTS = (
     "Tab adds a node. Drag from a socket to empty canvas to add one that fits.",
@@ -42,14 +35,14 @@ class StartScreen:
 
     def __init__(self, context: StartContext) -> None:
         self._context = context
-        self._textures = Textures()
         self._recovered: tuple[RecoveredWork, ...] | None = None
-        self._recent_exists: dict[str, bool] = {}
-        self._pictured = {path: picture(path).is_file() for path in preset_paths()}
+        self._gallery = PresetGallery(context)
+        self._recent = RecentList(context)
 
     def close(self) -> None:
         """Release textures."""
-        self._textures.clear()
+        self._gallery.close()
+        self._recent.close()
 
     def draw(self) -> None:
         """Draw the screen, if it is open."""
@@ -58,19 +51,20 @@ class StartScreen:
             return
         if self._recovered is None:
             self._recovered = self._context.recovery.find_abandoned()
-            self._recent_exists = {recent.path: recent.exists for recent in self._context.store.current.recent}
+            self._gallery.begin()
+            self._recent.begin()
         covered = self._context.dialogs.browse is not None or self._context.dialogs.question is not None
         close = backdrop(self._context, "start") and not covered
-        with dialog(self._context, "Start", (1180, 560)):
+        with dialog(self._context, "Start", (1240, 640)):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
             self._draw_title()
-            self._draw_recent()
+            self._recent.draw()
             imgui.end_child()
             imgui.same_line(0, 18 * ui_scale())
             imgui.begin_child("right", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
             self._draw_recoveries(self._recovered)
-            self._draw_presets()
+            self._gallery.draw(covered)
             imgui.end_child()
             if not covered:
                 close = close or escape_pressed()
@@ -80,7 +74,7 @@ class StartScreen:
 
     def _run_shortcuts(self) -> None:
         """Run the shortcuts that work on the start screen."""
-        for id in ("file.new", "file.open", "file.quit", "help.shortcuts"):
+        for id in ("file.new", "file.open", "file.open_render", "file.quit", "help.shortcuts"):
             keys = self._context.actions.shortcut(id)
             if keys and imgui.is_key_chord_pressed(chord(keys)):
                 self._context.actions.run(id)
@@ -96,6 +90,10 @@ class StartScreen:
         if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", ImVec2(width, 0)):
             self._context.actions.run("file.open")
         record(self._context, "start open")
+        if imgui.button(f"{icons.ICON_FA_FILM}  Open render...", ImVec2(width, 0)):
+            self._context.actions.run("file.open_render")
+        record(self._context, "start open render")
+        tip("Start a graph that reads the layers of a render, or a picture or sequence")
         if not self._context.store.current.hint_seen:
             self._draw_hint()
 
@@ -107,47 +105,6 @@ class StartScreen:
             draw_wrapped(self._context.palette.dim, line)
         if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Do not show this again"):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
-
-    def _draw_recent(self) -> None:
-        imgui.dummy(ImVec2(0, 4 * ui_scale()))
-        with font(self._context, "bold"):
-            imgui.text_unformatted("Recent")
-        if not self._context.store.current.recent:
-            draw_dim(self._context, "Files that you open appear here.")
-        for index, recent in enumerate(self._context.store.current.recent):
-            imgui.push_id(index)
-            self._draw_recent_row(index, recent)
-            imgui.pop_id()
-
-    def _draw_recent_row(self, index: int, recent: Recent) -> None:
-        scale, path, there = ui_scale(), Path(recent.path), self._recent_exists.get(recent.path, True)
-        line = imgui.get_text_line_height()
-        room = imgui.get_content_region_avail().x - 30 * scale
-        start = imgui.get_cursor_pos()
-        imgui.set_next_item_allow_overlap()
-        clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 4 * scale))
-        record(self._context, f"recent {index}")
-        tip(str(path) if there else f"{path}\nThis file no longer exists.")
-        over = imgui.is_mouse_hovering_rect(imgui.get_item_rect_min(), imgui.get_item_rect_max())
-        after = imgui.get_cursor_pos()
-        imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
-        faint = mix(self._context.palette.dim, self._context.palette.panel, 0.4)
-        imgui.text_colored(vec4(self._context.palette.text if there else faint), cut_middle(path.stem, room))
-        imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + line + 3 * scale))
-        imgui.text_colored(vec4(self._context.palette.dim if there else faint), cut_middle(str(path.parent), room))
-        if over:
-            imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
-            if quiet_button(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Remove it from this list"):
-                self._context.store.forget(recent.path)
-                clicked = False
-        imgui.set_cursor_pos(after)
-        imgui.dummy(ImVec2(0, 0))
-        if clicked and there:
-            self._context.documents.open_graph(path)
-        elif clicked:
-            self._context.log.add(
-                f"{path}: this file no longer exists; restore it, or remove it from the list", "warning"
-            )
 
     def _draw_recoveries(self, recovered: tuple[RecoveredWork, ...]) -> None:
         if not recovered:
@@ -171,36 +128,3 @@ class StartScreen:
             imgui.same_line()
             draw_dim(self._context, cut_middle(work.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
-
-    def _draw_presets(self) -> None:
-        scale = ui_scale()
-        with font(self._context, "bold"):
-            imgui.text_unformatted("Presets")
-        gap = imgui.get_style().item_spacing.x
-        room = imgui.get_content_region_avail().x
-        count = max(int((room + gap) / (_CARD * scale + gap)), 1)
-        width = (room - gap * (count - 1)) / count
-        for index, path in enumerate(self._pictured):
-            if index % count:
-                imgui.same_line()
-            self._draw_card(path, width)
-
-    def _draw_card(self, path: Path, width: float) -> None:
-        scale, palette = ui_scale(), self._context.palette
-        name = path.stem.replace("_", " ")
-        picture_height = width * _PICTURE_HEIGHT / _CARD
-        size = ImVec2(width, picture_height + 26 * scale)
-        clicked = imgui.invisible_button(f"##{path}", size)
-        record(self._context, f"preset {path.stem}")
-        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
-        lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
-        corner = ImVec2(high.x, low.y + picture_height)
-        if self._pictured[path]:
-            texture = self._textures.get(path, lambda: load_thumbnail(picture(path), sandbox=UNRESTRICTED))
-            lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
-        lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(palette.text), name)
-        if imgui.is_item_hovered():
-            outline(palette.accent)
-        if clicked:
-            self._context.documents.open_preset(path)

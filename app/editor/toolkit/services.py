@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.background.render_overviews import RenderOverviews
 from ...authoring.background.shader_files import ShaderFiles
+from ...authoring.library import PresetLibrary
 from ...authoring.log import Log
 from ...authoring.preview.color_fallback import ColorFallback
 from ...authoring.render_queue.queue import RenderQueue
@@ -49,6 +50,7 @@ class Services:
     coloring: ColorFallback
     log: Log = field(default_factory=Log)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
+    library: PresetLibrary = field(default_factory=PresetLibrary)
     dialogs: Dialogs = field(default_factory=Dialogs)
     commands: WindowCommands = field(default_factory=WindowCommands)
     faults: dict[str, str] = field(default_factory=dict[str, str])

@@ -26,7 +26,22 @@ def _picks(context: ViewerContext) -> bool:
     return port is not None and context.viewer.picking == str(port)
 
 
+def _toggle_gizmos(context: ViewerContext) -> None:
+    context.viewer.has_gizmos = not context.viewer.has_gizmos
+
+
 HANDLES: tuple[Action[ViewerContext], ...] = (
+    Action(
+        "viewer.gizmos",
+        "Show Handles",
+        _toggle_gizmos,
+        "Viewer/Handles",
+        "H",
+        "viewer",
+        checked=lambda context: context.viewer.has_gizmos,
+        contexts=frozenset({"viewer"}),
+        doc="Show the handles of positions and lights on the picture. Hidden ones cannot be dragged.",
+    ),
     Action(
         "viewer.orbit",
         "Orbit Scene",

@@ -11,6 +11,7 @@ from .geometry import Point
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
+    from .context import ViewerContext
     from .state import ViewerState
 
 
@@ -22,8 +23,11 @@ class ViewerHandle:
     at: Point
 
 
-def handles(session: Session) -> tuple[ViewerHandle, ...]:
-    """The handles of the active node that have an effect and are not linked."""
+def handles(context: ViewerContext) -> tuple[ViewerHandle, ...]:
+    """The handles of the active node that have an effect and are not linked; none while they are hidden."""
+    session = context.session
+    if not context.viewer.has_gizmos:
+        return ()
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()

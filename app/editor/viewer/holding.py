@@ -79,7 +79,7 @@ def aim(
         return HandleTarget("new region")
     if ctrl:
         return HandleTarget("measure")
-    for handle in handles(context.session):
+    for handle in handles(context):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
             return HandleTarget("handle", port=handle.port)
     if light_target := _light(context, sight, at, scale, alt, shift):
@@ -137,7 +137,7 @@ class MouseHold:
     def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
         """Start the drag of a target."""
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
-        held_point = next((handle.at for handle in handles(context.session) if handle.port == aim.port), None)
+        held_point = next((handle.at for handle in handles(context) if handle.port == aim.port), None)
         if aim.lamp is not None:
             held_point, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
             if aim.kind in ("goal", "goal depth") and aim.lamp.aims:

@@ -94,8 +94,10 @@ def _list_lamps(context: ViewerContext) -> tuple[Lamp, ...]:
 
 
 def lists(context: ViewerContext) -> tuple[Port, ...]:
-    """The light lists of the active node that are not linked."""
+    """The light lists of the active node that are not linked; none while handles are hidden."""
     session = context.session
+    if not context.viewer.has_gizmos:
+        return ()
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()

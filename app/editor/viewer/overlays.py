@@ -110,7 +110,7 @@ def _wipe(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None
 def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     mouse = imgui.get_mouse_pos()
     scale = ui_scale()
-    for handle in handles(context.session):
+    for handle in handles(context):
         x, y = sight.place(handle.at)
         near = math.dist((mouse.x, mouse.y), (x, y)) <= 10.0 * scale
         color = context.palette.accent if near else WHITE

@@ -1,7 +1,8 @@
-"""Saves the picture of the viewer as displayed."""
+"""Saves the picture of the viewer as displayed, and takes small ones of it."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,24 @@ if TYPE_CHECKING:
     from ...authoring.preview import DisplayedImage
     from ...renderer.viewing.look import Look
     from .context import ViewerContext
+
+
+_SNAPSHOT = (320, 180)
+"""The largest size of a small picture, that of the pictures of the presets."""
+
+
+def take_snapshot(context: ViewerContext, a: DisplayedImage, look: Look) -> np.ndarray:
+    """The picture as displayed, in small: [h, w, 3] of uint8."""
+    width, height = a.full_size
+    zoom = min(_SNAPSHOT[0] / width, _SNAPSHOT[1] / height, 1.0)
+    small = max(round(width * zoom), 1), max(round(height * zoom), 1)
+    plain = replace(picture_only(look), zoom=zoom, compare="off")
+    texture = context.display.draw("snapshot", small, a, None, plain)
+    try:
+        pixels = context.probe.read_region(texture, (0, 0, *small))[..., :3]
+    finally:
+        context.display.release_slot("snapshot")
+    return (np.clip(pixels, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 
 
 def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | None, look: Look) -> None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from .pacing import Pace
 from .reading import ValueReader
+
+if TYPE_CHECKING:
+    from ...color.transforms import Array
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
@@ -62,6 +66,8 @@ class ViewerState:
     """True while the search for the first node with NaN or infinity runs."""
     saving: bool = False
     """True asks for a file and saves the picture."""
+    snapshot: Callable[[Array], object] | None = None
+    """Takes the next whole picture in small, [h, w, 3] of uint8."""
     copying: bool = False
     """True copies the values under the pointer to the clipboard."""
     proxy: float = 1.0
@@ -82,6 +88,8 @@ class ViewerState:
     hovered: bool = False
     picking: str = ""
     """`node.value` that the next click on the picture sets: a color to that of the pixel, a position to its place."""
+    has_gizmos: bool = True
+    """False hides the handles on the picture, and lets the mouse reach what is below them."""
     orbiting: bool = False
     """True lets the mouse move the camera of the viewed scene, not the picture."""
     scene: str = ""

@@ -28,7 +28,7 @@ from .orbit import find_orbit_node
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import PictureTimer
 from .reading import Scan, ValueReader
-from .saving import ask_to_save
+from .saving import ask_to_save, take_snapshot
 from .strokes import draw_label
 from .table import draw_table
 from .toolbar import context_menu, draw_toolbar
@@ -195,6 +195,9 @@ class Viewer:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(self._context, sight)
             lines.pop_clip_rect()
+            if viewer.snapshot is not None and images.is_whole:
+                take, viewer.snapshot = viewer.snapshot, None
+                self._context.log.attempt(lambda: take(take_snapshot(self._context, images.a, look)))  # type: ignore[arg-type]
             if viewer.saving and images.is_whole:
                 self._context.log.attempt(lambda: ask_to_save(self._context, images.a, images.b, look))  # type: ignore[arg-type]
         viewer.saving = viewer.saving and not images.is_whole

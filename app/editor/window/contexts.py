@@ -17,6 +17,7 @@ from ..curves.context import CurvesContext
 from ..dialogs.context import DialogContext
 from ..history.context import HistoryContext
 from ..inspector.context import InspectorContext
+from ..library.context import PresetContext
 from ..log.context import LogContext
 from ..preferences.context import PreferencesContext
 from ..problems.context import ProblemsContext
@@ -49,6 +50,7 @@ class Contexts:
     history: HistoryContext
     inspector: InspectorContext
     log: LogContext
+    presets: PresetContext
     preferences: PreferencesContext
     problems: ProblemsContext
     renders: RendersContext
@@ -60,7 +62,7 @@ class Contexts:
 def compose_contexts(editor: Editor) -> Contexts:
     """Give each panel its collaborators."""
     code_files = CodeFileWorkflow.compose(editor, editor.code)
-    documents = DocumentWorkflow.compose(editor, editor.canvas, code_files)
+    documents = DocumentWorkflow.compose(editor, editor.canvas, code_files, editor.viewer)
     flipbooks = FlipbookPlayer.compose(editor, editor.viewer, editor.timeline)
     contexts = Contexts(
         documents,
@@ -75,6 +77,7 @@ def compose_contexts(editor: Editor) -> Contexts:
         HistoryContext.compose(editor),
         InspectorContext.compose(editor, editor.canvas, editor.viewer, editor.timeline),
         LogContext.compose(editor),
+        PresetContext.compose(editor, editor.viewer),
         PreferencesContext.compose(editor),
         ProblemsContext.compose(editor, editor.canvas),
         RendersContext.compose(editor, editor.timeline, flipbooks),

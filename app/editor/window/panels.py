@@ -16,6 +16,7 @@ from ..dialogs.cheat_sheet import CheatSheet
 from ..dialogs.question import QuestionDialog
 from ..history.panel import HistoryPanel
 from ..inspector.inspector import Inspector
+from ..library.dialog import PresetDialog
 from ..log.panel import LogPanel
 from ..log.toasts import Toasts
 from ..preferences.dialog import PreferencesDialog
@@ -61,6 +62,7 @@ OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
     ("Start", lambda contexts: StartScreen(contexts.start)),
     ("Shortcuts", lambda contexts: CheatSheet(contexts.dialogs)),
     ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
+    ("Save as preset", lambda contexts: PresetDialog(contexts.presets)),
     ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),
     ("Files", lambda contexts: FileBrowser(contexts.browser)),
     ("About", lambda contexts: AboutDialog(contexts.dialogs)),

@@ -20,7 +20,7 @@ def run_shortcuts(editor: Editor) -> None:
         editor.timeline.tapped = False
         return
     if imgui.is_key_pressed(imgui.Key.space, False):
-        editor.timeline.tapped = True
+        editor.timeline.tapped = not imgui.get_io().key_mods
     for button in range(3):
         editor.timeline.tapped &= not imgui.is_mouse_down(button)
     has_run = False
@@ -40,7 +40,7 @@ def _is_pressed(editor: Editor, text: str, repeats: bool) -> bool:
         return imgui.shortcut(keys, _ROUTE | _REPEAT if repeats else _ROUTE)
     if int(imgui.get_io().key_mods) != keys & _MODIFIERS:
         return False
-    if key == imgui.Key.space:  # held, it lets the mouse pan
+    if key == imgui.Key.space and not keys & _MODIFIERS:  # held, it lets the mouse pan
         return editor.timeline.tapped and imgui.is_key_released(key)
     return imgui.is_key_pressed(key, repeats)
 

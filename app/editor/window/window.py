@@ -25,6 +25,7 @@ from .dock_shares import DockShares
 from .dropped_files import take_files
 from .editor import Editor
 from .frame_updater import FrameUpdater
+from .full_screen import FullScreen, find_pointed_panel
 from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .menus import draw_menus
@@ -65,6 +66,8 @@ class Window:
         self._worked_at = 0.0
         self._hidden: tuple[PanelTitle, ...] = ()
         """Panels that are hidden while another one fills the window."""
+        self._pointed: PanelTitle | None = None
+        """The panel under the pointer."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
         self._dropped: list[str] = []
         self._input = InputQueue()
@@ -72,6 +75,7 @@ class Window:
         self._fronted: set[str] = set()
         self._styled: tuple[Palette, float, tuple[float, ...]] | None = None
         self.params = self._make_params(version, size)
+        self._full_screen = FullScreen(self.params)
         self.frames = 0
         self.fault: Exception | None = None
         """Why the window could not begin."""
@@ -178,6 +182,7 @@ class Window:
         self.frames += 1
         self._restyle()
         self._docks.follow_window()
+        self._pointed = find_pointed_panel(editor.places)
         editor.places.clear()
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.interface.dragging = False
@@ -277,6 +282,13 @@ class Window:
         if commands.saves_screenshot:
             commands.saves_screenshot = False
             self._screenshot()
+        if commands.maximizes_pointed:
+            commands.maximizes = self._pointed or (self._hidden and PanelTitle.VIEWER) or None
+            commands.maximizes_pointed = False
+        if commands.toggles_full_screen:
+            commands.toggles_full_screen = False
+            if self._full_screen.toggle() is not bool(self._hidden):
+                commands.maximizes = PanelTitle.VIEWER
         if commands.maximizes is not None:
             self._maximize(commands.maximizes)
             commands.maximizes = None

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...authoring.document_pictures import DocumentPictures
 from ...errors import HalationError
 from ...media.pictures.thumbnail import is_picture
 from ...renderer.provenance.recipe import has_recipe
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from ...authoring.session import Session
     from ...watch.watching import FileWatcher
     from ..shared.dialogs import Dialogs
-    from ..shared.protocols import ElementView
+    from ..shared.protocols import ElementView, SnapshotSource
     from ..shared.window_commands import WindowCommands
     from ..toolkit.services import Services
     from .code_files import CodeFileWorkflow
@@ -55,9 +56,13 @@ class DocumentWorkflow:
     log: Log
     commands: WindowCommands
     code_files: CodeFileWorkflow
+    viewer: SnapshotSource
+    pictures: DocumentPictures
 
     @classmethod
-    def compose(cls, services: Services, canvas: ElementView, code_files: CodeFileWorkflow) -> DocumentWorkflow:
+    def compose(
+        cls, services: Services, canvas: ElementView, code_files: CodeFileWorkflow, viewer: SnapshotSource
+    ) -> DocumentWorkflow:
         """Pick what the File menu uses."""
         return cls(
             services.session,
@@ -70,6 +75,8 @@ class DocumentWorkflow:
             services.log,
             services.commands,
             code_files,
+            viewer,
+            DocumentPictures(services.store.file.parent / "recent"),
         )
 
     # --- opening -----------------------------------------------------------------------------------------------------
@@ -86,6 +93,10 @@ class DocumentWorkflow:
     def ask_for_graph(self) -> None:
         """Ask for a graph or a picture, and open it."""
         self.dialogs.browse = Browse("Open a graph or a picture", "graph", self.open_file, has_pictures=True)
+
+    def ask_for_render(self) -> None:
+        """Ask for a render, a picture or a sequence, and start a graph that reads it."""
+        self.dialogs.browse = Browse("Open a render or a picture", "image", self.open_file)
 
     def open_file(self, path: Path) -> None:
         """Open a graph, or a picture; of one that Halation rendered the user says whether its graph is meant."""
@@ -164,6 +175,7 @@ class DocumentWorkflow:
         def write() -> None:
             self.code_files.save_drafts()
             self.session.files.save()
+            self._keep_picture(path)
             self.watcher.expect(path)
             self.log.add(f"saved {path.name}")
             then()
@@ -188,6 +200,7 @@ class DocumentWorkflow:
                 self.session.files.save_as(target)
                 self.watcher.expect(target)
                 self.store.note_opened(target)
+                self._keep_picture(target)
                 self.log.add(f"saved {target.name}")
                 then()
 
@@ -259,7 +272,13 @@ class DocumentWorkflow:
             (("Stop rendering and quit", then), ("Cancel", _do_nothing)),
         )
 
+    def _keep_picture(self, path: Path) -> None:
+        """Keep what the viewer shows as the picture of the document, for the start screen."""
+        self.viewer.snapshot = lambda pixels: self.pictures.save(path, pixels)
+        self.pictures.tidy((path, *(recent.path for recent in self.store.current.recent)))
+
     def _show_document(self) -> None:
+        self.viewer.snapshot = None
         self.canvas.fit()
         self.dialogs.open.discard("start")
 
@@ -267,9 +286,19 @@ class DocumentWorkflow:
 DOCUMENTS: tuple[Action[DocumentWorkflow], ...] = (
     Action("file.new", "New", DocumentWorkflow.ask_for_new, "File", "Ctrl+N"),
     Action("file.open", "Open...", DocumentWorkflow.ask_for_graph, "File", "Ctrl+O"),
+    Action("file.open_render", "Open Render...", DocumentWorkflow.ask_for_render, "File", "Ctrl+Shift+O"),
     Action("file.start", "Presets and Recent Files...", lambda files: files.dialogs.open.add("start"), "File"),
     Action("file.save", "Save", DocumentWorkflow.save, "File", "Ctrl+S", separated=True),
     Action("file.save_as", "Save As...", DocumentWorkflow.save_as, "File", "Ctrl+Shift+S"),
+    Action(
+        "file.save_preset",
+        "Save as Preset...",
+        lambda files: files.dialogs.open.add("preset"),
+        "File",
+        contexts=frozenset({"node"}),
+        doc="Save the selection, or the whole graph, under a name in the library: Tab, the start screen and the "
+        "command line find it.",
+    ),
     Action(
         "file.revert",
         "Revert",

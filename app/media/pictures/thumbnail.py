@@ -70,11 +70,12 @@ def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:
 
 
 def save_thumbnail(path: str | Path, pixels: Array, sandbox: Sandbox) -> None:
-    """Write [h, w, 3] of uint8 as PNG. Raises OutputError."""
+    """Write [h, w, 3] of uint8 as PNG, or as JPEG by the ending. Raises OutputError."""
     height, width = pixels.shape[:2]
+    format = "jpeg" if Path(path).suffix == ".jpg" else "png"
 
     def encode(name: str) -> None:
-        output = oiio.ImageOutput.create("png")
+        output = oiio.ImageOutput.create(format)
         if output is not None and output.open(name, oiio.ImageSpec(width, height, 3, "uint8")):
             output.write_image(np.ascontiguousarray(pixels))
             output.close()

@@ -174,3 +174,24 @@ def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> Non
     show_element(contexts.problems, "inputs.beauty")
     assert desk.session.place == ()
     assert desk.session.selection == {"inputs.beauty"}
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        ("ssao", "Add Ambient Occlusion"),
+        ("defocus", "Add Depth of Field"),
+        ("keyer", "Add Chroma Key"),
+        ("linear dodge", "Add Merge Plus"),
+        ("god rays", "Add Light Shafts"),
+    ],
+)
+def test_commands_are_found_by_the_words_of_other_programs(contexts: Contexts, words: str, expected: str) -> None:
+    offered = list_commands(contexts.command_palette)
+    found = [command.label.lower() for command, _ in rank_commands(words, offered, ())][:3]
+    assert expected.lower() in found
+
+
+def test_a_merge_mode_is_added_with_its_mode(desk: Editor, contexts: Contexts) -> None:
+    next(one for one in list_commands(contexts.command_palette) if one.id == "merge multiply").run()
+    assert [item.setting("mode") for item in desk.session.graph.nodes.values()] == ["multiply"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.custom_nodes.plugins import preset_paths
+from halation.authoring.library import PresetLibrary
 from halation.editor.shared.entries import (
     GROUP,
     CatalogEntry,
@@ -22,7 +22,7 @@ ENTRIES = (
     *node_entries(catalogue()),
     *mode_entries(catalogue()),
     *code_entries(),
-    *preset_entries(preset_paths()),
+    *preset_entries(PresetLibrary().list_presets()),
     *graph_entries(),
 )
 

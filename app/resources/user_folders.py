@@ -1,0 +1,49 @@
+"""Folders of the user: the editor's own files, and presets."""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+STATE_VARIABLE = "HALATION_STATE"
+"""The environment variable that names the folder of everything that the editor keeps."""
+
+PRESETS_VARIABLE = "HALATION_PATH"
+"""The environment variable with more folders of presets, separated as in PATH."""
+
+PREFERENCES = "preferences.json"
+
+
+def state_folder() -> Path:
+    """The folder of preferences and recovered work: HALATION_STATE, else the system's folder for settings."""
+    import platformdirs
+
+    folder = os.environ.get(STATE_VARIABLE)
+    return Path(folder).absolute() if folder else platformdirs.user_state_path("halation", appauthor=False)
+
+
+def own_presets_folder() -> Path:
+    """The folder of the user's own presets: `presets` in HALATION_STATE, else in the system's folder for data."""
+    import platformdirs
+
+    folder = os.environ.get(STATE_VARIABLE)
+    base = Path(folder).absolute() if folder else platformdirs.user_data_path("halation", appauthor=False)
+    return base / "presets"
+
+
+def list_preset_folders() -> tuple[Path, ...]:
+    """Folders whose graphs are presets: the user's own, those of the preferences, then those of HALATION_PATH."""
+    listed = os.environ.get(PRESETS_VARIABLE, "").split(os.pathsep)
+    shared = (*_read_shared_folders(), *listed)
+    return tuple(dict.fromkeys((own_presets_folder(), *(Path(folder).absolute() for folder in shared if folder))))
+
+
+def _read_shared_folders() -> tuple[str, ...]:
+    """The folders of presets in the preferences; none where the file is missing or damaged, which the editor says."""
+    try:
+        preferences = json.loads((state_folder() / PREFERENCES).read_bytes())
+        folders = preferences["preset_folders"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return ()
+    return tuple(folder for folder in folders if isinstance(folder, str)) if isinstance(folders, list) else ()
