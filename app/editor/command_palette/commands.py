@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from .context import PaletteContext
 
 
-_ALIAS = 4.0
-"""How much less a name of another program counts than a label: half the start of a word, so that initials of a label
+_ALIAS = 8.0
+"""How much less a name of another program counts than a label: as much as the start of a word, so that initials of a label
 (`gb`, Gaussian Blur) come before the beginning of an alias (`gbuffer`)."""
 
 
