@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 _LABELS = 104.0
 _PICTURE = 200.0, 112.0
 _DOC_LINES = 3
-_FLAT = int(imgui.ChildFlags_.nav_flattened) | int(imgui.ChildFlags_.auto_resize_y)
 _ENTERED = int(imgui.InputTextFlags_.enter_returns_true)
 
 
@@ -76,9 +75,9 @@ class PresetDialog:
             imgui.dummy(ImVec2(0, 2 * ui_scale()))
             self._draw_picture(form)
             imgui.same_line(0, 16 * ui_scale())
-            imgui.begin_child("fields", ImVec2(0, 0), _FLAT)
+            imgui.begin_group()
             entered = self._draw_fields(form, is_new)
-            imgui.end_child()
+            imgui.end_group()
             fault = self._find_fault(form)
             accepted, cancelled = self._draw_buttons(fault)
             if not covered:

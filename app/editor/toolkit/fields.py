@@ -43,7 +43,8 @@ def label(text: str, width: float) -> None:
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     imgui.text_unformatted(text)
-    imgui.same_line(left + width * ui_scale())
+    imgui.same_line()
+    imgui.set_cursor_pos_x(left + width * ui_scale())
 
 
 def combo(surface: WidgetSurface, name: str, current: str, choices: Sequence[str], width: float = -1.0) -> str:
