@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import msgspec
 
@@ -59,6 +60,7 @@ def _parse(facts: object) -> About:
     """What is readable; a file that somebody else wrote may hold anything there."""
     if not isinstance(facts, Mapping):
         return About()
-    doc, tags = facts.get("doc", ""), facts.get("tags", ())
-    texts = [tag for tag in tags if isinstance(tag, str)] if isinstance(tags, list | tuple) else []
-    return About(doc if isinstance(doc, str) else "", tuple(texts))
+    known = cast("Mapping[str, object]", facts)
+    doc, tags = known.get("doc", ""), known.get("tags", ())
+    texts = cast("Sequence[object]", tags) if isinstance(tags, list | tuple) else ()
+    return About(doc if isinstance(doc, str) else "", tuple(text for text in texts if isinstance(text, str)))

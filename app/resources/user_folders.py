@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import cast
 
 STATE_VARIABLE = "HALATION_STATE"
 """The environment variable that names the folder of everything that the editor keeps."""
@@ -46,4 +47,5 @@ def _read_shared_folders() -> tuple[str, ...]:
         folders = preferences["preset_folders"]
     except (OSError, ValueError, KeyError, TypeError):
         return ()
-    return tuple(folder for folder in folders if isinstance(folder, str)) if isinstance(folders, list) else ()
+    listed = cast("list[object]", folders) if isinstance(folders, list) else []
+    return tuple(folder for folder in listed if isinstance(folder, str))

@@ -63,10 +63,12 @@ class PresetGallery:
         for index, preset in enumerate(presets):
             if index % count:
                 imgui.same_line()
-            if leaves and index == 0:
-                imgui.set_keyboard_focus_here()
             if self._draw_card(preset, width):
                 chosen = preset
+            if leaves and index == 0:
+                imgui.internal.clear_active_id()
+                imgui.internal.focus_item()
+                imgui.set_nav_cursor_visible(True)
         imgui.end_child()
         if chosen is not None and not covered:
             self._context.documents.open_preset(chosen.path)

@@ -91,7 +91,10 @@ def _is_focus_below() -> bool:
     focused = imgui.get_current_context().nav_window
     if imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)):
         return False
-    return focused is None or imgui.internal.is_window_above(imgui.internal.get_current_window(), focused.root_window)
+    if focused is None:
+        return True
+    here, there = imgui.internal.get_current_window(), focused.root_window
+    return here.id_ != there.id_ and imgui.internal.is_window_above(here, there)
 
 
 def _to_front() -> None:

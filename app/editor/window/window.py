@@ -283,7 +283,7 @@ class Window:
             commands.saves_screenshot = False
             self._screenshot()
         if commands.maximizes_pointed:
-            commands.maximizes = self._pointed or (self._hidden and PanelTitle.VIEWER) or None
+            commands.maximizes = self._pointed or (PanelTitle.VIEWER if self._hidden else None)
             commands.maximizes_pointed = False
         if commands.toggles_full_screen:
             commands.toggles_full_screen = False
