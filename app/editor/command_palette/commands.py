@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 
 _ALIAS = 8.0
-"""How much less a name of another program counts than a label: as much as the start of a word, so that initials of a label
-(`gb`, Gaussian Blur) come before the beginning of an alias (`gbuffer`)."""
+"""How much less a name of another program counts than a label: as much as the start of a word, so that initials of a
+label (`gb`, Gaussian Blur) come before the beginning of an alias (`gbuffer`)."""
 
 
 @dataclass(frozen=True)
