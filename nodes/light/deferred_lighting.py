@@ -25,6 +25,7 @@ from .._declare import (
     numbers_of,
     ramp_at,
 )
+from ._coverage import COVERAGE_REACH
 
 TILE = 16
 """Pixels across a tile."""
@@ -32,8 +33,8 @@ TILE = 16
 FEW = 8
 """Up to so many lights, each pixel loops over all of them: sorting them into tiles costs more than it saves."""
 
-_HERE = ("albedo", "material", "occlusion", "normal", "place")
-"""What a pixel is lit by that is its own; lights and what they reach may be read anywhere."""
+_HERE = dict.fromkeys(("albedo", "material", "occlusion", "normal", "place", "near"), COVERAGE_REACH) | {"coverage": 0}
+"""What a pixel is lit by: its own, or its neighbors'; lights and what they reach may be read anywhere."""
 
 _BITS = 24
 """Lights to a channel of a texel: as many as a float holds exactly."""
@@ -155,6 +156,14 @@ class DeferredLighting(Filter):
                 "deferred_lighting_normal", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows
             )
         )
+        near = draw.point("deferred_lighting_nearness", place=place, result=Field())
+        coverage = draw(
+            "deferred_lighting_coverage",
+            normal=normal,
+            near=near,
+            overlap=COVERAGE_REACH,
+            result=Vector(width=3),
+        )
         lights = [light for light in lights_of(self.lights) if light.on]
         lights += self._swarm(MAX_LIGHTS - len(lights))
         texels = max(1, -(-len(lights) // (4 * _BITS)))
@@ -171,9 +180,11 @@ class DeferredLighting(Filter):
                 self.occlusion,
                 normal=normal,
                 place=place,
+                near=near,
+                coverage=coverage,
                 lights=table,
                 words=words,
-                overlap=dict.fromkeys(_HERE, 0),
+                overlap=_HERE,
                 model=self.model,
                 texels=texels,
                 tiled=tiled,
@@ -183,6 +194,7 @@ class DeferredLighting(Filter):
                 roughness=self.roughness,
                 specular=self.specular,
                 ambient=ambient,
+                rays=rays,
                 seen=camera is not None,
                 eye=camera.eye if camera else (0.0,) * 3,
             )

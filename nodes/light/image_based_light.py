@@ -17,6 +17,7 @@ from .._declare import (
     Trait,
     Vector,
 )
+from ._coverage import COVERAGE_REACH
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)
@@ -30,9 +31,9 @@ _LOBES = ((0.25, (256, 128)), (0.5, (128, 64)), (0.75, (64, 32)), (1.0, (32, 16)
 _SHARES = (64, 32)
 
 _HERE: Mapping[str, Overlap] = MappingProxyType(
-    dict.fromkeys(("normal", "albedo", "roughness", "metallic", "occlusion"), 0)
+    dict.fromkeys(("normal", "albedo", "roughness", "metallic", "occlusion", "near"), COVERAGE_REACH) | {"coverage": 0}
 )
-"""What is read at the pixel itself; the surroundings are read anywhere."""
+"""What is read at the pixel itself or beside it; the surroundings are read anywhere."""
 
 
 class ImageBasedLight(Filter):
@@ -60,6 +61,7 @@ class ImageBasedLight(Filter):
     roughness = Field(0.5, doc="0 is a mirror, 1 is matte. As in Blender, the square root of GGX's alpha.")
     metallic = Field(0.0, doc="1 where surfaces are metal: they only reflect, in their own color.")
     occlusion = Field(1.0, doc="The part of the light that reaches the surface: 1 is all of it.")
+    depth = Field(0.0, doc="Tells at edges which surface is in front. Without it, all are equally deep.")
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
     rotation: Annotated[
         float, Slider(-180.0, 180.0, unit="deg", doc="Rotates the environment counterclockwise, seen from above.")
@@ -85,12 +87,24 @@ class ImageBasedLight(Filter):
             draw("image_based_light_lobe", **smaller, size=size, result=DATA, roughness=roughness)
             for roughness, size in _LOBES
         ]
+        near = draw.point(
+            "image_based_light_nearness",
+            self.normal,
+            self.depth,
+            result=Field(),
+            linked=draw.is_linked(self.depth),
+        )
+        coverage = draw(
+            "image_based_light_coverage", self.normal, near=near, overlap=COVERAGE_REACH, result=Vector(width=3)
+        )
         diffuse = draw(
             "image_based_light_diffuse",
             self.normal,
             self.albedo,
             self.metallic,
             self.occlusion,
+            near=near,
+            coverage=coverage,
             overlap=_HERE,
             sky=irradiance(draw, "image_based_light", skies[3]),
             intensity=self.intensity,
@@ -104,6 +118,8 @@ class ImageBasedLight(Filter):
             self.roughness,
             self.metallic,
             self.occlusion,
+            near=near,
+            coverage=coverage,
             overlap=_HERE,
             level0=mirror,
             level1=lobes[0],

@@ -2,6 +2,7 @@
 #include "lib/alpha.glsl"
 #include "lib/brdf.glsl"
 #include "lib/camera.glsl"
+#include "lib/coverage.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
 
@@ -15,12 +16,21 @@ struct LitSurface {
     float nv, alpha;
 };
 
-// The position in the world; w is 1 on surfaces, 0 on the background.
+// 1 / depth, or if there is no depth, 1 / distance from the camera.
+float deferred_lighting_near(vec3 place, float depth, vec4 rays[3]) {
+    return is_surface(depth) ? 1.0 / depth : 1.0 / max(length(place - camera_eye(rays)), 1e-9);
+}
+
+// The position in the world; w is the nearness of surfaces, 0 on the background.
 vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool placed) {
     vec3 place = placed ? position : camera_place(rays, camera_uv(pixel, extent), depth);
     bool there = is_finite(place) && all(lessThan(abs(place), vec3(GEOMETRY_FAR)));
-    return there && (placed ? is_place(place) : is_surface(depth)) ? vec4(place, 1.0) : vec4(0.0);
+    return there && (placed ? is_place(place) : is_surface(depth)) ? vec4(place, deferred_lighting_near(place, depth, rays)) : vec4(0.0);
 }
+
+float deferred_lighting_nearness(vec4 place) { return place.w; }
+
+vec3 deferred_lighting_coverage() { return coverage_found(); }
 
 vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(rows); }
 
@@ -105,31 +115,55 @@ void deferred_lighting_sum(
     }
 }
 
+// One surface of a pixel, shaded alone. `at` is the pixel that stands for it.
+vec4 deferred_lighting_shade(
+    ivec2 at, vec3 place, vec3 normal, vec4 color, int model, int texels, bool tiled, vec2 share, bool mapped, float metal,
+    float roughness, float specular, vec3 ambient, bool seen, vec3 eye
+) {
+    color = straight(color);
+    vec2 material = clamp(mapped ? finite(material_at(at)) : vec2(metal, roughness), 0.0, 1.0);
+
+    LitSurface surface;
+    surface.place = place, surface.normal = normal;
+    surface.view = seen ? normalize(eye - place) : normal;
+    surface.mirror = reflect(-surface.view, normal);
+    surface.nv = clamp(dot(normal, surface.view), 1e-4, 1.0);
+    surface.alpha = max(material.y * material.y, DEFERRED_LIGHTING_SMOOTH);
+    surface.f0 = mix(vec3(0.08 * specular), color.rgb, material.x);
+    vec3 scatter = color.rgb * (1.0 - material.x);
+
+    vec3 sky = ambient * clamp(finite(occlusion_at(at)), 0.0, 1.0);
+    vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
+    deferred_lighting_sum(model, texels, tiled ? at / DEFERRED_LIGHTING_TILE : ivec2(0), surface, fallen, mirrored);
+    vec3 lit = share.x * scatter * fallen / BRDF_PI + share.y * mirrored;
+    return premultiplied(vec4(lit, color.a));
+}
+
 // `share` scales diffuse (x) and specular light (y).
 vec4 deferred_lighting_lit(
     int model, int texels, bool tiled, vec2 share, bool mapped, float metal, float roughness, float specular,
-    vec3 ambient, bool seen, vec3 eye
+    vec3 ambient, const vec4 rays[3], bool seen, vec3 eye
 ) {
-    vec4 place = place_at(pixel), color = finite(albedo_at(pixel));
-    vec3 normal = unit_normal(normal_at(pixel));
-    if (place.w == 0.0 || normal == vec3(0.0) || color == vec4(0.0)) return vec4(0.0, 0.0, 0.0, color.a);
-    color = straight(color);
-    vec2 material = clamp(mapped ? finite(material_at(pixel)) : vec2(metal, roughness), 0.0, 1.0);
-
-    LitSurface at;
-    at.place = place.xyz, at.normal = normal;
-    at.view = seen ? normalize(eye - place.xyz) : normal;
-    at.mirror = reflect(-at.view, normal);
-    at.nv = clamp(dot(normal, at.view), 1e-4, 1.0);
-    at.alpha = max(material.y * material.y, DEFERRED_LIGHTING_SMOOTH);
-    at.f0 = mix(vec3(0.08 * specular), color.rgb, material.x);
-    vec3 scatter = color.rgb * (1.0 - material.x);
-
-    vec3 sky = ambient * clamp(finite(occlusion_at(pixel)), 0.0, 1.0);
-    vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(at.f0, at.nv, at.alpha);
-    deferred_lighting_sum(model, texels, tiled ? pixel / DEFERRED_LIGHTING_TILE : ivec2(0), at, fallen, mirrored);
-    vec3 lit = share.x * scatter * fallen / BRDF_PI + share.y * mirrored;
-    return finite(premultiplied(vec4(lit, color.a)));
+    vec4 color = finite(albedo_at(pixel)), sum = vec4(0.0);
+    Coverage shares = coverage_of(coverage_at(pixel));
+    bool mixed = coverage_is_mixed(shares);
+    for (int k = 0; k < (mixed ? 2 : 1); ++k) {
+        ivec2 at = k == 0 ? shares.front : shares.back;
+        vec4 place = place_at(at), part = color;
+        vec3 normal = unit_normal(normal_at(at));
+        if (mixed) {
+            part = coverage_part(color, finite(albedo_at(shares.back)), shares.front_share);
+            if (seen) place.xyz = coverage_place(rays, place.xyz, normal);
+            if (k == 0) normal = coverage_front(shares);
+            else part = color - part;
+        }
+        if (place.w == 0.0 || normal == vec3(0.0) || part == vec4(0.0)) continue;
+        sum += deferred_lighting_shade(
+            at, place.xyz, normal, part, model, texels, tiled, share, mapped, metal, roughness, specular, ambient, seen,
+            eye
+        );
+    }
+    return finite(vec4(sum.rgb, color.a));
 }
 
 vec4 deferred_lighting(vec4 lit, vec4 emission) { return finite(vec4(lit.rgb + finite(emission).rgb, lit.a)); }

@@ -1,6 +1,7 @@
 #include "lib/alpha.glsl"
 #include "lib/brdf.glsl"
 #include "lib/camera.glsl"
+#include "lib/coverage.glsl"
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
@@ -105,12 +106,39 @@ vec4 image_based_light_lobe(float roughness) {
 // The place of a direction in a picture of the sky made with z up and without rotation.
 vec2 image_based_light_uv(vec3 way, int up, float rotation) { return environment_uv(way, up == UP_Y, rotation); }
 
+// Nearness tells surfaces apart; without depth a normal tells them from the background.
+float image_based_light_nearness(vec3 normal, float depth, bool linked) {
+    const float half_covered = 0.5;
+    return linked ? nearness(depth) : float(length(finite(normal)) > half_covered);
+}
+
+vec3 image_based_light_coverage() { return coverage_found(); }
+
+// One surface of a pixel: the normal, and its part of the color with alpha for its share of the pixel.
+struct ImageBasedLightSurface { ivec2 at; vec3 normal; vec4 part; };
+
+// The front surface (k = 0) or the one behind it.
+ImageBasedLightSurface image_based_light_surface(Coverage halves, int k) {
+    ivec2 at = k == 0 ? halves.front : halves.back;
+    vec4 color = clamp(straight(finite(albedo_at(pixel))), 0.0, 1.0);
+    if (!coverage_is_mixed(halves)) return ImageBasedLightSurface(at, unit_normal(normal_at(at)), vec4(color.rgb, 1.0));
+    vec4 whole = vec4(finite(albedo_at(pixel)).rgb, 1.0), back = vec4(finite(albedo_at(halves.back)).rgb, 1.0);
+    vec4 part = coverage_part(whole, back, halves.front_share);
+    vec3 normal = k == 0 ? coverage_front(halves) : coverage_normal(at);
+    return ImageBasedLightSurface(at, normal, clamp(k == 0 ? part : whole - part, 0.0, 1.0));
+}
+
 vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
-    vec3 normal = unit_normal(normal_at(pixel));
-    if (normal == vec3(0.0)) return vec4(0.0);
-    vec3 color = clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0) * (1.0 - clamp(metallic_at(pixel), 0.0, 1.0));
-    vec3 light = image_based_light_in_sky(image_based_light_uv(normal, up, rotation));
-    return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * color * light, 1.0));
+    Coverage halves = coverage_of(coverage_at(pixel));
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < (coverage_is_mixed(halves) ? 2 : 1); ++k) {
+        ImageBasedLightSurface surface = image_based_light_surface(halves, k);
+        if (surface.normal == vec3(0.0)) continue;
+        vec3 color = surface.part.rgb * (1.0 - clamp(metallic_at(surface.at), 0.0, 1.0));
+        vec3 light = image_based_light_in_sky(image_based_light_uv(surface.normal, up, rotation));
+        sum += vec4(intensity * clamp(occlusion_at(surface.at), 0.0, 1.0) * color * light, surface.part.a);
+    }
+    return finite(sum);
 }
 
 // The i-th visible microfacet for a `view` in the xz plane (Heitz 2018).
@@ -142,16 +170,22 @@ vec2 image_based_light_shares() {
 }
 
 vec4 image_based_light_reflection(const vec4 rays[3], float intensity, float rotation, int up, float specular) {
-    vec3 normal = unit_normal(normal_at(pixel));
-    if (normal == vec3(0.0)) return vec4(0.0);
+    Coverage halves = coverage_of(coverage_at(pixel));
     vec3 view = -normalize(camera_ray(rays, camera_uv(pixel, extent)));
-    float facing = clamp(dot(normal, view), 0.0, 1.0), roughness = clamp(roughness_at(pixel), 0.0, 1.0);
-    float metal = clamp(metallic_at(pixel), 0.0, 1.0);
-    vec3 color = mix(vec3(0.08 * specular), clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0), metal);
-    vec2 share = shares_near(vec2(facing, roughness) * vec2(shares_size - 1) + 0.5);
-    vec2 uv = image_based_light_uv(reflect(-view, normal), up, rotation);
-    vec3 light = image_based_light_level(uv, 4.0 * roughness) * clamp(color * share.x + share.y, 0.0, 1.0);
-    return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * light, 1.0));
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < (coverage_is_mixed(halves) ? 2 : 1); ++k) {
+        ImageBasedLightSurface surface = image_based_light_surface(halves, k);
+        if (surface.normal == vec3(0.0)) continue;
+        float facing = clamp(dot(surface.normal, view), 0.0, 1.0), roughness = clamp(roughness_at(surface.at), 0.0, 1.0);
+        float metal = clamp(metallic_at(surface.at), 0.0, 1.0), covered = surface.part.a;
+        vec3 color = mix(vec3(0.08 * specular * covered), surface.part.rgb, metal);
+        vec2 share = shares_near(vec2(facing, roughness) * vec2(shares_size - 1) + 0.5);
+        vec2 uv = image_based_light_uv(reflect(-view, surface.normal), up, rotation);
+        vec3 mirrored = clamp(color * share.x + covered * share.y, 0.0, 1.0);
+        vec3 light = image_based_light_level(uv, 4.0 * roughness) * mirrored;
+        sum += vec4(intensity * clamp(occlusion_at(surface.at), 0.0, 1.0) * light, covered);
+    }
+    return finite(sum);
 }
 
 vec4 image_based_light(vec4 diffuse, vec4 reflection) { return vec4(diffuse.rgb + reflection.rgb, diffuse.a); }
