@@ -9,8 +9,7 @@
 #include "lib/geometry.glsl"
 
 const int COVERAGE_REACH = 2;           // pixels: how far away a surface is looked for
-const int COVERAGE_CELLS = 25;          // pixels within that reach
-const int COVERAGE_SELF = 12;           // the number of the pixel itself among them
+const ivec2 COVERAGE_SELF = ivec2(0);   // the offset of the pixel itself
 const float COVERAGE_WHOLE = 0.998;     // shorter normals may be means; curved surfaces shorten normals a little too
 const float COVERAGE_NOTHING = 0.004;   // a normal of one sample among 256
 const float COVERAGE_IMPURE = 100.0;    // weight of a lack in length against squared pixels: 0.98 is 1.4 pixels away
@@ -22,18 +21,16 @@ const float COVERAGE_DIFFERENT = 0.02;  // least square of the difference betwee
 // `back` are the pixel itself, with coverage 1, where there is only one.
 struct Coverage { float front_share; ivec2 front, back; };
 
-ivec2 coverage_cell(int i) { return pixel + ivec2(i % 5, i / 5) - COVERAGE_REACH; }
-
 // The unit normal of a pixel, 0 on the background.
 vec3 coverage_normal(ivec2 at) { return near_at(at) > 0.0 ? unit_normal(normal_at(at)) : vec3(0.0); }
 
 // How unsuitable a pixel is to stand for a surface: its squared distance, and how far its normal is from that of one
 // surface.
-float coverage_cost(int i) {
-    ivec2 at = coverage_cell(i), away = at - pixel;
+float coverage_cost(ivec2 away) {
+    ivec2 at = pixel + away;
     float size = length(finite(normal_at(at))), lack = near_at(at) > 0.0 ? abs(1.0 - size) : size;
     bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent));
-    return outside || i == COVERAGE_SELF ? 1e9 : float(away.x * away.x + away.y * away.y) + COVERAGE_IMPURE * lack;
+    return outside || away == COVERAGE_SELF ? 1e9 : float(away.x * away.x + away.y * away.y) + COVERAGE_IMPURE * lack;
 }
 
 // The square of the difference between two surfaces, by direction and depth.
@@ -51,34 +48,48 @@ float coverage_share(vec3 mean, vec3 back) {
     return clamp(share, 0.0, 1.0);
 }
 
-// The surfaces of this pixel, as one color to be stored: see coverage_of().
+// The ways to the pixels that stand for the front surface (xy) and the one behind (zw); 0 if there is only one.
+ivec4 coverage_sides() {
+    const int reach = COVERAGE_REACH;
+    ivec2 one = COVERAGE_SELF, other = COVERAGE_SELF;
+    float least = 1e8;
+    for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+            float cost = coverage_cost(ivec2(x, y));
+            if (cost < least) least = cost, one = ivec2(x, y);
+        }
+    vec3 normal = coverage_normal(pixel + one);
+    float near = near_at(pixel + one);
+    least = 1e8;
+    for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+            float apart = coverage_apart(normal, near, pixel + ivec2(x, y));
+            float cost = coverage_cost(ivec2(x, y)) - COVERAGE_CONTRAST * min(apart, 1.0);
+            if (apart > COVERAGE_DIFFERENT && cost < least) least = cost, other = ivec2(x, y);
+        }
+    if (one == COVERAGE_SELF || other == COVERAGE_SELF) return ivec4(0);
+    return near_at(pixel + other) > near ? ivec4(other, one) : ivec4(one, other);
+}
+
+// The surfaces of this pixel as numbers to be stored: see coverage_of(). The search is a loop of one round or none: a
+// software rasterizer runs both sides of a branch, but leaves a loop once no pixel needs it.
 vec3 coverage_found() {
     vec3 mean = finite(normal_at(pixel));
-    float size = length(mean);
+    float size = length(mean), share = 1.0;
+    ivec4 sides = ivec4(0);
     bool mixed = size > COVERAGE_NOTHING && (near_at(pixel) <= 0.0 || size < COVERAGE_WHOLE);
-    int count = mixed ? COVERAGE_CELLS : 0, one = COVERAGE_SELF, other = COVERAGE_SELF;
-    float least = 1e8;
-    for (int i = 0; i < count; ++i) {
-        float cost = coverage_cost(i);
-        if (cost < least) least = cost, one = i;
+    for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
+        sides = coverage_sides();
+        if (sides.xy != sides.zw) share = coverage_share(mean, coverage_normal(pixel + sides.zw));
     }
-    ivec2 first = coverage_cell(one);
-    vec3 normal = coverage_normal(first);
-    float near = near_at(first);
-    least = 1e8;
-    for (int i = 0; i < count; ++i) {
-        float apart = coverage_apart(normal, near, coverage_cell(i));
-        float cost = coverage_cost(i) - COVERAGE_CONTRAST * min(apart, 1.0);
-        if (apart > COVERAGE_DIFFERENT && cost < least) least = cost, other = i;
-    }
-    if (one == COVERAGE_SELF || other == COVERAGE_SELF) return vec3(1.0, COVERAGE_SELF, COVERAGE_SELF);
-    bool swapped = near_at(coverage_cell(other)) > near;
-    ivec2 sides = swapped ? ivec2(other, one) : ivec2(one, other);
-    return vec3(coverage_share(mean, coverage_normal(coverage_cell(sides.y))), vec2(sides));
+    return vec3(share, (sides.xy << 3) + sides.zw);
 }
 
 // The surfaces of this pixel, from what coverage_found() returned.
-Coverage coverage_of(vec3 stored) { return Coverage(stored.x, coverage_cell(int(stored.y)), coverage_cell(int(stored.z))); }
+Coverage coverage_of(vec3 stored) {
+    ivec2 sides = ivec2(stored.yz), front = (sides + COVERAGE_REACH) >> 3;
+    return Coverage(stored.x, pixel + front, pixel + sides - (front << 3));
+}
 
 bool coverage_is_mixed(Coverage shares) { return shares.front != shares.back; }
 

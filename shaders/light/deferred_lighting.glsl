@@ -151,7 +151,7 @@ vec4 deferred_lighting_lit(
         ivec2 at = k == 0 ? shares.front : shares.back;
         vec4 place = place_at(at), part = color;
         vec3 normal = unit_normal(normal_at(at));
-        if (mixed) {
+        for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
             part = coverage_part(color, finite(albedo_at(shares.back)), shares.front_share);
             if (seen) place.xyz = coverage_place(rays, place.xyz, normal);
             if (k == 0) normal = coverage_front(shares);
