@@ -25,7 +25,7 @@ def filtered(samples: Array) -> Array:
 
 @pytest.fixture(scope="module")
 def scene() -> dict[str, Array]:
-    """A ball, a floor, a wall and sky: filtered color and normals, depth at pixel centers, and which pixels are shared."""
+    """A ball, a floor, a wall and sky: color and normals filtered over pixels, depth at their centers."""
     fine, centers = cast_rays(CAMERA, WIDTH * SAMPLES, HEIGHT * SAMPLES), cast_rays(CAMERA, WIDTH, HEIGHT)
     surface = np.where(fine.normal[..., 2] == 1.0, 1, np.where(fine.normal[..., 1] == -1.0, 2, 3)) * fine.hit
     albedo = COLORS[surface]
@@ -73,10 +73,11 @@ def test_lamps_light_each_surface_of_a_pixel(run, scene, alpha):
     inputs = {name: scene[name] for name in ("albedo", "normal", "depth")}
     if alpha:
         inputs["albedo"] = inputs["albedo"].copy()
-        inputs["albedo"][..., 3] = filtered((np.linalg.norm(cast_rays(CAMERA, WIDTH * SAMPLES, HEIGHT * SAMPLES).normal, axis=-1) > 0.5) * 1.0)[..., 0]
+        inputs["albedo"][..., 3] = filtered(
+            (np.linalg.norm(cast_rays(CAMERA, WIDTH * SAMPLES, HEIGHT * SAMPLES).normal, axis=-1) > 0.5) * 1.0
+        )[..., 0]
     light = run(node, inputs | {"camera": CAMERA}, output="diffuse")
     inside, edges, largest = errors(scene, light, "lit")
-    print(inside, edges, largest)
     assert inside < 1e-3 and edges < 6e-3 and largest < 0.03
     assert (light[..., 3] == inputs["albedo"][..., 3].astype(np.float32)).all()
 
@@ -86,7 +87,6 @@ def test_surroundings_light_each_surface_of_a_pixel(run, scene, deep):
     names = ("albedo", "normal", "depth") if deep else ("albedo", "normal")
     inputs = {name: scene[name] for name in names} | {"camera": CAMERA}
     inside, edges, largest = errors(scene, run(ImageBasedLight(specular=0.0), inputs, output="diffuse"), "sky")
-    print(inside, edges, largest)
     assert inside < 1e-3 and edges < 6e-3 and largest < 0.03
 
 
