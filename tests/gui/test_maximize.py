@@ -23,10 +23,24 @@ def test_the_panel_under_the_pointer_fills_the_window(gui, title: str, place: tu
         ui.move(title, place)
         ui.keys("Ctrl+Space")
         ui.wait(6)
-        assert width_of(ui, title) > 1390 > narrow
+        left, top, right, bottom = ui.editor.places[title]
+        assert right - left > 1390 > narrow and bottom - top > 700
         ui.keys("Ctrl+Space")
         ui.wait(6)
         assert width_of(ui, title) == narrow and not ui.editor.timeline.playback.playing
+
+    gui(body, BLOOM)
+
+
+def test_a_panel_that_is_asked_for_is_seen(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.keys("F11")
+        ui.wait(6)
+        assert "Inspector" not in ui.editor.places
+        ui.keys("F12")
+        ui.wait(6)
+        assert {"Renders", "Inspector"} <= ui.editor.places.keys()
 
     gui(body, BLOOM)
 

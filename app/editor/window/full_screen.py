@@ -1,4 +1,4 @@
-"""The window as large as the screen, and the panel under the pointer."""
+"""A panel as large as the window, the window as large as the screen, and the panel under the pointer."""
 
 from __future__ import annotations
 
@@ -34,6 +34,22 @@ class FullScreen:
             glfw.set_window_monitor(host, monitor, 0, 0, width, height, 0)  # pyright: ignore
         bars.show_menu_bar = bars.show_status_bar = self._window is None
         return self._window is not None
+
+
+def begin_filling(title: PanelTitle, area: Rect, flags: int) -> bool:
+    """Begin a window over all docks that holds a panel; True if it is seen.
+
+    The panel keeps its dock, which would go if it left it: docks that hold nothing are removed.
+    """
+    imgui.set_next_window_pos(area[:2])
+    imgui.set_next_window_size((area[2] - area[0], area[3] - area[1]))
+    still = int(imgui.WindowFlags_.no_decoration) & ~int(imgui.WindowFlags_.no_scrollbar)
+    still |= int(imgui.WindowFlags_.no_docking) | int(imgui.WindowFlags_.no_move)
+    still |= int(imgui.WindowFlags_.no_saved_settings) | int(imgui.WindowFlags_.no_bring_to_front_on_focus)
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+    is_seen, _ = imgui.begin(f"{title}###{title} fills", None, flags | still)
+    imgui.pop_style_var()
+    return is_seen
 
 
 def _find_monitor(window: tuple[int, int, int, int]) -> tuple[Any, tuple[int, int]]:

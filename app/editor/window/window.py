@@ -19,13 +19,14 @@ from ..shared.window_commands import PanelTitle
 from ..theme import fonts, style
 from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
+from ..toolkit.places import Rect
 from .assembly import assemble, open_first, take_apart
 from .contexts import Contexts, compose_contexts
 from .dock_shares import DockShares
 from .dropped_files import take_files
 from .editor import Editor
 from .frame_updater import FrameUpdater
-from .full_screen import FullScreen, find_pointed_panel
+from .full_screen import FullScreen, begin_filling, find_pointed_panel
 from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
 from .menus import draw_menus
@@ -66,6 +67,8 @@ class Window:
         self._worked_at = 0.0
         self._hidden: tuple[PanelTitle, ...] = ()
         """Panels that are hidden while another one fills the window."""
+        self._filling: PanelTitle | None = None
+        """The panel that fills the window."""
         self._pointed: PanelTitle | None = None
         """The panel under the pointer."""
         self._docks = DockShares(lambda name: self.params.docking_params.dock_space_id_from_name(name))
@@ -220,13 +223,25 @@ class Window:
         if docked.title in self._fronted:  # the library only does so for windows that it begins itself
             self._fronted.discard(docked.title)
             imgui.set_next_window_focus()
-        is_seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
-        host.is_visible = bool(stays)
+        if docked.title == self._filling:
+            is_seen = begin_filling(docked.title, self._find_dock_area(), _BARE if docked.bare else 0)
+        else:
+            is_seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+            host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
         if is_seen:
             self._draw_inside(docked.title)
         imgui.end()
+
+    def _find_dock_area(self) -> Rect:
+        """The part of the window that holds the panels."""
+        node = imgui.internal.dock_builder_get_node(
+            self.params.docking_params.dock_space_id_from_name("MainDockSpace") or 0
+        )
+        while node.parent_node is not None:
+            node = node.parent_node
+        return node.pos.x, node.pos.y, node.pos.x + node.size.x, node.pos.y + node.size.y
 
     def _draw_inside(self, title: str) -> None:
         corner, size = imgui.get_window_pos(), imgui.get_window_size()
@@ -276,6 +291,7 @@ class Window:
         commands, docking = self.editor.commands, self.params.docking_params
         if commands.resets_layout:
             commands.resets_layout = False
+            self._restore_panels()
             docking.layout_reset = True
             for docked in DOCKED:
                 docking.dockable_window_of_name(docked.title).is_visible = True
@@ -283,15 +299,17 @@ class Window:
             commands.saves_screenshot = False
             self._screenshot()
         if commands.maximizes_pointed:
-            commands.maximizes = self._pointed or (PanelTitle.VIEWER if self._hidden else None)
+            commands.maximizes = self._pointed or self._filling
             commands.maximizes_pointed = False
         if commands.toggles_full_screen:
             commands.toggles_full_screen = False
-            if self._full_screen.toggle() is not bool(self._hidden):
+            if self._full_screen.toggle() is (self._filling is None):
                 commands.maximizes = PanelTitle.VIEWER
         if commands.maximizes is not None:
             self._maximize(commands.maximizes)
             commands.maximizes = None
+        if any(title != self._filling for title in commands.panels):
+            self._restore_panels()  # else the panel would be below the one that fills the window
         for title in commands.panels:
             docking.dockable_window_of_name(title).is_visible = True
             self._fronted.add(title)
@@ -302,6 +320,7 @@ class Window:
         if self._restore_panels():
             return
         panels = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        self._filling = title
         self._hidden = tuple(name for name, panel in panels.items() if panel.is_visible and name != title)
         for name in self._hidden:
             panels[name].is_visible = False
@@ -310,9 +329,12 @@ class Window:
     def _restore_panels(self) -> bool:
         """Show the panels that were hidden for one; False if none was."""
         hidden, self._hidden = self._hidden, ()
+        if self._filling is not None:
+            self._fronted.add(self._filling)
+        was_filling, self._filling = self._filling is not None, None
         for name in hidden:
             self.params.docking_params.dockable_window_of_name(name).is_visible = True
-        return bool(hidden)
+        return was_filling
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
