@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from halation import presets
 from halation.authoring.commands import AddNode
+from halation.editor.shared.window_commands import PanelTitle
 from halation.editor.toolkit.keys import chord
 
 BLOOM = next(path for path in presets.paths() if path.stem == "soft_bloom")
@@ -32,6 +33,22 @@ def test_the_panel_under_the_pointer_fills_the_window(gui, title: str, place: tu
     gui(body, BLOOM)
 
 
+def test_the_tabs_in_front_stay_in_front(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.ctx.window_focus("//Problems")
+        ui.wait(3)
+        front = {title for title in PanelTitle if title in ui.editor.places}
+        assert {"Problems", "Scopes"} <= front and not {"Graph", "History"} & front
+        ui.move("Viewer")
+        for _ in range(2):
+            ui.keys("Ctrl+Space")
+            ui.wait(15)
+        assert {title for title in PanelTitle if title in ui.editor.places} == front
+
+    gui(body, BLOOM)
+
+
 def test_a_panel_that_is_asked_for_is_seen(gui) -> None:
     def body(ui) -> None:
         ui.settled()
@@ -39,7 +56,7 @@ def test_a_panel_that_is_asked_for_is_seen(gui) -> None:
         ui.wait(6)
         assert "Inspector" not in ui.editor.places
         ui.keys("F12")
-        ui.wait(6)
+        ui.wait(15)
         assert {"Renders", "Inspector"} <= ui.editor.places.keys()
 
     gui(body, BLOOM)

@@ -37,6 +37,9 @@ from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
 
 SIZE = (1600, 1000)
+_APPEARING = 3
+"""Frames until panels that are shown again are in their docks: each comes to the front there as it appears."""
+
 _NODE = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button.value)
 """Tabs can be closed, not whole docks."""
 _BARE = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
@@ -67,6 +70,11 @@ class Window:
         self._worked_at = 0.0
         self._hidden: tuple[PanelTitle, ...] = ()
         """Panels that are hidden while another one fills the window."""
+        self._front: frozenset[PanelTitle] = frozenset()
+        """The panels in front of their docks, as they were before one filled the window."""
+        self._front_again: tuple[PanelTitle, ...] = ()
+        self._front_at = 0
+        """Panels that come to the front from that frame on: one in each, as a tab follows only the last focus."""
         self._filling: PanelTitle | None = None
         """The panel that fills the window."""
         self._pointed: PanelTitle | None = None
@@ -186,6 +194,11 @@ class Window:
         self._restyle()
         self._docks.follow_window()
         self._pointed = find_pointed_panel(editor.places)
+        if self._filling is None:
+            self._front = frozenset(title for title in PanelTitle if title in editor.places)
+        if self._front_again and self.frames >= self._front_at:
+            self._fronted.add(self._front_again[0])
+            self._front_again = self._front_again[1:]
         editor.places.clear()
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.interface.dragging = False
@@ -310,6 +323,11 @@ class Window:
             commands.maximizes = None
         if any(title != self._filling for title in commands.panels):
             self._restore_panels()  # else the panel would be below the one that fills the window
+        if commands.panels:
+            docks = {docked.title: docked.dock for docked in DOCKED}
+            taken = {docks[title] for title in commands.panels}
+            others = (title for title in self._front_again if docks[title] not in taken)
+            self._front_again = (*others, *commands.panels)
         for title in commands.panels:
             docking.dockable_window_of_name(title).is_visible = True
             self._fronted.add(title)
@@ -325,12 +343,13 @@ class Window:
         for name in self._hidden:
             panels[name].is_visible = False
         panels[title].is_visible = True
+        imgui.set_nav_cursor_visible(False)  # the panel gets the focus, but the user did not choose anything in it
 
     def _restore_panels(self) -> bool:
         """Show the panels that were hidden for one; False if none was."""
         hidden, self._hidden = self._hidden, ()
         if self._filling is not None:
-            self._fronted.add(self._filling)
+            self._front_again, self._front_at = tuple(sorted(self._front)), self.frames + _APPEARING
         was_filling, self._filling = self._filling is not None, None
         for name in hidden:
             self.params.docking_params.dockable_window_of_name(name).is_visible = True
