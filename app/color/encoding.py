@@ -74,7 +74,7 @@ class Encoding(Struct, frozen=True):
         if bits < 16 and self.dithers(is_data):
             height, width = encoded.shape[:2]
             noise = make_dither(width, height, frame) / np.float32((1 << bits) - 1)
-            for channel in range(3):  # the same for all, so that gray stays gray; one by one takes a quarter of the time
+            for channel in range(3):  # the same for all: gray stays gray. Numpy adds four times as fast one by one
                 encoded[..., channel] += noise
         codes = quantize(encoded, bits)
         return np.rint(codes * (65535 / 1023)).astype(np.uint16) if bits == 10 else codes
