@@ -230,7 +230,9 @@ def _chroma_planes(codes: Array, matrix: int, format: str, bits: int, noise_fram
         *(_halve_chroma(difference, across, down) * all + none for difference in (blue, red)),
     ]
     if noise_frame is not None:
-        planes = [plane + make_dither(*plane.shape[::-1], noise_frame, index) for index, plane in enumerate(planes)]
+        for index, plane in enumerate(planes):
+            height, width = plane.shape
+            planes[index] = plane + make_dither(width, height, noise_frame, index)
     if format.startswith("yuva"):
         alpha = codes[..., 3] if codes.shape[2] == 4 else np.ones_like(codes[..., 0])
         planes.append(alpha * np.float32((1 << bits) - 1))
