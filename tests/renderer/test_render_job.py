@@ -23,6 +23,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "destinations": st.lists(st.tuples(TEXT, TEXT), max_size=3).map(tuple),
     "precision": st.sampled_from([None, "half", "float"]),
     "form": st.sampled_from([None, "fragment", "compute"]),
+    "dither": st.sampled_from(["blue", "none"]),
 }
 HINTS = get_type_hints(RenderJob)
 BY_TYPE: dict[Any, st.SearchStrategy[Any]] = {
