@@ -84,7 +84,6 @@ UNRESTRICTED = {
     "cli/demo.py": "presets",
     "cli/gallery.py": "presets",
     "cli/specimen.py": "a provider that reads no files",
-    "color/dithering.py": "shaders of Halation",
     "color/management.py": "the config of $OCIO, which the user trusts",
     "editor/library/dialog.py": "a preset in a folder of the user",
     "editor/start/gallery.py": "small pictures of presets",
