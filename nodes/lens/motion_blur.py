@@ -73,7 +73,7 @@ class MotionBlur(Filter):
         # Stops may lie half a step before and after the shutter is open; a parabola gets so much farther by then.
         looks = math.ceil(reach * (1.0 + 4.0 / self.samples + 2.0 / self.samples**2)) + 4
         within = Reach.within(tile, tile)
-        layer = draw("motion_blur_layer", self.velocity, self.depth, overlap=2, result=Vector(width=2))
+        layer = draw("motion_blur_layer", self.velocity, self.depth, self.image, overlap=2, result=Vector(width=2))
         velocity: Pixels = self.velocity
         fronts: Pixels = self.image
         if draw.is_linked(self.depth):
@@ -97,7 +97,7 @@ class MotionBlur(Filter):
             paths=paths,
             around=around,
             variety=variety,
-            overlap={"image": 0, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
+            overlap={"image": looks, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
             times=times,
             tile=tile,
             samples=self.samples,

@@ -28,8 +28,8 @@ vec2 motion_blur_edge(float here) {
     const float steeper = 4.0;
     float jump = 0.0;
     vec2 bounds = vec2(here);
-    for (int axis = 0; axis < 2; ++axis) {
-        ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+    for (int axis = 0; axis < 4; ++axis) {
+        ivec2 next = axis < 2 ? ivec2(1 - axis, axis) : ivec2(1, 2 * axis - 5);
         vec2 beside = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
         vec2 steps = abs(beside - here);
         bounds = vec2(max(bounds.x, max(beside.x, beside.y)), min(bounds.y, min(beside.x, beside.y)));
@@ -80,8 +80,30 @@ vec4 motion_blur_motion(uint side) {
     return total > 0.0 ? sum / total : velocity_at(pixel);
 }
 
+// The mean color of the pixels whose bits are set.
+vec4 motion_blur_color(uint side) {
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (; side != 0u; side &= side - 1u) {
+        int i = findLSB(side);
+        sum += motion_blur_nearby(i) * finite(image_at(pixel + motion_blur_beside(i)));
+        total += motion_blur_nearby(i);
+    }
+    return sum / max(total, 1e-9);
+}
+
+// The coverage from color; -1 where the color is not on the line between those of the two surfaces.
+float motion_blur_cover(uvec2 sides) {
+    const float astray = 0.02;  // of the squared contrast, as for the textures of a surface
+    vec4 back = motion_blur_color(sides.y), apart = motion_blur_color(sides.x) - back;
+    vec4 here = finite(image_at(pixel)) - back;
+    float square = dot(apart, apart), cover = dot(here, apart) / max(square, 1e-9);
+    vec4 off = here - cover * apart;
+    return square > 0.0 && dot(off, off) < astray * square ? clamp(cover, 0.0, 1.0) : -1.0;
+}
+
 // Finds the coverage from the velocity, if the renderer filters velocity like color: velocity varies less over a
-// surface than color does.
+// surface than color does. Cycles leaves the background out of the mean, so before the background color tells it.
 vec2 motion_blur_layer() {
     const float slow = 0.5, hardly = 0.01;  // least difference of motion, in pixels; least coverage
     float here = nearness(depth_at(pixel)), cover = 0.0;
@@ -91,6 +113,8 @@ vec2 motion_blur_layer() {
     vec4 back = motion_blur_motion(sides.y), apart = motion_blur_motion(sides.x) - back;
     float square = dot(apart, apart);
     if (square > slow * slow) cover = dot(velocity_at(pixel) - back, apart) / square;
+    bool open = bounds.x > 0.0 && bounds.y <= 0.0 && sides.x != 0u;
+    if (open && cover >= 1.0 - hardly) cover = motion_blur_cover(sides);
     if (!(cover > hardly && cover < 1.0 - hardly)) return vec2(here, bounds.x > 0.0 ? -1.0 : 1.0);
     return vec2(2.0 * here > bounds.x + bounds.y ? here : bounds.x, -cover);
 }
@@ -213,7 +237,7 @@ float motion_blur_unlike(float apart, float far) {
 }
 
 // The samples along a path, at equal steps of time from `first` to `last`.
-struct MotionBlurRun { vec4 path; float step, shift; bool sparse; int first, last; };
+struct MotionBlurRun { vec4 path; float step, shift; bool sparse; int first, last; vec2 gains; };
 
 // Steps of one pixel, so that no pixel is missed, or longer ones with a random start if those would be too many.
 MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
@@ -227,8 +251,15 @@ MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
     run.shift = run.sparse ? noise * run.step : 0.0;
     run.first = int(round((times.x - run.shift) / run.step));
     run.last = int(round((times.y - run.shift) / run.step));
+    // On a short path the pixels at its ends count as if it led to their centers. These gains of the middle and the ends
+    // make the variance that of the path, length^2 / 12.
+    float span = (times.y - times.x) / run.step, ends = span * span * span / (12.0 * max(span - 1.0, 1e-6));
+    bool blunt = span > 1.0 && ends < 1.0 && times.x == -times.y && !run.sparse;
+    run.gains = blunt ? vec2(span * (1.0 - span * span / 12.0), ends) : vec2(1.0);
     return run;
 }
+
+float motion_blur_gain(MotionBlurRun run, int i) { return i == 0 ? run.gains.x : run.gains.y; }
 
 float motion_blur_time(MotionBlurRun run, int i) { return float(i) * run.step + run.shift; }
 
@@ -274,7 +305,7 @@ vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
         for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
             ivec2 at = cell + (1 - k) * side;
             if (motion_blur_outside(at)) continue;
-            float spent = (open.y - open.x) * (k == 1 ? 1.0 - part : part);
+            float spent = motion_blur_gain(even, i) * (open.y - open.x) * (k == 1 ? 1.0 - part : part);
             sum += spent * finite(fronts_at(at));
             total += spent;
         }
@@ -331,6 +362,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
             if (motion_blur_outside(at)) continue;
             MotionBlurMet met = motion_blur_met(at, own, far, layer.x, times);
             float share = (k == 1 ? 1.0 - part : part) * motion_blur_share(met.path, times, from, to);
+            share *= motion_blur_gain(passing, i);
             front += met.before * share * met.light;
             covers += met.before * share * met.cover;
             moving += met.after * share * met.light;
@@ -346,7 +378,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
         ivec2 cell, side;
         float part = motion_blur_between(run, i, cell, side);
         vec2 open = motion_blur_open(run, i, times), away = motion_blur_place(own, motion_blur_time(run, i));
-        float spent = (open.y - open.x) / (times.y - times.x);
+        float spent = motion_blur_gain(run, i) * (open.y - open.x) / (times.y - times.x);
         for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
             ivec2 at = cell + (1 - k) * side;
             if (motion_blur_outside(at)) continue;
@@ -356,9 +388,10 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
             stays += (1.0 - met.after) * share * met.cover;
             bares += share * (1.0 - (1.0 - met.after) * met.cover);
             // The hidden background is guessed from its nearest visible part.
-            float weight = met.after * share / max(dot(away, away), 1.0);
-            behind += weight * met.light;
-            nearby += weight * met.cover;
+            // Pixels at edges show a part of it, apart from the surface in front.
+            float weight = share / max(dot(away, away), 1.0), beside = weight * (1.0 - met.after);
+            behind += weight * met.after * met.light + beside * (finite(image_at(at)) - met.light);
+            nearby += weight * met.after * met.cover + beside * (1.0 - met.cover);
         }
     }
     if (still || alone) return still ? here : box;

@@ -1,0 +1,46 @@
+"""Slow motion of antialiased layers against the mean over many moments, each sampled 12 x 12 times a pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.nodes.lens.motion_blur import MotionBlur
+from scipy.ndimage import binary_dilation, correlate1d
+from scipy.signal.windows import blackmanharris
+
+Array = np.ndarray
+
+WIDTH, HEIGHT, SAMPLES, MOMENTS = 96, 72, 12, 24
+FILTER = blackmanharris(19)
+BALL, SKY = np.array([0.5, 0.06, 0.05]), np.array([0.5, 0.6, 0.8])
+
+
+def cover(x: float, y: float) -> Array:
+    """How much of each pixel a ball covers, by the filter of Cycles: Blackman and Harris, 1.5 pixels wide."""
+    down, across = np.mgrid[: HEIGHT * SAMPLES, : WIDTH * SAMPLES] / SAMPLES
+    inside = (np.hypot(across - x, down - y) < 24.3) * 1.0
+    for axis in (0, 1):
+        inside = correlate1d(inside, FILTER / FILTER.sum(), axis)
+    return inside[SAMPLES // 2 :: SAMPLES, SAMPLES // 2 :: SAMPLES]
+
+
+def decibels(image: Array, expected: Array, where: Array) -> float:
+    return float(-10.0 * np.log10(((image - expected)[where] ** 2).mean()))
+
+
+@pytest.mark.parametrize("speed", [2.0, 4.0, 8.0, 12.0])
+def test_a_slow_ball_before_the_sky_has_no_dotted_ring(run, speed):
+    """As Cycles writes it: vectors leave the sky out, so a pixel that the ball touches has all of its motion."""
+    x, y, way = 47.2, 35.6, np.array([0.8, -0.6]) * speed
+    share, moments = cover(x, y), (np.arange(MOMENTS) + 0.5) / MOMENTS - 0.5
+    down, across = np.mgrid[:HEIGHT, :WIDTH] + 0.5
+    depth = np.where(np.hypot(across - x, down - y) < 24.3, 5.0, 1e10)
+    image = np.dstack([share[..., None] * BALL + (1.0 - share[..., None]) * SKY, np.ones_like(share)])
+    velocity = np.where((share > 0.0)[..., None], np.float32([*way, *way]), np.float32(0.0))
+    blurred = np.mean([cover(*(np.array([x, y]) + 0.5 * time * way)) for time in moments], 0)[..., None]
+    expected = blurred * BALL + (1.0 - blurred) * SKY
+    found = run(MotionBlur(max_length=0.5), {"image": image, "velocity": velocity, "depth": depth})[..., :3]
+    edge = binary_dilation((blurred > 0.0) & (blurred < 1.0), iterations=1)[..., 0]
+    print(speed, decibels(found, expected, np.ones_like(edge)), decibels(found, expected, edge), np.abs(found - expected).max())
+    assert decibels(found, expected, np.ones_like(edge)) > 45.0
+    assert decibels(found, expected, edge) > 40.0
