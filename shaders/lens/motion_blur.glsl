@@ -80,23 +80,16 @@ vec4 motion_blur_motion(uint side) {
     return total > 0.0 ? sum / total : velocity_at(pixel);
 }
 
-// The mean color of the pixels whose bits are set.
-vec4 motion_blur_color(uint side) {
-    vec4 sum = vec4(0.0);
-    float total = 0.0;
-    for (; side != 0u; side &= side - 1u) {
-        int i = findLSB(side);
-        sum += motion_blur_nearby(i) * finite(image_at(pixel + motion_blur_beside(i)));
-        total += motion_blur_nearby(i);
-    }
-    return sum / max(total, 1e-9);
-}
-
 // The coverage from color; -1 where the color is not on the line between those of the two surfaces.
 float motion_blur_cover(uvec2 sides) {
     const float astray = 0.02;  // of the squared contrast, as for the textures of a surface
-    vec4 back = motion_blur_color(sides.y), apart = motion_blur_color(sides.x) - back;
-    vec4 here = finite(image_at(pixel)) - back;
+    mat2x4 sum = mat2x4(0.0);
+    vec2 total = vec2(1e-9);
+    for (int i = 0; i < (sides.x == 0u ? 0 : 25); ++i) {
+        vec2 weight = motion_blur_nearby(i) * vec2(sides >> uint(i) & 1u);
+        sum += outerProduct(finite(image_at(pixel + motion_blur_beside(i))), weight), total += weight;
+    }
+    vec4 back = sum[1] / total.y, apart = sum[0] / total.x - back, here = finite(image_at(pixel)) - back;
     float square = dot(apart, apart), cover = dot(here, apart) / max(square, 1e-9);
     vec4 off = here - cover * apart;
     return square > 0.0 && dot(off, off) < astray * square ? clamp(cover, 0.0, 1.0) : -1.0;
@@ -259,8 +252,6 @@ MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
     return run;
 }
 
-float motion_blur_gain(MotionBlurRun run, int i) { return i == 0 ? run.gains.x : run.gains.y; }
-
 float motion_blur_time(MotionBlurRun run, int i) { return float(i) * run.step + run.shift; }
 
 // The time span of one sample, within the shutter time.
@@ -305,7 +296,7 @@ vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
         for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
             ivec2 at = cell + (1 - k) * side;
             if (motion_blur_outside(at)) continue;
-            float spent = motion_blur_gain(even, i) * (open.y - open.x) * (k == 1 ? 1.0 - part : part);
+            float spent = even.gains[min(abs(i), 1)] * (open.y - open.x) * (k == 1 ? 1.0 - part : part);
             sum += spent * finite(fronts_at(at));
             total += spent;
         }
@@ -362,7 +353,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
             if (motion_blur_outside(at)) continue;
             MotionBlurMet met = motion_blur_met(at, own, far, layer.x, times);
             float share = (k == 1 ? 1.0 - part : part) * motion_blur_share(met.path, times, from, to);
-            share *= motion_blur_gain(passing, i);
+            share *= passing.gains[min(abs(i), 1)];
             front += met.before * share * met.light;
             covers += met.before * share * met.cover;
             moving += met.after * share * met.light;
@@ -378,7 +369,7 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
         ivec2 cell, side;
         float part = motion_blur_between(run, i, cell, side);
         vec2 open = motion_blur_open(run, i, times), away = motion_blur_place(own, motion_blur_time(run, i));
-        float spent = motion_blur_gain(run, i) * (open.y - open.x) / (times.y - times.x);
+        float spent = run.gains[min(abs(i), 1)] * (open.y - open.x) / (times.y - times.x);
         for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
             ivec2 at = cell + (1 - k) * side;
             if (motion_blur_outside(at)) continue;
