@@ -1,4 +1,4 @@
-"""Which tests run: all but those of the night, only fast ones, or also those of the night.
+"""Which tests run: all but those of the night, only fast ones, those of what has changed, or also those of the night.
 
 `--fast` leaves out the rooms that start programs and the tests that `slow_tests.txt` lists; with `HALATION_RENEW=1`,
 `--costs` writes that list anew. `--nightly` repeats more often what kills or draws at random.
@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from changes import covers, list_changes
 
 TESTS = Path(__file__).parent
 LIST = TESTS / "slow_tests.txt"
@@ -29,12 +30,15 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """The options that choose."""
     group = parser.getgroup("selection", "which tests run")
     group.addoption("--fast", action="store_true", help="only what takes little time: for every save")
+    group.addoption("--changed", action="store_true", help="only what covers the files that git says have changed")
     group.addoption("--nightly", action="store_true", help="repeat more often what happens at random")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Do not even import the rooms that `--fast` leaves out."""
     is_slow = collection_path.is_relative_to(TESTS) and collection_path.relative_to(TESTS).parts[:1] in _FIRST_PARTS
+    if config.getoption("--changed") and collection_path.name.startswith("test_"):
+        return None if covers(collection_path, list_changes()) else True
     return True if config.getoption("--fast") and is_slow else None
 
 

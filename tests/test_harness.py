@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from changes import covers, list_changes
 from selection import LIST, name_function
 
 ROOT = Path(__file__).parents[1]
@@ -184,6 +185,50 @@ def test_fast_tests_are_those_of_other_rooms_that_are_not_listed(tmp_path: Path)
     slow = set(LIST.read_text().split("\n"))
     assert any(name.startswith("tests/graph") for name in names) and not any("tests/law" in name for name in names)
     assert not names & slow and any(name.startswith("tests/graph") for name in slow)
+
+
+@pytest.mark.parametrize(
+    ("changed", "test", "covered"),
+    [
+        ("shaders/geometry/curvature.glsl", "tests/nodes/test_curvature.py", True),
+        ("shaders/lib/geometry.glsl", "tests/nodes/test_curvature.py", True),
+        ("shaders/lib/occlusion.glsl", "tests/nodes/test_contact_shadows.py", True),
+        ("shaders/geometry/curvature.glsl", "tests/document/test_merging.py", False),
+        ("nodes/geometry/curvature.py", "tests/nodes/test_curvature.py", True),
+        ("app/graph/walk.py", "tests/graph/test_walk.py", True),
+        ("app/graph/walk.py", "tests/color/test_views.py", False),
+        ("app/cli/merge.py", "tests/cli/test_merge.py", True),
+        ("tests/geometry.py", "tests/nodes/test_curvature.py", True),
+        ("tests/conftest.py", "tests/nodes/test_curvature.py", True),
+        ("tests/cli/conftest.py", "tests/nodes/test_curvature.py", False),
+        ("tests/nodes/test_curvature.py", "tests/nodes/test_curvature.py", True),
+        ("app/editor/code/panel.py", "tests/nodes/test_curvature.py", False),
+    ],
+)
+def test_changed_files_are_covered_by_what_imports_them(changed: str, test: str, covered: bool) -> None:
+    assert covers(ROOT / test, {ROOT / changed}) is covered
+
+
+def test_every_module_of_the_lower_floors_is_covered() -> None:
+    tests = [*(ROOT / "tests").rglob("test_*.py")]
+    for folder in ("graph", "document", "compiler", "color", "renderer"):
+        for module in (ROOT / "app" / folder).rglob("*.py"):
+            assert any(covers(test, {module}) for test in tests), module
+
+
+def test_changes_are_those_that_git_tells(tmp_path: Path) -> None:
+    def git(*words: str) -> None:
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *words], cwd=tmp_path, check=True)
+
+    with pytest.raises(pytest.UsageError, match="which does not know"):
+        list_changes(tmp_path / "none")
+    git("init", "-q")
+    for name in ("a.py", "b.py", "c.py"):
+        (tmp_path / name).write_text("")
+    git("add", "a.py", "b.py")
+    git("commit", "-qm", "first")
+    (tmp_path / "b.py").write_text("1")
+    assert list_changes(tmp_path) == {tmp_path / "b.py", tmp_path / "c.py"}
 
 
 def test_the_list_of_slow_tests_names_tests_that_are_there() -> None:
