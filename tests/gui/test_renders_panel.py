@@ -18,6 +18,9 @@ from halation.media import read_layer
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
 
+LONG = 24
+"""Frames of a render that is suspended when the first is done: enough that others are left."""
+
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
 
 
@@ -29,8 +32,8 @@ def shot(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def long_shot(tmp_path: Path) -> Path:
-    """The same, for seconds."""
-    return made(tmp_path, 60)
+    """The same, for a while."""
+    return made(tmp_path, LONG)
 
 
 def made(tmp_path: Path, count: int) -> Path:
@@ -145,7 +148,7 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         while first.done < 1 and first.state == "running":  # without the window, which may draw once a second
             time.sleep(0.002)
         suspend(first, True)  # so the render is not done before it is cancelled
-        assert first.state == "running" and first.done < 60
+        assert first.state == "running" and first.done < LONG
         order("b")
         order("c")
         _, second, third = exports.all
@@ -159,14 +162,14 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         suspend(first, False)
         ui.until(lambda: first.state == "cancelled")
         ended(ui, 3)
-        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 60
+        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < LONG
         ui.wait(4)
         ui.shot("queue_cancelled.png")
         at = sorted(exports.all, key=lambda one: -one.ended_at).index(first)
         ui.click(f"again {at}")
         ended(ui, 3)
         assert exports.all[0].state == "done" and exports.all[0].reused >= 1
-        assert len(list(long_shot.parent.glob("a.*.png"))) == 60
+        assert len(list(long_shot.parent.glob("a.*.png"))) == LONG
 
     gui(body, long_shot)
 
