@@ -6,11 +6,12 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from types import MappingProxyType
+from importlib.util import find_spec
+from types import CodeType, MappingProxyType
 from typing import Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 from typer.main import get_command
 
 from ..errors import RenderError
@@ -87,6 +88,14 @@ class _Group(TyperGroup):
         """The names of the commands, in the order of the help."""
         return list(self.commands)
 
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the list of the commands, each with the start of its docstring."""
+        limit = formatter.width - 6 - max(map(len, _VISIBLE))  # as the method that this one replaces
+        with formatter.section("Commands"):
+            formatter.write_dl(
+                [(name, TyperCommand(name, help=read_summary(name)).get_short_help_str(limit)) for name in _VISIBLE]
+            )
+
 
 app = typer.Typer(
     name="halation",
@@ -110,6 +119,19 @@ def main_options(
     if context.invoked_subcommand is None:
         print(context.get_help(), file=sys.stderr)
         raise typer.Exit(2)
+
+
+def read_summary(name: str) -> str:
+    """The docstring of a command. It is read from the code of the module, which is not run.
+
+    To run the modules of all commands, and to read their options, takes half of the time of `halation --help`.
+    """
+    function = name.replace("-", "_")
+    spec = find_spec(f".{function}", __package__)
+    code: CodeType | None = spec.loader.get_code(spec.name) if spec and spec.loader else None  # type: ignore[attr-defined]
+    bodies = [item for item in code.co_consts if isinstance(item, CodeType)] if code else []
+    docstring = next((body.co_consts[0] for body in bodies if body.co_name == function), None)
+    return docstring if isinstance(docstring, str) else ""
 
 
 def run_process(arguments: Sequence[str]) -> int:
