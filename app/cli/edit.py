@@ -46,7 +46,7 @@ def edit(
 
 
 def _is_picture(path: Path) -> bool:
-    from ..media.pictures.thumbnail import is_picture
+    from ..media.pictures.file_endings import is_picture
 
     return is_picture(path)
 

@@ -278,11 +278,13 @@ def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Ar
 
 def _conversion_mark(picture: Picture, sandbox: Sandbox) -> str:
     """A mark that changes when the color conversion of a file does."""
-    from ..color.file_space import find_requested_space
     from ..color.management import get_color_manager
 
     manager = get_color_manager(picture.color, sandbox)
-    find_requested_space(picture.space, manager)
+    if picture.space:
+        from ..color.file_space import find_requested_space
+
+        find_requested_space(picture.space, manager)
     if not manager.is_plain:
         _ = manager.config, manager.working  # an invalid config is an error before anything is read
     return "" if manager.is_plain and not picture.space else f" {picture.space} {manager.mark}"

@@ -19,21 +19,20 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from .convert import LayerRequest, Pixels
-from .info import read_info
-from .layers import ImageInfo, Layer, find_layer
-from .metadata import TypedAttribute, read_metadata
-from .pictures.writer import (
-    PICTURE_ENDINGS,
-    check_destination,
-    holds_light,
-    is_data_kind,
-    stores_halves,
-    write_picture,
-)
-from .pixels import read_layer, read_layers
-
 if TYPE_CHECKING:
+    from .convert import LayerRequest, Pixels
+    from .info import read_info
+    from .layers import ImageInfo, Layer, find_layer
+    from .metadata import TypedAttribute, read_metadata
+    from .pictures.writer import (
+        PICTURE_ENDINGS,
+        check_destination,
+        holds_light,
+        is_data_kind,
+        stores_halves,
+        write_picture,
+    )
+    from .pixels import read_layer, read_layers
     from .sequences import FrameSequence, find_frame_file, find_sequence, suggest_pattern
     from .video.writer import VideoWriter, check_video
 
@@ -62,20 +61,37 @@ __all__ = [
     "write_picture",
 ]
 
-_LATER = MappingProxyType(
+_HOMES = MappingProxyType(
     {
         "FrameSequence": "sequences",
+        "ImageInfo": "layers",
+        "PICTURE_ENDINGS": "pictures.writer",
+        "Layer": "layers",
+        "LayerRequest": "convert",
+        "Pixels": "convert",
+        "TypedAttribute": "metadata",
         "VideoWriter": "video.writer",
+        "check_destination": "pictures.writer",
         "check_video": "video.writer",
-        "find_sequence": "sequences",
         "find_frame_file": "sequences",
+        "find_layer": "layers",
+        "find_sequence": "sequences",
+        "holds_light": "pictures.writer",
+        "is_data_kind": "pictures.writer",
+        "read_info": "info",
+        "read_layer": "pixels",
+        "read_layers": "pixels",
+        "read_metadata": "metadata",
+        "stores_halves": "pictures.writer",
         "suggest_pattern": "sequences",
+        "write_picture": "pictures.writer",
     }
 )
-"""Rare parts and their modules, which are loaded on first use (PEP 562)."""
+"""The module of each name, which is loaded on first use (PEP 562). Who only reads headers needs no arrays, and who only
+looks for files needs no library at all."""
 
 
 def __getattr__(name: str) -> Any:
-    if name in _LATER:
-        return getattr(import_module(f".{_LATER[name]}", __name__), name)
+    if name in _HOMES:
+        return getattr(import_module(f".{_HOMES[name]}", __name__), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -28,7 +28,6 @@ from ..graph.frames import Pattern, format_frames, is_video
 from ..resources.input_files import find_similar_name
 from ..resources.provider import FrameFile
 from ..resources.sandbox import Sandbox
-from .pictures.thumbnail import list_readable_endings
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -221,6 +220,8 @@ def _rank_patterns(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
     Names that would mean something else as a pattern are left out.
     """
     numbers: defaultdict[tuple[str, str, int], list[str]] = defaultdict(list)
+    from .pictures.file_endings import list_readable_endings  # a library that graphs without sequences do not need
+
     endings = list_readable_endings()
     for name in names:
         if not name.startswith(".") and Path(name).suffix.casefold() in endings:

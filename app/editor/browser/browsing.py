@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from ...color.gpu_programs import list_table_endings
 from ...graph.frames import VIDEO_ENDINGS
 from ...media.meshes.load import MESH_ENDINGS
-from ...media.pictures.thumbnail import list_readable_endings
+from ...media.pictures.file_endings import list_readable_endings
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
 from .places import Place, complete_path, is_path, names_folder, places

@@ -17,7 +17,7 @@ from ...authoring.render_queue import RenderQueue
 from ...authoring.session import Session
 from ...graph import Graph
 from ...inputs.provider import MediaProvider
-from ...media.pictures.thumbnail import is_picture
+from ...media.pictures.file_endings import is_picture
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import PixelProbe

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ...authoring.document_pictures import DocumentPictures
 from ...errors import HalationError
-from ...media.pictures.thumbnail import is_picture
+from ...media.pictures.file_endings import is_picture
 from ...renderer.provenance.recipe import has_recipe
 from ...resources.sandbox import Sandbox
 from ..shared.action import Action

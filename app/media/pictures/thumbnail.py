@@ -11,15 +11,12 @@ from halation.nodes import Kind
 from ...color.display import NO_VIEW, to_display
 from ...color.transforms import Array, quantize
 from ...errors import InputError
-from ...graph.frames import VIDEO_ENDINGS
 from ...resources.atomic_write import write_atomically
 from ...resources.input_files import check_file
 from ...resources.sandbox import Sandbox
 from ..info import read_info
 from ..layers import find_layer
 from ..pixels import read_layer
-
-_NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 
 
 def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) -> Array:
@@ -44,19 +41,6 @@ def make_thumbnail(path: str | Path, width: int, height: int, sandbox: Sandbox) 
     if layer.is_data:
         return quantize(np.nan_to_num(small, nan=0.0), 8)
     return to_display(small, "" if layer.format.startswith("float") else NO_VIEW)
-
-
-def list_readable_endings() -> frozenset[str]:
-    """File name endings of pictures that can be read, such as `.exr`."""
-    formats = oiio.get_string_attribute("extension_list").split(";")
-    entries = [entry.partition(":") for entry in formats if not entry.startswith(_NO_PICTURES)]
-    return frozenset(f".{ending.lower()}" for _, _, endings in entries for ending in endings.split(",") if ending)
-
-
-def is_picture(path: str | Path) -> bool:
-    """True if the ending of a path is that of a picture or video that can be read."""
-    ending = Path(path).suffix.lower()
-    return ending != ".json" and (ending in VIDEO_ENDINGS or ending in list_readable_endings())
 
 
 def load_thumbnail(path: str | Path, sandbox: Sandbox) -> Array:

@@ -10,7 +10,8 @@ import pytest
 from halation.editor.toolkit.thumbnails import FileThumbnails
 from halation.errors import InputError
 from halation.media import write_picture
-from halation.media.pictures.thumbnail import list_readable_endings, load_thumbnail, make_thumbnail, save_thumbnail
+from halation.media.pictures.file_endings import list_readable_endings
+from halation.media.pictures.thumbnail import load_thumbnail, make_thumbnail, save_thumbnail
 from halation.nodes import Kind
 from halation.resources.sandbox import UNRESTRICTED
 
