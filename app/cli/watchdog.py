@@ -11,7 +11,6 @@ import select
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -129,6 +128,8 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
     A copy has loaded all that this one has, so it costs a few milliseconds instead of a start. `work` raises
     nothing. Raises DeviceError for code that takes too long, takes too much memory, or ends its process.
     """
+    import tempfile  # few graphs have such code
+
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         watchdog = Watchdog(Path(folder, "heartbeat"), timeout, memory)
         sys.stdout.flush()
@@ -199,6 +200,8 @@ def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: flo
     if not needs_watchdog(graph):
         end_with_watchdog()
         return None
+    import tempfile
+
     from .. import document
 
     text = document.dumps(graph) if str(path) == "-" else ""

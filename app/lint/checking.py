@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
 from halation.nodes import Node, catalogue
+from msgspec import Struct
 
 from .. import document, graph
 from ..document.disk import read_text
@@ -42,8 +43,7 @@ _OUTER = (*(rule.name for rule in (*surroundings.RULES, *compiled.RULES)), texts
 """Rules whose findings depend on more than the file."""
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """A problem of a file. `code` is the exit code that rendering would have; 0 for a warning."""
 
     line: int
@@ -51,8 +51,7 @@ class Finding:
     code: int
 
 
-@dataclass(frozen=True)
-class CheckReport:
+class CheckReport(Struct, frozen=True):
     """The findings in a file, sorted by line."""
 
     file: str
@@ -70,8 +69,7 @@ MAX_FINDINGS = 1000
 """Findings in a report. Chosen by judgement: more than a user corrects before the next check."""
 
 
-@dataclass
-class GraphChecker:
+class GraphChecker(Struct, dict=True, eq=False):
     """Checks files, without the rules in `off`. A file that several graphs name is read once."""
 
     sandbox: Sandbox

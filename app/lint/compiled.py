@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+from msgspec import Struct, field
 
 from ..compiler import Request, examine, find_named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
@@ -69,8 +69,7 @@ _POINTER_SIZE = 1024
 T = TypeVar("T")
 
 
-@dataclass
-class NotingProvider:
+class NotingProvider(Struct, dict=True, eq=False):
     """The files that the compiler asks for. Each is read once, and one that cannot be read is noted."""
 
     sandbox: Sandbox

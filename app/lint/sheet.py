@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple, TypeGuard
 
 from halation.nodes import Node, Reader, Trait, Value
+from msgspec import Struct, field
 
 from ..compiler import Library, load_library
 from ..graph import Graph, Group, Item, Port, Problem, signature
 from ..graph.rules import Rule
 
 
-@dataclass(frozen=True)
-class GraphFacts:
+class GraphFacts(Struct, frozen=True, dict=True, eq=False):
     """A graph without errors, or the body of a group in its file."""
 
     graph: Graph

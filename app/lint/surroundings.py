@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path, PurePath
+
+from msgspec import Struct, field
 
 from ..errors import UsageError
 from ..graph import Graph, Problem
@@ -32,8 +34,7 @@ OUTSIDE_REPOSITORY = Rule(
 RULES = (PATH_CASE, OUTSIDE_REPOSITORY)
 
 
-@dataclass
-class Surroundings:
+class Surroundings(Struct, eq=False):
     """Facts about folders, each read once."""
 
     sandbox: Sandbox

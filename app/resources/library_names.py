@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,6 +21,8 @@ def name_for_library(path: str | Path) -> Generator[str]:
     if is_utf8(name):
         yield name
         return
+    import tempfile  # such names are rare
+
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         ending = Path(name).suffix
         link = Path(folder, f"file{ending if is_utf8(ending) else ''}")

@@ -10,10 +10,11 @@ A kind is carried in one of three ways, which decides how it is lowered:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 from typing import Literal
+
+from msgspec import Struct
 
 from .camera import read_camera
 
@@ -39,8 +40,7 @@ class Kind(StrEnum):
         return self.facts.carried == "plan"
 
 
-@dataclass(frozen=True)
-class KindFacts:
+class KindFacts(Struct, frozen=True):
     """The declaration of a kind."""
 
     carried: Literal["pixels", "value", "plan"]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
+
+from msgspec import Struct
 
 
 class Trait(StrEnum):
@@ -32,8 +33,7 @@ class Trait(StrEnum):
     covered, with `lib/alpha.glsl`."""
 
 
-@dataclass(frozen=True)
-class ProxyNote:
+class ProxyNote(Struct, frozen=True):
     """Why outputs of a proxy, rendered at half the size, do not look like the full picture made smaller."""
 
     outputs: tuple[str, ...]

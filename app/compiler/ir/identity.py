@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping
 from enum import Enum
 from functools import cache
 from hashlib import blake2b
-from typing import Any, Literal, get_args, get_origin, get_type_hints
+from typing import Any, Literal, get_args, get_origin
 
 from msgspec import Struct, structs
 
@@ -58,27 +58,26 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
     only those are looked at that hold floats or other values: text and whole numbers stay as they are. Most floats have
     their default; to say None for it is faster than to write the number.
     """
-    hints, identity = get_type_hints(kind), identity_fields(kind)
-    excluded = [place for place, name in enumerate(kind.__struct_fields__) if name not in identity]
-    defaults = {field.name: field.default for field in structs.fields(kind)}
+    fields, identity = structs.fields(kind), identity_fields(kind)
+    excluded = [place for place, field in enumerate(fields) if field.name not in identity]
     floats: list[tuple[int, object]] = []
     rest: list[tuple[int, Callable[[Any], object]]] = []
-    for place, name in enumerate(kind.__struct_fields__):
-        if hints[name] is float:
-            floats.append((place, defaults[name]))
-        elif name in identity and not _is_plain(hints[name]):
-            rest.append((place, _describe_floats if _is_float_tuple(hints[name]) else describe))
+    for place, field in enumerate(fields):
+        if field.type is float:
+            floats.append((place, field.default))
+        elif field.name in identity and not _is_plain(field.type):
+            rest.append((place, _describe_floats if _is_float_tuple(field.type) else describe))
 
     def describe_fields(item: Struct) -> object:
-        fields: list[Any] = [kind.__name__, *structs.astuple(item)]
+        parts: list[Any] = [kind.__name__, *structs.astuple(item)]
         for place in excluded:
-            fields[place + 1] = None
+            parts[place + 1] = None
         for place, default in floats:
-            number = fields[place + 1]
-            fields[place + 1] = None if number == default else number + 0.0
+            number = parts[place + 1]
+            parts[place + 1] = None if number == default else number + 0.0
         for place, describe_value in rest:
-            fields[place + 1] = describe_value(fields[place + 1])
-        return fields
+            parts[place + 1] = describe_value(parts[place + 1])
+        return parts
 
     return describe_fields
 
