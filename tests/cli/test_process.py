@@ -12,6 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from halation.cli.program import Commands
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals, pipes and terminals")
@@ -70,6 +71,25 @@ def loaded(*words):
 
 WINDOWS = {"glfw", "imgui_bundle"}
 PIXELS = {"numpy", "OpenImageIO", "PyOpenColorIO", "moderngl", "glcontext", "rich"}
+
+
+def test_the_help_runs_no_command_and_says_what_all_of_them_say():
+    names = modules("--help")
+    rows = halation("--help").stdout.partition("Commands:\n")[2].partition("\n\n")[0]
+    listed = dict(re.split(r"  +", row.strip(), maxsplit=1) for row in rows.splitlines())
+    assert len(listed) > 15 and not names & {f"halation.cli.{name.replace('-', '_')}" for name in listed}
+    assert all(Commands()[name].get_short_help_str(len(text)) == text for name, text in listed.items())
+
+
+def test_a_check_reads_headers_without_arrays_and_asks_for_plug_ins_only_where_one_may_be(ten, tmp_path):
+    names = modules("check", ten)
+    assert "OpenImageIO" in names and not names & {"numpy", "importlib.metadata"}
+    notes = tmp_path / "site" / "acme-1.0.dist-info"
+    notes.mkdir(parents=True)
+    (notes / "METADATA").write_text("Metadata-Version: 2.1\nName: acme\nVersion: 1.0\n")
+    (notes / "entry_points.txt").write_text("[halation.nodes]\nacme = acme\n")
+    asked = halation("check", ten, env={**os.environ, "PYTHONPATH": str(notes.parent)})
+    assert "the plug-in acme 1.0 cannot be loaded" in asked.stderr
 
 
 def test_what_needs_no_pixels_loads_no_library_for_them(tmp_path):
