@@ -21,13 +21,12 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING
+from types import MappingProxyType, ModuleType
+from typing import TYPE_CHECKING, NamedTuple
 
 from ._declare import Node
 
@@ -38,8 +37,7 @@ GROUP = "halation.nodes"
 """The group of entry points that makes a package a plug-in."""
 
 
-@dataclass(frozen=True)
-class Plugin:
+class Plugin(NamedTuple):
     """An installed package that brings nodes, or the reason why it brings none."""
 
     package: str
@@ -49,7 +47,7 @@ class Plugin:
     """The import name, such as `acme_glow`, with which the ids of its nodes start."""
     folder: Path | None = None
     """Where its code lies."""
-    nodes: Mapping[str, type[Node]] = field(default_factory=dict[str, type[Node]])
+    nodes: Mapping[str, type[Node]] = MappingProxyType({})
     """Its node classes by id."""
     fault: str = ""
     """Why it is refused."""
@@ -162,20 +160,20 @@ def _load(point: EntryPoint) -> Plugin:
         distribution.name if distribution else point.name, distribution.version if distribution else "0", point.value
     )
     if not point.value.isidentifier():
-        return replace(plugin, fault=f"its entry point names '{point.value}', which is no top-level package")
+        return plugin._replace(fault=f"its entry point names '{point.value}', which is no top-level package")
     try:
         spec = find_spec(plugin.namespace)
         if spec is None or not spec.submodule_search_locations:
-            return replace(plugin, fault=f"its entry point names the package '{plugin.namespace}', which is not there")
+            return plugin._replace(fault=f"its entry point names the package '{plugin.namespace}', which is not there")
         folder = next(
             (path for path in map(Path, spec.submodule_search_locations) if (path / "nodes").is_dir()),
             Path(spec.submodule_search_locations[0]),
         )
-        return replace(plugin, folder=folder, nodes=_load_nodes(plugin, folder / "nodes"))
+        return plugin._replace(folder=folder, nodes=_load_nodes(plugin, folder / "nodes"))
     except NodeImportError as fault:
-        return replace(plugin, fault=str(fault))
+        return plugin._replace(fault=str(fault))
     except (Exception, SystemExit) as fault:
-        return replace(plugin, fault=f"{type(fault).__name__}: {fault}")
+        return plugin._replace(fault=f"{type(fault).__name__}: {fault}")
 
 
 def _load_nodes(plugin: Plugin, folder: Path) -> dict[str, type[Node]]:
@@ -208,6 +206,6 @@ def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:
         if shared:
             rivals = " and ".join(str(rival) for rival in loaded if shared in rival.nodes)
             fault = f"{rivals} both bring a node '{shared}': uninstall one of them"
-            yield replace(plugin, nodes={}, fault=fault)
+            yield plugin._replace(nodes={}, fault=fault)
         else:
             yield plugin

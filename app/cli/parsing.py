@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
@@ -103,17 +102,12 @@ def parse_setting(text: str) -> Any:
             try:
                 if not isinstance(key_value, bool | int | float | list):
                     raise ValueError
-                key = Key(float(frame), tuple(map(float, key_value)) if isinstance(key_value, list) else key_value)
+                channels = tuple(map(float, key_value)) if isinstance(key_value, list) else key_value
+                key = Key(float(frame), channels)
             except (TypeError, ValueError):
                 return text  # a text may hold an @
-            keys.append(
-                replace(
-                    key,
-                    interpolation=_parse_choice(
-                        interpolation_text or "smooth", get_args(Interpolation), f"--set {part}:"
-                    ),
-                )
-            )
+            word = _parse_choice(interpolation_text or "smooth", get_args(Interpolation), f"--set {part}:")
+            keys.append(Key(key.frame, key.value, word))
             numbers = []
     return text if numbers else Keys(tuple(keys))
 

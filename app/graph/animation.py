@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from halation.nodes import Value
+from msgspec.structs import replace
 
 from .expressions import Expression
 from .keys import Keys

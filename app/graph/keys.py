@@ -15,11 +15,12 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
 from halation.nodes import Plain
+from msgspec import Struct
+from msgspec.structs import force_setattr, replace
 
 from ..errors import GraphError
 from . import bezier
@@ -31,8 +32,7 @@ _DECIMALS = 6
 """Moved and scaled frames are rounded to these decimals, so that keys that look equal are equal."""
 
 
-@dataclass(frozen=True)
-class Key:
+class Key(Struct, frozen=True, dict=True):
     """A value at a frame. `interpolation` is that of the segment from this key to the next.
 
     `left` and `right` are the handles of `bezier`: offsets from the key, in frames and then in each channel. An empty
@@ -63,19 +63,18 @@ class Key:
         return handle if len(handle) == 1 + len(self.channels) else ()
 
 
-@dataclass(frozen=True)
-class Keys:
+class Keys(Struct, frozen=True, dict=True):
     """Keys in the order of their frames; of two keys at one frame the later one is kept.
 
     `outside` is the extrapolation before the first and after the last key: hold the value, continue in a line, loop the
     curve, or mirror it.
     """
 
-    keys: tuple[Key, ...] = field(default=())
+    keys: tuple[Key, ...] = ()
     outside: Extrapolation = "hold"
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "keys", _sort_keys(self.keys))
+        force_setattr(self, "keys", _sort_keys(self.keys))
 
     @cached_property
     def frames(self) -> tuple[float, ...]:

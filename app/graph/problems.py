@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 from halation.nodes import Node, catalogue, plugins
+from msgspec.structs import replace
 
 from ..errors import GraphError
+from ..resources.record import Record
 from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
 from .graph import Graph, Group, Item, signature
@@ -34,8 +36,7 @@ _NODE_KEYS = ("type", "version", "values", "muted", "code", "file", "path", "gra
 """Keys of a graph file, and of a node in it, that a similar unknown key may stand for."""
 
 
-@dataclass(frozen=True)
-class Problem:
+class Problem(Record, frozen=True):
     """A mistake in a graph. `sentence` names node and socket and says what to do.
 
     `node` is a path such as `group/inner`; it ends in `inputs`, `outputs` or `controls` for the ends of a graph, and is
@@ -46,7 +47,9 @@ class Problem:
     socket: str
     sentence: str
     rule: Rule
-    at: str = field(default="", compare=False)
+    at: str = ""
+
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"at"})
 
     @property
     def severity(self) -> Severity:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
 from halation.nodes import Node, catalogue
 from msgspec import Struct
+from msgspec.structs import replace
 
 from .. import document, graph
 from ..document.disk import read_text

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 
 from halation.nodes import Node, Trait
+from msgspec.structs import replace
 
 from ..graph import Graph, Problem, problems
 from ..graph.problems import differ_in_nodes, recheck

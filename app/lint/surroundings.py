@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import unicodedata
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path, PurePath
 
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ..errors import UsageError
 from ..graph import Graph, Problem

@@ -8,10 +8,11 @@ Nothing here draws.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 from halation.nodes import Plain
+from msgspec.structs import replace
 
 from ...graph import Animation, Extrapolation, Interpolation, Key, Keys, Port
 from ...graph.keys import round_keys
