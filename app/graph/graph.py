@@ -182,10 +182,7 @@ class Graph(Wired[Item]):
 
         ports = {*self.links, *self.links.values(), *(control.target for control in self.controls.values())}
         moves = {port: Port(new, port.socket) for port in ports if port.node == old}
-        controls = {
-            name: dataclasses.replace(item, target=moves.get(item.target, item.target))
-            for name, item in self.controls.items()
-        }
+        controls = {name: item.with_target(moves.get(item.target, item.target)) for name, item in self.controls.items()}
         return self._with(
             nodes=rename_key(self.nodes, old, new),
             links=move_links(self.links, moves),

@@ -10,6 +10,7 @@ from typing import Any, cast
 
 from halation.nodes import ColorSettings, Kind, Missing, Node, Plain, Pointwise, Size, Socket, Value
 from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from ..errors import GraphError
 from .conversion import make_socket
@@ -80,28 +81,30 @@ class Output:
         return make_socket(self.kind, self.width, name=name)
 
 
-@dataclass(frozen=True)
-class Control:
+class Control(Struct, frozen=True):
     """A value of a node (or a control of a group) that the graph exposes under a name."""
 
     target: Port
     label: str = ""
     doc: str = ""
 
+    def with_target(self, target: Port) -> Control:
+        """The same control of another value."""
+        return Control(target, self.label, self.doc)
 
-@dataclass(frozen=True)
-class Unknown:
+
+class Unknown(Struct, frozen=True):
     """A node of a type that is not installed, or of code that has a `fault`.
 
     It does nothing, and is saved as it was read.
     """
 
     type: str
-    raw: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    raw: Mapping[str, Any] = MappingProxyType({})
     fault: str = ""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "raw", freeze(self.raw))
+        force_setattr(self, "raw", freeze(self.raw))
 
 
 @dataclass(frozen=True)

@@ -78,7 +78,7 @@ def _change_item(item: Item, folder: str, change: Change) -> Item:
         graph = item.graph if item.path else _change_graph(item.graph, folder, change)
         return Group(graph, change(item.path), values)
     file = item.raw.get("file") if item.type in get_args(Language) else None
-    return replace(item, raw={**item.raw, "file": change(file)}) if isinstance(file, str) else item
+    return structs.replace(item, raw={**item.raw, "file": change(file)}) if isinstance(file, str) else item
 
 
 def _change_code_file(item: Node, change: Change) -> Node:

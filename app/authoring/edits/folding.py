@@ -118,7 +118,7 @@ def _put_group_body(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
         if not (end.node == id and end.socket in removed_sockets)
         and not (start.node == id and start.socket in removed_outputs)
     }
-    controls = {name: replace(item, target=follow(item.target, CONTROLS)) for name, item in outer.controls.items()}
+    controls = {name: item.with_target(follow(item.target, CONTROLS)) for name, item in outer.controls.items()}
     controls = {
         name: item
         for name, item in controls.items()

@@ -62,7 +62,7 @@ def make_group(graph: Graph, chosen: Collection[ElementId], name: str = "") -> t
             if start.node in ids and end.node not in ids
         },
         controls={
-            name: replace(item, target=Port(id, name)) if item.target.node in ids else item
+            name: item.with_target(Port(id, name)) if item.target.node in ids else item
             for name, item in graph.controls.items()
         },
         muted=graph.muted - set(ids),

@@ -81,7 +81,7 @@ class _OpenedGroup:
         for name, item in self.graph.controls.items():
             target = self._control(item.target.socket) if item.target.node == self.id else item.target
             if target is not None:
-                controls[name] = replace(item, target=target)
+                controls[name] = item.with_target(target)
         return controls
 
     def with_layout(self, after: Graph) -> Graph:

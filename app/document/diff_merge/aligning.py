@@ -148,7 +148,7 @@ def _describe_nodes(graph: Graph, ids: Collection[str]) -> dict[str, _NodeDescri
             descriptions[start.node].links_out.add((start.socket, end))
     for name, control in graph.controls.items():
         target = Port(_ANY, control.target.socket)
-        controls.setdefault(control.target.node, {})[name] = replace(control, target=target)
+        controls.setdefault(control.target.node, {})[name] = control.with_target(target)
     for port, animation in graph.animation.items():
         animations.setdefault(port.node, {})[Port(_ANY, port.socket)] = animation
     for path, keys in graph.extra.items():
