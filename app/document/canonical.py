@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from json.encoder import encode_basestring
 from types import MappingProxyType
 from typing import Any, cast
@@ -21,6 +21,12 @@ _SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outpu
 _TEXT = frozenset({str})
 _SCALARS = frozenset({str, int, float, bool, type(None)})
 """Types that hold no others. Most parts of a file have one, which is known sooner than by `isinstance`."""
+
+
+_PLAIN: Mapping[type, Callable[[Any], str]] = MappingProxyType(
+    {str: encode_basestring, int: int.__repr__, bool: lambda item: "true" if item else "false"}
+)
+"""What writes a scalar that JSON can hold whatever it is."""
 
 
 def pretty(document: Mapping[str, Any]) -> str:
@@ -48,7 +54,10 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
         opening, closing = "{", "}"
         for key in sorted(mapping):
             start, part = f"{encode_basestring(key)}: ", mapping[key]
-            texts.append(start + _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
+            plain = _PLAIN.get(type(part))  # most parts are such, and need no trail
+            texts.append(
+                start + (plain(part) if plain else _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
+            )
     else:
         opening, closing = "[", "]"
         texts += [

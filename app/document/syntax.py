@@ -19,8 +19,11 @@ from .syntax_faults import explain_syntax
 
 _STRING = re.compile(r'"(?:[^"\\]++|\\.)*+"?', re.DOTALL)
 _NO_BRACKET = re.compile(r"[^{}\[\]]++")
-_SUSPECT = re.compile(r"NaN|Infinity|[eE]\+?\d{3}|\d{200}|\\u[dD][89a-fA-F]|[\ud800-\udfff]")
-"""Texts that may be a number that is not finite, or half a surrogate pair."""
+_LARGE_NUMBER = re.compile(r"NaN|Infinity|[eE]\+?\d{3}|\d{200}")
+"""Texts that may be a number that is not finite."""
+_ESCAPED_HALF = re.compile(r"\\u[dD][89a-fA-F]")
+_HALF = re.compile(r"[\ud800-\udfff]")
+"""Texts that may be half of a surrogate pair."""
 _STEPS = {"{": 1, "[": 1, "}": -1, "]": -1}
 
 
@@ -41,7 +44,8 @@ def parse(text: str, file: str) -> dict[str, Any]:
     """The object that `text` holds. Raises DocumentError."""
     if fault := size_fault(len(text.strip())):
         raise DocumentError(file, "", fault, rule="unreadable-graph")
-    if fault := _shape_fault(text):
+    outline = _STRING.sub("", text)
+    if fault := _shape_fault(outline):
         raise DocumentError(file, "", fault)
     odd_objects: list[_Twice] = []
     try:
@@ -53,7 +57,7 @@ def parse(text: str, file: str) -> dict[str, Any]:
         raise DocumentError(file, "", fault, rule="syntax", line=line) from None
     except ValueError:
         raise DocumentError(file, "", "it holds a whole number with too many digits") from None
-    if isinstance(tree, dict | list) and (odd_objects or _SUSPECT.search(text)):
+    if isinstance(tree, dict | list) and (odd_objects or _is_suspect(text, outline)):
         _check(cast("Any", tree), file)
     if not isinstance(tree, dict):
         raise DocumentError(file, "", "expected an object, got " + word(cast("object", tree)))
@@ -94,14 +98,20 @@ def spell_path(trail: Trail | None) -> str:
     return reduce(member, reversed(keys), "")
 
 
-def _shape_fault(text: str) -> str | None:
-    """Why a text of that many parts and that depth is refused, or None. What is in strings does not count."""
-    brackets = text.count("[") + text.count("{")
-    if brackets <= MAX_NESTING and brackets + text.count(",") <= MAX_PARTS:
-        return None
-    outline = _STRING.sub("", text)
-    if outline.count(",") + outline.count("[") + outline.count("{") > MAX_PARTS:
+def _is_suspect(text: str, outline: str) -> bool:
+    """True if a part of a text may be no finite number, or no valid Unicode. `outline` is the text without strings."""
+    if _LARGE_NUMBER.search(outline) or ("\\u" in text and _ESCAPED_HALF.search(text)):
+        return True
+    return not text.isascii() and _HALF.search(text) is not None
+
+
+def _shape_fault(outline: str) -> str | None:
+    """Why a text of that many parts and that depth is refused, or None. `outline` is the text without strings."""
+    brackets = outline.count("[") + outline.count("{")
+    if brackets + outline.count(",") > MAX_PARTS:
         return f"it has more than {MAX_PARTS:,} parts; that is no graph"
+    if brackets <= MAX_NESTING:
+        return None
     steps = map(_STEPS.__getitem__, _NO_BRACKET.sub("", outline))
     if max(accumulate(steps), default=0) > MAX_NESTING:
         return f"objects and lists nest deeper than {MAX_NESTING}; that is no graph"

@@ -79,6 +79,9 @@ def describe_type(value: Value) -> str:
 
 def value_fault(value: Value, setting: object) -> str | None:
     """Why a setting is invalid (type, hard range, choice, not finite), or None."""
+    is_float = type(setting) is float and value.type == "float"
+    if is_float and value.minimum <= setting <= value.maximum and abs(setting) <= _FLOAT32:
+        return None  # the usual case: a graph may have 100,000 of them
     plain = coerce(value, setting)
     if plain is None:
         return f"{setting!r} does not fit: it takes {describe_type(value)}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -38,8 +38,7 @@ vec4 tint(
 """
 
 
-@dataclass(frozen=True)
-class BrokenCodeNode(Unknown):
+class BrokenCodeNode(Unknown, frozen=True):
     """A node whose `code` is invalid. The code in its file may be another one."""
 
     code: Code | None = None
