@@ -79,8 +79,7 @@ def describe_type(value: Value) -> str:
 
 def value_fault(value: Value, setting: object) -> str | None:
     """Why a setting is invalid (type, hard range, choice, not finite), or None."""
-    is_float = type(setting) is float and value.type == "float"
-    if is_float and value.minimum <= setting <= value.maximum and abs(setting) <= _FLOAT32:
+    if value.type == "float" and isinstance(setting, float) and _fits(value, setting):
         return None  # the usual case: a graph may have 100,000 of them
     plain = coerce(value, setting)
     if plain is None:
@@ -97,6 +96,10 @@ def value_fault(value: Value, setting: object) -> str | None:
         if abs(part) > (_FLOAT32 if isinstance(part, float) else _INT32 - 1):
             return f"{setting!r} is too large for 32 bits"
     return _order_fault(value, plain) if isinstance(plain, tuple) else None
+
+
+def _fits(value: Value, number: float) -> bool:
+    return value.minimum <= number <= value.maximum and abs(number) <= _FLOAT32
 
 
 def _text_fault(value: Value, text: str) -> str | None:

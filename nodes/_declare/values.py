@@ -22,7 +22,11 @@ things. `s`: seconds. `scene`: the scene's own units (radiance, depth).
 
 def unit_factor(unit: Unit | None, scale: float, height: float) -> float:
     """The factor from a unit to working units, for a proxy of `scale` and a picture `height` pixels high."""
-    return {"px": scale, "height": height, "deg": math.pi / 180.0}.get(unit or "", 1.0)
+    if unit == "px":
+        return scale
+    if unit == "height":
+        return height
+    return math.pi / 180.0 if unit == "deg" else 1.0
 
 
 class Slider(Struct, frozen=True):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from msgspec import structs
+
 from ...errors import GraphError
 from ...graph import Control, Port, signature
 from ...graph.names import fresh_name
@@ -126,8 +128,7 @@ class DescribeControl(EditCommand[None]):
         if self.name not in graph.controls:
             raise GraphError(f"the graph has no control '{self.name}'")
         texts = (("label", self.label), ("doc", self.doc))
-        changed = replace(
-            graph.controls[self.name], **{key: clean_text(text) for key, text in texts if text is not None}
-        )
+        new_texts = {key: clean_text(text) for key, text in texts if text is not None}
+        changed = structs.replace(graph.controls[self.name], **new_texts)
         graph = replace(graph, controls={**graph.controls, self.name: changed})
         return Edited(f"Describe {self.name}", None, graph, merge=self.merge)

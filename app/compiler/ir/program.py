@@ -29,9 +29,8 @@ class Builder:
 
     def add(self, op: Op) -> Ref:
         """The first output of `op`."""
-        number = self.numbers.get(op)
-        if number is None:
-            number = self.numbers[op] = len(self.ops)
+        number = self.numbers.setdefault(op, len(self.ops))
+        if number == len(self.ops):
             self.ops.append(op)
         self.added.append(number)
         return Ref(number)

@@ -36,8 +36,9 @@ class FlatGraph(Struct):
 
     def find_source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
-        if port not in self.links:
-            return None
+        after = self.links.get(port)
+        if after is None or (after not in self.links and port not in self.faults):
+            return after  # the usual case: nothing, or an output of a node
         source, visited = port, dict[Port, None]()
         while source in self.links:
             if source in self._sources:
@@ -150,6 +151,8 @@ def _set_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
 def _enter_groups(body: Graph, prefix: str, target: Port) -> Port:
     """Where a link to this target ends in the flat graph: at the group's input, or at the value that a control sets."""
     item = body.nodes.get(target.node)
+    if not prefix and not isinstance(item, Group):
+        return target
     while isinstance(item, Group):
         prefix += target.node + "/"
         if target.socket in item.graph.inputs:
@@ -165,7 +168,7 @@ def _leave_group(body: Graph, prefix: str, source: Port) -> Port:
     """Where a link from this source starts in the flat graph: at the group's own output."""
     if isinstance(body.nodes.get(source.node), Group):
         return Port(f"{prefix}{source.node}/{OUTPUTS}", source.socket)
-    return Port(prefix + source.node, source.socket)
+    return Port(prefix + source.node, source.socket) if prefix else source
 
 
 def _mute(flat: FlatGraph, prefix: str, body: Graph) -> None:

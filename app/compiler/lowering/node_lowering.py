@@ -56,12 +56,24 @@ class LoweringContext(Struct, frozen=True):
     pictures: PictureBuilder
 
 
+class PointwiseForm(Struct, frozen=True):
+    """What all pointwise nodes of a class have in common whose outputs have one size.
+
+    `arguments` are those of the GLSL function: the name, the GLSL type, and the value, or None for an input.
+    """
+
+    arguments: tuple[tuple[str, str, Value | None], ...]
+    shapes: tuple[PictureShape, ...]
+    choices: tuple[tuple[str, tuple[str, ...]], ...]
+
+
 class NodeLowering:
     """Lowers nodes. What lowering a node added is entered into a step."""
 
     def __init__(self, context: LoweringContext) -> None:
         self._context = context
         self._builder, self._pictures = context.builder, context.pictures
+        self._forms: dict[tuple[type[Node], Size], PointwiseForm] = {}
 
     def lower(self, path: str, frame: int, step: LoweringStep, operand_at: OperandFinder) -> None:
         """Lower a node at a frame.
@@ -84,10 +96,12 @@ class NodeLowering:
             return
         self._fit_all(inputs, size)
         scaled_node = node.to_working_units(context.request.scale, size[1])
+        if scaled_node is not node:
+            inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
-            self._lower_pointwise(replace(inputs, node=scaled_node), scaled_node, size, step)
+            self._lower_pointwise(inputs, scaled_node, size, step)
         elif isinstance(scaled_node, Filter):
-            self._lower_filter(replace(inputs, node=scaled_node), scaled_node, size, step)
+            self._lower_filter(inputs, scaled_node, size, step)
 
     # --- what a node reads -----------------------------------------------------------------------------------------
 
@@ -121,6 +135,8 @@ class NodeLowering:
 
     def _fit_all(self, inputs: NodeInputs, size: Size) -> None:
         """Bring every picture to one size: that of the result, or for a filter, which may resize, of the first one."""
+        if self._are_fitted(inputs, size):
+            return
         unfitted = {name for name, socket in inputs.node.inputs.items() if socket.own_size}
         operands = (*inputs.inputs.items(), *inputs.wires.items())
         refs = [operand for name, operand in operands if isinstance(operand, Ref) and name not in unfitted]
@@ -139,6 +155,12 @@ class NodeLowering:
             group.update({name: fit(name, operand) for name, operand in group.items()})
         inputs.at_frames.update({key: fit(key[0], operand) for key, operand in inputs.at_frames.items()})
 
+    def _are_fitted(self, inputs: NodeInputs, size: Size) -> bool:
+        """True if a node reads one frame, and all its pictures have the size of its result. This is the usual case."""
+        operands = (*inputs.inputs.values(), *inputs.wires.values())
+        sizes = {self._builder.shape(operand).size for operand in operands if isinstance(operand, Ref)}
+        return sizes <= {size, (1, 1)} and all(frame == inputs.frame for _, frame in inputs.at_frames)
+
     def _pass_through(self, inputs: NodeInputs) -> dict[str, Operand] | None:
         """What the outputs of a muted or neutral node show; None if it has something to do."""
         node = inputs.node
@@ -154,7 +176,7 @@ class NodeLowering:
     def _find_size(self, inputs: NodeInputs) -> Size:
         """The size of a node's outputs: 1x1 if all its inputs are single values, unless it draws a pattern."""
         node = inputs.node
-        linked_inputs = {name: inputs.inputs[name] for name in node.inputs if name in inputs.linked}
+        linked_inputs = {name: inputs.inputs[name] for name in inputs.linked}
         sizes = {
             name: self._builder.shape(operand).size
             for name, operand in (*linked_inputs.items(), *inputs.wires.items())
@@ -172,23 +194,35 @@ class NodeLowering:
     # --- pointwise nodes -------------------------------------------------------------------------------------------
 
     def _lower_pointwise(self, inputs: NodeInputs, node: Pointwise, size: Size, step: LoweringStep) -> None:
-        parameters: list[Parameter] = []
-        for name in node.order:
-            if name in node.inputs:
-                parameters.append(Parameter(node.inputs[name].glsl, inputs.inputs[name]))
-            elif node.values[name].glsl is not None:
-                parameters.append(self._make_value_parameter(node, node.values[name], inputs.wires.get(name), size))
-        sockets = [output.socket for output in node.outputs.values()]
-        shapes = tuple(
-            PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
-            for socket in sockets
+        form = self._find_form(inputs.path, node, size)
+        parameters = tuple(
+            Parameter(glsl, inputs.inputs[name])
+            if value is None
+            else self._make_value_parameter(node, value, glsl, inputs.wires.get(name), size)
+            for name, glsl, value in form.arguments
         )
-        self._check_function(inputs.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
-        ref = self._builder.add(
-            Call(shapes, inputs.path, node.shader, node.function, tuple(parameters), find_choices(node))
-        )
+        ref = self._builder.add(Call(form.shapes, inputs.path, node.shader, node.function, parameters, form.choices))
         for index, name in enumerate(node.outputs):
             step.results[Port(inputs.path, name), inputs.frame - self._context.frame] = Ref(ref.op, index)
+
+    def _find_form(self, path: str, node: Pointwise, size: Size) -> PointwiseForm:
+        """What all nodes of a class have in common, found once: a graph may have 100,000 nodes of one class."""
+        key = type(node), size
+        if key not in self._forms:
+            declared = [(name, node.inputs.get(name) or node.values[name]) for name in node.order]
+            arguments = tuple(
+                (name, item.glsl, item if isinstance(item, Value) else None)
+                for name, item in declared
+                if item.glsl is not None
+            )
+            sockets = [output.socket for output in node.outputs.values()]
+            shapes = tuple(
+                PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+                for socket in sockets
+            )
+            self._check_function(path, node, [glsl for _, glsl, _ in arguments], [item.glsl for item in sockets])
+            self._forms[key] = PointwiseForm(arguments, shapes, find_choices(node))
+        return self._forms[key]
 
     def _check_function(self, path: str, node: Node, takes: list[str], makes: list[str]) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
@@ -202,8 +236,7 @@ class NodeLowering:
             fault = f"'{node.function}' takes {actual}, but the node declares {declared}"
             raise ShaderError(path, library.file_name(node.shader), function.line, fault)
 
-    def _make_value_parameter(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
-        glsl = value.glsl or "float"
+    def _make_value_parameter(self, node: Node, value: Value, glsl: str, wire: Operand | None, size: Size) -> Parameter:
         if wire is not None:
             factor = unit_factor(value.unit, self._context.request.scale, size[1])
             if isinstance(wire, UniformConstant):
@@ -278,9 +311,8 @@ class NodeLowering:
 
 def _find_cameras(inputs: NodeInputs) -> dict[Port, CameraModel]:
     """The cameras that are linked to the inputs of a node."""
-    operands = {name: inputs.inputs[name] for name in inputs.linked}
     return {
-        Port(inputs.path, name): camera
-        for name, operand in operands.items()
-        if isinstance(operand, PlannedObject) and isinstance(camera := operand.content, CameraModel)
+        Port(inputs.path, name): operand.content
+        for name in inputs.linked
+        if isinstance(operand := inputs.inputs[name], PlannedObject) and isinstance(operand.content, CameraModel)
     }
