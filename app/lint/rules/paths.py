@@ -42,9 +42,11 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
         elif isinstance(item, CustomNode) and item.code.file:
             yield id, "", f"nodes.{id}.file", item.code.file
         for name, value in signature(item).values.items():
+            if value.type != "path":  # most are none, and a graph may have 100,000 nodes
+                continue
             given = item.setting(name) if isinstance(item, Node) else ""
             given = item.values.get(name, "") if isinstance(item, Group) else given
-            if value.type == "path" and isinstance(given, str) and given:
+            if isinstance(given, str) and given:
                 yield id, name, f"nodes.{id}.values.{name}", given
 
 
