@@ -54,7 +54,7 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
         opening, closing = "{", "}"
         for key in sorted(mapping):
             start, part = f"{encode_basestring(key)}: ", mapping[key]
-            plain = _PLAIN.get(cast("type", type(part)))  # most parts are such, and need no trail
+            plain = _PLAIN.get(type(cast("object", part)))  # most parts are such, and need no trail
             texts.append(
                 start + (plain(part) if plain else _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
             )
