@@ -115,6 +115,9 @@ def _write_default(default: object) -> str:
 def _write_type(annotation: Any) -> str:
     if get_origin(annotation) is Literal:
         return f"Literal[{', '.join(map(repr, get_args(annotation)))}]"
+    if get_origin(annotation) is tuple:
+        parts = ("..." if part is ... else _write_type(part) for part in get_args(annotation))
+        return f"tuple[{', '.join(parts)}]"
     text = annotation if isinstance(annotation, str) else getattr(annotation, "__name__", str(annotation))
     return text.replace("Self", "Graph")
 

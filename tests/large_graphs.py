@@ -139,7 +139,7 @@ GRAPHS: Mapping[str, Callable[[int], Document]] = MappingProxyType(
         "read behind": read_behind,
         "unknown keys": lambda count: change(chain(2), **{f"x{number}": 1 for number in range(count)}),
         "allowed": lambda count: change(
-            chain(2), settings={"allow": {f"no-{number}": "why" for number in range(count)}}
+            chain(2), settings={"allow": {f"no-{number:05}": "why" for number in range(count)}}
         ),
         "layout": lambda count: change(chain(2), ui={"nodes": {f"n{number}": [0, 1] for number in range(count)}}),
         "files": lambda count: chain(count, type="read_image", values={"path": "missing.exr"}),
