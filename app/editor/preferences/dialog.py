@@ -47,7 +47,7 @@ class PreferencesDialog:
             return
         listening = self._shortcuts.listening
         close = backdrop(self._context, "preferences") and not listening
-        with dialog(self._context, "Preferences", (720, 500)):
+        with dialog(self._context, "Preferences", (720, 640)):
             height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing() - 6 * ui_scale()
             self._draw_pages(height)
             imgui.same_line(0, 16 * ui_scale())
