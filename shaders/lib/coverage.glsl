@@ -91,6 +91,7 @@ Coverage coverage_of(vec3 stored) {
     return Coverage(stored.x, pixel + front, pixel + sides - (front << 3));
 }
 
+// True for a pixel that two surfaces share.
 bool coverage_is_mixed(Coverage shares) { return shares.front != shares.back; }
 
 // The normal of the front surface alone. Where it covers little, its own normal helps against noise.
@@ -100,8 +101,12 @@ vec3 coverage_front(Coverage shares) {
     return dot(alone, alone) > 0.0 ? normalize(alone) : front;
 }
 
-// The part of the color of this pixel that is that of the front surface.
-vec4 coverage_part(vec4 color, vec4 back, float front_share) { return max(color - (1.0 - front_share) * back, 0.0); }
+// The part of the color of this pixel that is that of the front surface, from the colors of both beside it. What they
+// lack in light or texture is divided in their proportion: to subtract one of them would leave black dots.
+vec4 coverage_part(vec4 color, vec4 front, vec4 back, float front_share) {
+    vec4 ours = max(front_share * front, 0.0), theirs = max((1.0 - front_share) * back, 0.0), both = ours + theirs;
+    return color * mix(vec4(front_share), ours / max(both, 1e-20), greaterThan(both, vec4(1e-20)));
+}
 
 // The place of a surface on the ray of this pixel, if it goes on from a place near by as a plane.
 vec3 coverage_place(const vec4 rays[3], vec3 place, vec3 normal) {

@@ -152,7 +152,9 @@ vec4 deferred_lighting_lit(
         vec4 place = place_at(at), part = color;
         vec3 normal = unit_normal(normal_at(at));
         for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
-            part = coverage_part(color, finite(albedo_at(shares.back)), shares.front_share);
+            part = coverage_part(
+                color, finite(albedo_at(shares.front)), finite(albedo_at(shares.back)), shares.front_share
+            );
             if (seen) place.xyz = coverage_place(rays, place.xyz, normal);
             if (k == 0) normal = coverage_front(shares);
             else part = color - part;

@@ -74,13 +74,16 @@ def test_a_click_pans_nothing(editor: Any) -> None:
 def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
     session = editor.session
     ramp = session.apply(AddNode("ramp"))
-    assert [str(one.port) for one in handles(session)] == ["ramp.start", "ramp.end"]
+    assert [str(one.port) for one in handles(editor)] == ["ramp.start", "ramp.end"]
     assert drag(editor, (2.0, 201.0), (202.0, 101.0)) == "handle"
     assert session.graph.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
     assert editor.interface.dragging
     assert session.history.position == 2  # the node, and one step for the whole drag
+    editor.viewer.has_gizmos = False
+    assert handles(editor) == ()
+    editor.viewer.has_gizmos = True
     session.select(())
-    assert handles(session) == ()
+    assert handles(editor) == ()
 
 
 def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
