@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from importlib.machinery import ExtensionFileLoader
 from types import FrameType
 
-from ..resources.interrupts import END_REQUESTS
+from ..resources.interrupts import END_REQUESTS, redirect_interrupts
 
 _PARENT_INTERVAL = 0.5
 """Seconds between two looks at the parent: a choice, shorter than most frames take."""
@@ -76,14 +76,8 @@ def relay_requests(process: int) -> Iterator[list[int]]:
             with contextlib.suppress(OSError):
                 os.kill(process, number)
 
-    # What ignores a signal keeps ignoring it: a shell starts commands in the background so.
-    numbers = [number for number in (signal.SIGINT, *END_REQUESTS) if callable(signal.getsignal(number))]
-    before = {number: signal.signal(number, relay) for number in numbers}
-    try:
+    with redirect_interrupts(relay):
         yield received
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
 
 
 def end_with_parent_thread() -> None:
