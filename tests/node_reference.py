@@ -198,7 +198,7 @@ def _read_signature(lines: list[str], function: GlslFunction) -> str:
 
 
 def _write_table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    lines = (f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |" for row in rows)
+    lines = (f"| {' | '.join(_join_lines(cell).replace('|', chr(92) + '|') for cell in row)} |" for row in rows)
     return "\n".join((f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *lines))
 
 

@@ -104,9 +104,8 @@ def _describe_views(graph: Graph, plan: Plan, provider: LazyResourceProvider) ->
 
 
 def _describe_view(output: Output, plan: Plan, name: str, provider: LazyResourceProvider) -> str:
-    from halation.nodes import Kind
 
-    if output.kind not in (Kind.IMAGE, Kind.COLOR):
+    if not output.kind.is_color:
         return "none, since it is data: its numbers are written"
     if output.view:
         return f"{output.view}, as the output says"

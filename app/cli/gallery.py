@@ -177,7 +177,7 @@ def to_display_light(kind: Kind, array: Array) -> Array:
     from ..media.comparison.contact_sheet import show_any_light, show_data, show_over_checker
     from ..media.comparison.data_range import are_normals, balance_range, find_data_range
 
-    if kind in (Kind.IMAGE, Kind.COLOR):
+    if kind.is_color:
         return show_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")
     array = array.astype("float32")
     low, high = find_data_range(array)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from halation.nodes import Kind
-
 from ..errors import HalationError
 from ..graph import OUTPUTS, Graph, color_settings
 from ..resources.sandbox import Sandbox
@@ -31,11 +29,7 @@ def find_color_faults(graph: Graph, sandbox: Sandbox) -> Iterator[ColorFault]:
     color = color_settings(graph)
     manager = get_color_manager(color, sandbox)
     views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW, VIDEO_VIEW)}
-    spaces = {
-        name: end.color_space
-        for name, end in graph.inputs.items()
-        if end.color_space and end.kind in (Kind.IMAGE, Kind.COLOR)
-    }
+    spaces = {name: end.color_space for name, end in graph.inputs.items() if end.color_space and end.kind.is_color}
     if manager.is_plain and not views and not spaces:
         return
     names_something = color.config or color.working or views or spaces

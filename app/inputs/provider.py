@@ -118,7 +118,7 @@ class MediaProvider:
             _check_within(picture.path, picture.within)
         header = self.find_info(picture.path)
         layer = find_input_layer(header, picture.layer, self.sandbox)
-        color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
+        color = picture.kind.is_color and not layer.is_data
         mark = _conversion_mark(picture, sandbox=self.sandbox) if color else ""
         half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name, sandbox=self.sandbox))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
         PICTURE_ENDINGS,
         check_destination,
         holds_light,
-        is_data_kind,
         stores_halves,
         write_picture,
     )
@@ -51,7 +50,6 @@ __all__ = [
     "find_layer",
     "find_sequence",
     "holds_light",
-    "is_data_kind",
     "read_info",
     "read_layer",
     "read_layers",
@@ -77,7 +75,6 @@ _HOMES = MappingProxyType(
         "find_layer": "layers",
         "find_sequence": "sequences",
         "holds_light": "pictures.writer",
-        "is_data_kind": "pictures.writer",
         "read_info": "info",
         "read_layer": "pixels",
         "read_layers": "pixels",

@@ -49,7 +49,7 @@ class LayerRequest(Struct, frozen=True):
     @property
     def wants_color(self) -> bool:
         """True for sockets of color, even if the layer is data."""
-        return self.kind in (Kind.IMAGE, Kind.COLOR)
+        return self.kind.is_color
 
 
 class Pixels(Struct, frozen=True):

@@ -127,9 +127,7 @@ def _signature(function: GlslFunction) -> tuple[str, tuple[str, ...]]:
 
 def can_be_tried(node: type[Node]) -> bool:
     """True for a node that makes pixels of pictures alone, so that it can be rendered without files."""
-    return not issubclass(node, Source) and any(
-        output.socket.kind is not Kind.CAMERA for output in node.outputs.values()
-    )
+    return not issubclass(node, Source) and any(not output.socket.kind.is_planned for output in node.outputs.values())
 
 
 def _try_sizes(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
@@ -207,7 +205,7 @@ def make_pictures(
         if socket.single
         else rng.gamma(0.7, 1.0, (height, width, socket.channels)).astype(np.float32)
         for name, socket in node.inputs.items()
-        if socket.kind is not Kind.CAMERA and (single or not socket.single)
+        if not socket.kind.is_planned and (single or not socket.single)
     }
 
 

@@ -35,6 +35,16 @@ class Kind(StrEnum):
         return KINDS[self]
 
     @property
+    def is_color(self) -> bool:
+        """True for color and light, to which views and color spaces apply. The numbers of all other kinds are data."""
+        return self.facts.is_color
+
+    @property
+    def is_single(self) -> bool:
+        """True for one value for the whole picture instead of one per pixel."""
+        return self.facts.carried != "pixels"
+
+    @property
     def is_planned(self) -> bool:
         """True for an object that is known while the plan is made, and is never drawn."""
         return self.facts.carried == "plan"
@@ -48,6 +58,8 @@ class KindFacts(Struct, frozen=True):
     """How many numbers it is per pixel, and as a `default` in a graph file; those of a Vector vary."""
     doc: str
     """What the editor's legend says."""
+    is_color: bool = False
+    """Whether it is color or light, to which views and color spaces apply, and not data."""
     fits: frozenset[Kind] = frozenset()
     """The kinds of other inputs that it may be linked to, because nothing is lost."""
     noun: str = "picture"
@@ -58,16 +70,20 @@ class KindFacts(Struct, frozen=True):
 
 KINDS: Mapping[Kind, KindFacts] = MappingProxyType(
     {
-        Kind.IMAGE: KindFacts("pixels", 4, "a picture: red, green, blue, alpha"),
-        Kind.FIELD: KindFacts("pixels", 1, "one channel: depth, mask, occlusion", frozenset({Kind.IMAGE, Kind.VECTOR})),
+        Kind.IMAGE: KindFacts("pixels", 4, "a picture: red, green, blue, alpha", is_color=True),
+        Kind.FIELD: KindFacts(
+            "pixels", 1, "one channel: depth, mask, occlusion", fits=frozenset({Kind.IMAGE, Kind.VECTOR})
+        ),
         Kind.VECTOR: KindFacts("pixels", 4, "data of 2 to 4 channels: normal, velocity"),
         Kind.NUMBER: KindFacts(
             "value",
             1,
             "one number for the whole picture",
-            frozenset({Kind.IMAGE, Kind.FIELD, Kind.VECTOR, Kind.COLOR}),
+            fits=frozenset({Kind.IMAGE, Kind.FIELD, Kind.VECTOR, Kind.COLOR}),
         ),
-        Kind.COLOR: KindFacts("value", 4, "one color for the whole picture", frozenset({Kind.IMAGE})),
+        Kind.COLOR: KindFacts(
+            "value", 4, "one color for the whole picture", is_color=True, fits=frozenset({Kind.IMAGE})
+        ),
         Kind.CAMERA: KindFacts("plan", 12, "the camera that a picture was taken with", noun="camera", read=read_camera),
     }
 )

@@ -43,7 +43,7 @@ class Socket:
     @property
     def single(self) -> bool:
         """True if it carries one value for the whole picture instead of one per pixel."""
-        return self.kind.facts.carried != "pixels"
+        return self.kind.is_single
 
     @property
     def glsl(self) -> str:

@@ -16,7 +16,7 @@ from halation import document
 from halation.cli.outcome import EXIT_CODES
 from halation.graph import Interpolation, problems
 from halation.graph.expressions.functions import FUNCTIONS
-from halation.nodes import Pointwise, Temporal, catalogue
+from halation.nodes import Pointwise, Temporal, Trait, catalogue
 from halation.resources.sandbox import UNRESTRICTED
 
 ROOT = Path(__file__).parents[2]
@@ -65,6 +65,20 @@ def test_files_and_folders_that_a_page_names_exist(page: Path) -> None:
     assert not {path for path in paths if not (ROOT / path).exists()}
     links = set(re.findall(r"\]\((?!https?:|#)([^)#]+)", re.sub(r"`[^`]*`", "", text)))
     assert not {link for link in links if not (page.parent / link).exists()}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_each_row_of_a_table_has_a_cell_for_each_column(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+    for table in re.findall(r"(?:^\|.*\n)+", text, re.M):
+        columns = [len(re.findall(r"(?<!\\)\|", row)) - 1 if row.endswith("|") else row for row in table.splitlines()]
+        assert columns == [columns[0]] * len(columns), table
+
+
+def test_traits_are_explained_on_one_page() -> None:
+    assert [page.name for page in PAGES if f"| `{Trait.NEEDS_COLOR.name}` |" in page.read_text(encoding="utf-8")] == [
+        "writing-nodes.md"
+    ]
 
 
 def test_its_commands_and_exit_codes_exist() -> None:

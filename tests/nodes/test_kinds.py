@@ -26,10 +26,15 @@ def test_what_the_table_says_is_what_sockets_do(kind: Kind) -> None:
     socket = make_socket(kind)
     facts = kind.facts
     assert (socket.channels, socket.single) == (facts.channels, facts.carried != "pixels")
+    assert (socket.single, facts.is_color) == (kind.is_single, kind.is_color)
     assert (facts.read is not None) == kind.is_planned == (facts.carried == "plan")
     assert Input(kind).width == facts.channels
     fitting = {other for other in Kind if conversion(make_socket(kind, 3), make_socket(other, 3)) is None}
     assert fitting == facts.fits | {kind}
+
+
+def test_only_pictures_and_colors_are_color() -> None:
+    assert {kind for kind in Kind if kind.is_color} == {Kind.IMAGE, Kind.COLOR}
 
 
 def test_planned_kinds_fit_nothing_else() -> None:

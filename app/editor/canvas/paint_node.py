@@ -101,17 +101,17 @@ def paint_pin(
             if ink:
                 draw.add_quad_filled((cx - size, cy), (cx, cy - size), (cx + size, cy), (cx, cy + size), ink)
         return
-    if kind is Kind.NUMBER or kind is Kind.COLOR:
+    if kind is not None and kind.is_planned:
+        for size, ink in ((r * 1.5, rim), (r * 1.15, color), (r * 0.5, core)):
+            if ink:
+                draw.add_triangle_filled((cx - size, cy - size), (cx + size, cy), (cx - size, cy + size), ink)
+        return
+    if kind is not None and kind.is_single:
         for size, ink in ((r * 1.05, rim), (r * 0.82, color), (r * 0.4, core)):
             if ink:
                 draw.add_rect_filled(
                     (cx - size, cy - size), (cx + size, cy + size), ink, size * (0.75 if kind is Kind.COLOR else 0.15)
                 )
-        return
-    if kind is not None and kind.is_planned:
-        for size, ink in ((r * 1.5, rim), (r * 1.15, color), (r * 0.5, core)):
-            if ink:
-                draw.add_triangle_filled((cx - size, cy - size), (cx + size, cy), (cx - size, cy + size), ink)
         return
     if kind is Kind.FIELD:
         core = core or brush.ink.node

@@ -95,7 +95,7 @@ class EndView:
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
             rows.act(lambda: session.apply(SetInput(name, layer=str(layer.value))))
-        if end.kind in (Kind.IMAGE, Kind.COLOR):
+        if end.kind.is_color:
             self._space(rows, port, end, bool(bound))
         if Pattern.parse(end.file):
             rows.name(f"{key} missing", "missing", doc="What to show at a frame that has no file")
@@ -138,7 +138,7 @@ class EndView:
             tip("No default: link something, bind or choose a file. Click to set a default")
             return None
         side = imgui.get_frame_height()
-        color = end.kind in (Kind.IMAGE, Kind.COLOR)
+        color = end.kind.is_color
         if isinstance(end.default, tuple):
             fields, room = self._fields, width - side
             edit = (

@@ -54,7 +54,7 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
             words.append(Word(f"1/{1 / image.scale:.0f}", palette.warning))
     if side != "A":
         return words
-    if image is not None and image.kind not in (Kind.NUMBER, Kind.COLOR):
+    if image is not None and not image.kind.is_single:
         words.append(Word(f"{sight.zoom * 100:.{0 if sight.zoom >= 0.1 else 1}f} %", palette.dim))
     if preview.paused:
         words.append(Word("paused", palette.warning))
@@ -68,7 +68,7 @@ def about(context: ViewerContext, side: str, image: DisplayedImage | None, sight
 
 def describe(kind: Kind, channels: int) -> str:
     """The kind of data, as text."""
-    if kind in (Kind.IMAGE, Kind.COLOR):
+    if kind.is_color:
         return "RGBA" if kind is Kind.IMAGE else "color"
     return f"vector {channels}" if kind is Kind.VECTOR else kind.value.lower()
 
@@ -81,7 +81,7 @@ def of_pixel(
     if pixel is None or not values:
         return []
     words = [Word(f"{pixel[0]}, {pixel[1]}", palette.text, 1.5)]
-    color = kind in (Kind.IMAGE, Kind.COLOR)
+    color = kind.is_color
     for index, value in enumerate(values):
         shade = mix(palette.text, _CHANNEL_COLORS[index], 0.6) if color and index < 3 else palette.text
         shade = shade if np.isfinite(value) else palette.error

@@ -30,7 +30,7 @@ def choose_meaning(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
     """How to show a picture: the user's choice, or by its kind and numbers."""
     if state.meaning != "auto":
         return state.meaning
-    if kind in (Kind.IMAGE, Kind.COLOR):
+    if kind.is_color:
         return "image"
     if kind is Kind.VECTOR:
         return "normal" if are_normals(samples()) else "vector"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -63,7 +62,7 @@ class ScopesPanel:
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows."
             )
             return
-        if image.kind in (Kind.NUMBER, Kind.COLOR):
+        if image.kind.is_single:
             draw_empty_panel(
                 self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture."
             )

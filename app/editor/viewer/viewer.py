@@ -227,7 +227,7 @@ class Viewer:
             draw_badge(self._context, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
             self._offer_search(sight)
-        if images.a is not None and not fault and images.a.kind in (Kind.NUMBER, Kind.COLOR):
+        if images.a is not None and not fault and images.a.kind.is_single:
             values = self._reader.read_pixel(self._context.probe, "single", images.a, (0, 0))
             draw_message(self._context, sight, "  ".join(format_pixel_number(value) for value in values), palette.text)
         waited = imgui.get_time() - self._busy_since if self._busy_since is not None else 0.0

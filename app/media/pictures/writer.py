@@ -92,7 +92,7 @@ def write_picture(
         parts = encode_exr_parts(layers, kinds, precision, compression, encoding)
     else:
         layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
-        is_data = is_data_kind(kinds[layer_name])
+        is_data = not kinds[layer_name].is_color
         parts = [_encode_picture(layers[layer_name], is_data, frame, format, precision, compression, encoding)]
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
@@ -103,11 +103,6 @@ def write_picture(
 def holds_light(path: str | Path) -> bool:
     """True for a format that stores light as it is. All others, videos too, show color through a view."""
     return _FORMATS.get(Path(path).suffix.casefold()) in _LIGHT_FORMATS
-
-
-def is_data_kind(kind: Kind) -> bool:
-    """True for data: its numbers are written unchanged, and no view applies to them."""
-    return kind not in (Kind.IMAGE, Kind.COLOR)
 
 
 def stores_halves(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
@@ -167,7 +162,7 @@ def encode_exr_parts(
     """The parts of an EXR that holds these layers, and their numbers."""
     parts: list[EncodedPart] = []
     for name, array in layers.items():
-        color = not is_data_kind(kinds[name])
+        color = kinds[name].is_color
         half = _is_stored_as_half(kinds[name], precision)
         height, width, count = array.shape
         spec = oiio.ImageSpec(width, height, count, "half" if half else "float")
@@ -187,7 +182,7 @@ def encode_exr_parts(
 
 
 def _is_stored_as_half(kind: Kind, precision: Precision) -> bool:
-    return precision == "half" and not is_data_kind(kind)
+    return precision == "half" and kind.is_color
 
 
 def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
@@ -201,7 +196,7 @@ def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
 
 
 def _channel_names(name: str, kind: Kind, count: int) -> str:
-    if kind in (Kind.IMAGE, Kind.COLOR):
+    if kind.is_color:
         return "RGBA"[:count] if count > 2 else "YA"[:count]
     if kind is Kind.VECTOR:
         return "XYZW"[:count]
@@ -210,7 +205,7 @@ def _channel_names(name: str, kind: Kind, count: int) -> str:
 
 def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     """The layer that a format without layers shows: the first color layer, else the first field."""
-    candidates = [name for name in kinds if not is_data_kind(kinds[name])]
+    candidates = [name for name in kinds if kinds[name].is_color]
     candidates = candidates or [name for name in kinds if kinds[name] is not Kind.VECTOR]
     if not candidates:
         raise UsageError(f"{path}: vectors are data, not a picture: write them to an .exr file")

@@ -17,7 +17,7 @@ from ...color.encoding import Encoding
 from ...errors import OutputError
 from ...resources.atomic_write import check_writable, replace_file
 from ...resources.sandbox import Sandbox
-from ..pictures.writer import choose_shown_layer, is_data_kind
+from ..pictures.writer import choose_shown_layer
 from .codecs import find_codec
 from .library import load_pyav
 from .signals import Array, code_ranges, rgb_to_chroma
@@ -101,7 +101,7 @@ class VideoWriter:
         if (width, height) != self.size:
             here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
             raise OutputError(f"{self.path}: frame {self._count + 1} is {here}, those before it {there}: give --size")
-        encoded = self._make_frame(picture, is_data_kind(kinds[name]), frame)
+        encoded = self._make_frame(picture, not kinds[name].is_color, frame)
         encoded.pts, encoded.time_base = self._count, 1 / self._rate
         self._count += 1
         self._encode_frame(encoded)

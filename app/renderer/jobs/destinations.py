@@ -62,7 +62,7 @@ class Destination(Struct, frozen=True):
         """The outputs that are data, where the format shows color through a view; their numbers are written."""
         if media.holds_light(self.path):
             return ()
-        return tuple(name for layer, name in self.layers.items() if media.is_data_kind(self.kinds[layer]))
+        return tuple(name for layer, name in self.layers.items() if not self.kinds[layer].is_color)
 
     @property
     def view(self) -> str:
@@ -124,7 +124,7 @@ def choose_views(files: Sequence[Destination], plan: Plan, encodings: PictureEnc
 def _choose_view(file: Destination, plan: Plan, encodings: PictureEncodings) -> Destination:
     encoding, layers = file.encoding, tuple(file.layers)
     is_chosen = encoding.view or encoding.display or encoding.look or encoding.space
-    if is_chosen or len(layers) != 1 or media.holds_light(file.path) or media.is_data_kind(file.kinds[layers[0]]):
+    if is_chosen or len(layers) != 1 or media.holds_light(file.path) or not file.kinds[layers[0]].is_color:
         return file
     view = choose_default_view(plan, plan.outputs[file.layers[layers[0]]], encodings)
     return replace(file, encoding=replace(encoding, view=view))
@@ -184,7 +184,7 @@ def _describe_destination(
     first = _find_port(request, names[0]) if names else Port("", "")
     own_view = graph.outputs[first.socket].view if first.node == OUTPUTS and not settings.space else ""
     manager = get_color_manager(color_settings(graph), sandbox)
-    has_light = media.holds_light(path) or all(media.is_data_kind(kind) for kind in kinds.values())
+    has_light = media.holds_light(path) or all(not kind.is_color for kind in kinds.values())
     encoding = Encoding(
         settings.view or own_view,
         settings.display,

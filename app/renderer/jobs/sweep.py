@@ -171,7 +171,7 @@ def _show_cells(graph: Graph, pictures: Sequence[Array], sweep: SweepRequest) ->
     port = sweep.request.targets.get(sweep.output, Port(OUTPUTS, sweep.output))
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
-    if kind in (Kind.IMAGE, Kind.COLOR):
+    if kind.is_color:
         return [show_over_checker(_widen(array), sweep.view) for array in pictures]
     finite = [array[np.isfinite(array)].astype(np.float64) for array in pictures]
     low = min((float(part.min()) for part in finite if part.size), default=0.0)
