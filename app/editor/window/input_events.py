@@ -7,6 +7,10 @@ their order. It ends a frame's share where the modifiers change after a press; t
 
 While a text field is edited, what is typed arrives as characters alone, all of them in the next frame: the library
 takes one key at a time, and text would trail behind the hand.
+
+A key or a click may open a field that takes text, and the field has the focus only some frames later: the popup opens,
+it asks for the focus, the focus arrives. What is typed in the meantime belongs to the field. So keys wait until a frame
+has passed that changed nothing of what decides where they go (`_Focus`). No popup has to declare its field.
 """
 
 from __future__ import annotations
@@ -41,6 +45,46 @@ class InputEvent:
     """Whether it is the typed text itself."""
     is_release: bool = False
     """Whether it only lets a key or a button go: the modifiers do not matter to it."""
+    is_key: bool = False
+    """Whether it goes to what has the focus: a key that went down, or text."""
+    follows_key: bool = False
+    """Whether it is the text of the key before it. Input methods send text without a key."""
+    moves_focus: bool = False
+    """Whether it may change what has the focus: a key that goes down, a button that goes down or up."""
+
+
+@dataclass(frozen=True)
+class _Focus:
+    """What decides where a key goes, and what is about to change that."""
+
+    takes_text: bool
+    will_take_text: bool
+    active: int
+    popups: tuple[int, ...]
+    is_asked_for: bool
+    next_active: int
+    window: int
+    window_count: int
+
+    @classmethod
+    def read(cls) -> _Focus:
+        """The focus after the last frame."""
+        context = imgui.get_current_context()
+        return cls(
+            imgui.get_io().want_text_input,
+            context.want_text_input_next_frame > 0,
+            context.active_id,
+            tuple(popup.popup_id for popup in context.open_popup_stack),
+            context.nav_any_request,
+            context.nav_next_activate_id,
+            context.nav_window.id_ if context.nav_window is not None else 0,
+            context.windows_active_count,
+        )
+
+
+PATIENCE = 20
+"""Frames after which keys no longer wait for the focus. Opening the slowest dialog takes 5; a panel that asks for the
+focus again and again must not swallow keys for ever."""
 
 
 class InputQueue:
@@ -50,6 +94,14 @@ class InputQueue:
         self._events: deque[InputEvent] = deque()
         self._held: set[imgui.Key] = set()
         self._forwarded: frozenset[imgui.Key] = frozenset()
+        self._awaits_text = False
+        """Whether the next text is that of the key before it."""
+        self._focus: _Focus | None = None
+        self._may_move_focus = False
+        """Whether the last frame got an event that may change the focus."""
+        self._waited = 0
+        self._is_text_used = False
+        """Whether the latest key was used as a key: then its character is no text for a field that it opened."""
 
     def __len__(self) -> int:
         return len(self._events)
@@ -65,6 +117,7 @@ class InputQueue:
 
     def add_key(self, key: int, scancode: int, action: int, bits: int) -> None:
         """A key went down or up; repeats are the interface library's own."""
+        self._awaits_text |= action in (glfw.PRESS, glfw.REPEAT) and key not in _modifier_keys()
         if action == glfw.REPEAT:
             return
         is_down = action == glfw.PRESS
@@ -86,6 +139,8 @@ class InputQueue:
                 lambda io: io.add_key_event(name, is_down),
                 is_character=is_character,
                 is_release=not is_down and key not in _modifier_keys(),
+                is_key=presses,
+                moves_focus=presses,
             )
         )
 
@@ -93,9 +148,16 @@ class InputQueue:
         """A character was typed. It comes right behind its key, whose modifiers are its own."""
         self._events.append(
             InputEvent(
-                self._latest, True, lambda io: io.add_input_character(character), is_character=True, is_text=True
+                self._latest,
+                True,
+                lambda io: io.add_input_character(character),
+                is_character=True,
+                is_text=True,
+                is_key=True,
+                follows_key=self._awaits_text,
             )
         )
+        self._awaits_text = False
 
     def add_button(self, button: int, action: int, bits: int) -> None:
         """A button of the mouse went down or up."""
@@ -103,7 +165,9 @@ class InputQueue:
             return
         is_down = action == glfw.PRESS
         modifiers = self._update_held(bits)
-        self._events.append(InputEvent(modifiers, is_down, lambda io: io.add_mouse_button_event(button, is_down)))
+        self._events.append(
+            InputEvent(modifiers, is_down, lambda io: io.add_mouse_button_event(button, is_down), moves_focus=True)
+        )
 
     def add_wheel(self, across: float, down: float) -> None:
         """The wheel was turned."""
@@ -117,12 +181,19 @@ class InputQueue:
     def forward(self) -> None:
         """Hand over a frame's share; to be called before the interface begins the frame."""
         io, has_pressed = imgui.get_io(), False
+        is_settled = self._is_focus_settled()
         while self._events:
             event = self._events[0]
+            if event.follows_key and self._is_text_used:
+                self._events.popleft()
+                continue
+            if event.is_key and not is_settled:
+                return
             if event.is_character and io.want_text_input:
                 self._events.popleft()
                 if event.is_text:
                     event.forward(io)
+                self._is_text_used = False
                 continue
             if event.modifiers != self._forwarded and not event.is_release:
                 if has_pressed:
@@ -132,8 +203,19 @@ class InputQueue:
                 self._forwarded = event.modifiers
             self._events.popleft().forward(io)
             has_pressed |= event.presses
-            if event.presses and io.want_text_input:
-                return  # Enter, Tab or a click may leave the field: what follows is no text for it
+            if event.is_key and not event.is_text:
+                self._is_text_used = event.is_character
+            if event.moves_focus:
+                self._may_move_focus, is_settled = True, False
+
+    def _is_focus_settled(self) -> bool:
+        """True if the last frame neither changed where keys go nor got an event that may do so."""
+        before, self._focus = self._focus, _Focus.read()
+        has_arrived = not imgui.get_current_context().input_events_queue
+        is_settled = has_arrived and not self._may_move_focus and before in (None, self._focus)
+        self._may_move_focus = False
+        self._waited = 0 if is_settled or not self._events else self._waited + 1
+        return is_settled or self._waited > PATIENCE
 
     @property
     def _latest(self) -> frozenset[imgui.Key]:

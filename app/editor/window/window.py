@@ -296,7 +296,7 @@ class Window:
         if self._updater.is_working or editor.timeline.playback.playing or editor.viewer.finding:
             self._worked_at = time_now
         resting = self.params.fps_idling
-        resting.enable_idling = time_now - self._worked_at > GRACE
+        resting.enable_idling = time_now - self._worked_at > GRACE and not self._input
         resting.fps_idle = choose_idle_rate(editor)
 
     def _serve_commands(self) -> None:

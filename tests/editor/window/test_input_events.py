@@ -22,7 +22,8 @@ def queue() -> Iterator[InputQueue]:
     io.backend_flags |= int(imgui.BackendFlags_.renderer_has_textures)
     io.set_ini_filename("")
     queue = InputQueue()
-    frame(queue)
+    for _ in range(3):
+        frame(queue)
     yield queue
     imgui.destroy_context(context)
 
@@ -91,7 +92,7 @@ def test_what_is_typed_behind_a_chord_is_text(queue: InputQueue) -> None:
         release(queue, ord(character.upper()))
     assert frame(queue) == ["Ctrl+A"]
     assert imgui.get_io().want_text_input is False
-    assert frame(queue) == ["X"] and not queue
+    assert [name for _ in range(8) for name in frame(queue)] == ["X", "Z"] and not queue
 
 
 def test_a_click_has_the_modifiers_of_its_moment(queue: InputQueue) -> None:
@@ -156,4 +157,70 @@ def test_text_arrives_in_one_frame_and_enter_behind_it(queue: InputQueue) -> Non
     frames = [edit_frame("") for _ in range(3)]
     assert (True, "/Tmp/My look.json") in frames[:2]
     press(queue, glfw.KEY_S)
-    assert not imgui.get_io().want_text_input and frame(queue) == ["S"]
+    assert not imgui.get_io().want_text_input and [name for _ in range(4) for name in frame(queue)] == ["S"]
+
+
+@pytest.mark.parametrize("delay", [0, 1])
+@pytest.mark.parametrize("sort", ["popup", "window", "modal"])
+def test_a_field_that_a_key_opens_gets_all_that_is_typed_behind_it(queue: InputQueue, sort: str, delay: int) -> None:
+    """Whatever opens the field: it appears in the frame of the key or in the next one, and asks for the focus."""
+    text, opened_at, leaks = "", 0, []
+
+    def draw(count: int) -> None:
+        nonlocal text, opened_at
+        queue.forward()
+        imgui.new_frame()
+        if imgui.is_key_pressed(imgui.Key.tab, False) and not opened_at:
+            opened_at = count
+        leaks.extend(name for name in ("X", "A", "S") if imgui.is_key_pressed(imgui.Key(chord(name)), False))
+        begins = opened_at and count == opened_at + delay
+        if begins and sort != "window":
+            imgui.open_popup("field")
+        shows = {
+            "popup": lambda: imgui.begin_popup("field"),
+            "modal": lambda: imgui.begin_popup_modal("field")[0],
+            "window": lambda: bool(opened_at) and count >= opened_at + delay and imgui.begin("field")[0],
+        }[sort]()
+        if shows:
+            if begins:
+                imgui.set_keyboard_focus_here()
+            _, text = imgui.input_text("##text", text)
+            imgui.end() if sort == "window" else imgui.end_popup()
+        imgui.end_frame()
+
+    press(queue, glfw.KEY_TAB)
+    release(queue, glfw.KEY_TAB)
+    for character in "xaasx":
+        press(queue, ord(character.upper()))
+        queue.add_text(ord(character))
+        release(queue, ord(character.upper()))
+    for count in range(1, 30):
+        draw(count)
+    assert text == "xaasx" and not leaks
+
+
+def test_the_character_of_a_shortcut_is_no_text_for_the_field_that_it_opens(queue: InputQueue) -> None:
+    """The character comes with its key, and more of them while the key is held."""
+    text, is_open = "", False
+    for count in range(40):
+        if count == 2:
+            press(queue, glfw.KEY_X)
+            queue.add_text(ord("x"))
+        if count in (3, 9):
+            queue.add_key(glfw.KEY_X, 0, glfw.REPEAT, 0)
+            queue.add_text(ord("x"))
+        if count == 20:
+            release(queue, glfw.KEY_X)
+            queue.add_text(ord("é"))  # an input method sends no key
+        queue.forward()
+        imgui.new_frame()
+        begins = imgui.is_key_pressed(imgui.Key.x, False) and not is_open
+        is_open |= begins
+        if is_open:
+            imgui.begin("field")
+            if begins:
+                imgui.set_keyboard_focus_here()
+            _, text = imgui.input_text("##text", text)
+            imgui.end()
+        imgui.end_frame()
+    assert text == "é"
