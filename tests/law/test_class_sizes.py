@@ -1,0 +1,125 @@
+"""No class of the editor becomes the place for everything: what a class offers, inherited members included, is bounded.
+
+The limits are a little above the largest class of today. A class that meets one does two jobs: give the second one to
+a part of its own, as `Session` does with `files`, `time` and `views`.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+ROOMS = ("app/editor", "app/authoring")
+SESSION_PARTS = ("DocumentFiles", "CodeFiles", "DocumentTime", "ViewedPorts", "History")
+"""What the attributes of the session are."""
+
+
+class ClassSize(NamedTuple):
+    """How much a class offers and holds, with all that it inherits from other classes of the project."""
+
+    public_names: int
+    methods: int
+    statements: int
+
+    def exceeds(self, limit: ClassSize) -> bool:
+        """True if one of the numbers is above its limit."""
+        return any(number > most for number, most in zip(self, limit, strict=True))
+
+
+LIMIT = ClassSize(public_names=30, methods=40, statements=300)
+"""For each class of the editor and of what editing is without a window."""
+SESSION_LIMIT = ClassSize(public_names=30, methods=40, statements=220)
+"""For the session: all changes of the document go through one of its methods, `apply`."""
+PART_LIMIT = ClassSize(public_names=14, methods=20, statements=110)
+"""For each part of the session."""
+
+
+def parse_classes(texts: Iterable[str]) -> dict[str, ast.ClassDef]:
+    """Every class by its name; `test_names.py` proves that names are unique."""
+    return {item.name: item for text in texts for item in ast.walk(ast.parse(text)) if isinstance(item, ast.ClassDef)}
+
+
+def list_bases(cls: ast.ClassDef, classes: Mapping[str, ast.ClassDef]) -> Iterator[ast.ClassDef]:
+    """The class and all classes of the project that it derives from."""
+    yield cls
+    for base in cls.bases:
+        name = base.value if isinstance(base, ast.Subscript) else base
+        if isinstance(name, ast.Name) and name.id in classes:
+            yield from list_bases(classes[name.id], classes)
+
+
+def measure(cls: ast.ClassDef, classes: Mapping[str, ast.ClassDef]) -> ClassSize:
+    """The size of a class, inherited members included."""
+    family = {item.name: item for item in list_bases(cls, classes)}.values()
+    body = [item for cls in family for item in cls.body]
+    methods = {item.name for item in body if isinstance(item, ast.FunctionDef)}
+    statements = sum(isinstance(node, ast.stmt) for item in body for node in ast.walk(item))
+    return ClassSize(sum(not name.startswith("_") for name in methods), len(methods), statements)
+
+
+@pytest.fixture(scope="module")
+def classes() -> dict[str, ast.ClassDef]:
+    """All classes of the package."""
+    return parse_classes(path.read_text("utf-8") for path in sorted((ROOT / "app").rglob("*.py")))
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_class_grows_past_the_limit(room: str, classes: dict[str, ast.ClassDef]) -> None:
+    inside = parse_classes(path.read_text("utf-8") for path in sorted((ROOT / room).rglob("*.py")))
+    assert len(inside) > 50
+    sizes = {name: measure(cls, classes) for name, cls in inside.items()}
+    assert not {name: size for name, size in sizes.items() if size.exceeds(LIMIT)}, f"the limit is {LIMIT}"
+
+
+@pytest.mark.parametrize("name", ["Session", *SESSION_PARTS])
+def test_the_session_and_its_parts_stay_small(name: str, classes: dict[str, ast.ClassDef]) -> None:
+    size, limit = measure(classes[name], classes), SESSION_LIMIT if name == "Session" else PART_LIMIT
+    assert not size.exceeds(limit), f"{size}, the limit is {limit}"
+
+
+def test_the_session_has_no_other_parts(classes: dict[str, ast.ClassDef]) -> None:
+    """Each public attribute that is made of a class of the project is one of the parts that are measured here."""
+    created = {
+        item.value.func.id
+        for cls in list_bases(classes["Session"], classes)
+        for item in ast.walk(cls)
+        if isinstance(item, ast.Assign)
+        and isinstance(item.targets[0], ast.Attribute)
+        and not item.targets[0].attr.startswith("_")
+        and isinstance(item.value, ast.Call)
+        and isinstance(item.value.func, ast.Name)
+        and item.value.func.id in classes
+    }
+    assert created == set(SESSION_PARTS)
+
+
+def test_nothing_is_mixed_in(classes: dict[str, ast.ClassDef]) -> None:
+    """A class of the editor derives from at most one class of the project that has methods: no mixins."""
+    inside = parse_classes(path.read_text("utf-8") for room in ROOMS for path in sorted((ROOT / room).rglob("*.py")))
+    several = {
+        name: [base.id for base in cls.bases if isinstance(base, ast.Name) and base.id in classes]
+        for name, cls in inside.items()
+    }
+    assert not {name: bases for name, bases in several.items() if len(bases) > 1}
+
+
+def test_inherited_members_count() -> None:
+    text = """
+class Ground:
+    name: str
+    def __init__(self): self.size = 1
+    def open(self): pass
+
+class Upper(Ground):
+    def close(self): pass
+    def _hide(self): pass
+"""
+    small = parse_classes([text])
+    assert measure(small["Ground"], small) == ClassSize(1, 2, 5)
+    assert measure(small["Upper"], small) == ClassSize(2, 4, 9)
