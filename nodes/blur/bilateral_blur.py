@@ -4,11 +4,12 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
 
 
 class BilateralBlur(Filter):
-    """Smooth surfaces and noise while edges stay: neighbors with another color have less weight.
+    """Smooth surfaces and noise but keep edges: neighbors with a different color have less weight.
 
-    A neighbor's weight is `exp(-d^2 / (2 sigma^2) - c^2 / (2 sigma_range^2))`, d its distance in pixels and c that of
-    its color (Tomasi and Manduchi 1998), within 1.5 sigma as in OpenCV. With a guide, that picture's colors are
-    compared instead (joint bilateral, Petschnigg et al. 2004): noisy light may follow clean albedo or normals.
+    Each neighbor has the weight `exp(-d^2 / (2 sigma^2) - c^2 / (2 sigma_range^2))`, where d is its distance in pixels
+    and c the difference of its color (Tomasi and Manduchi 1998). Neighbors within 1.5 sigma count, as in OpenCV. If a
+    guide is linked, the weights compare the colors of the guide instead (joint bilateral filter, Petschnigg et al.
+    2004): clean albedo or normals can guide the blur of noisy light.
     """
 
     aliases = (
@@ -17,7 +18,9 @@ class BilateralBlur(Filter):
     )  # fmt: skip
 
     image = Image()
-    guide = Image(0.0, doc="Where this changes, the picture is not blurred. Without a link, the picture itself.")
+    guide = Image(
+        0.0, doc="Edges of this picture stop the blur. Without a link, the edges of the blurred picture itself do."
+    )
     sigma: Annotated[
         float,
         Slider(
@@ -25,7 +28,14 @@ class BilateralBlur(Filter):
         ),
     ] = 4.0
     sigma_range: Annotated[
-        float, Slider(0.01, 1.0, unit="scene", minimum=1e-6, doc="How much a color may differ to be mixed in.")
+        float,
+        Slider(
+            0.01,
+            1.0,
+            unit="scene",
+            minimum=1e-6,
+            doc="How different the color of a neighbor may be. Larger values blur across stronger edges.",
+        ),
     ] = 0.1
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

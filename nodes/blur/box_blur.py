@@ -11,10 +11,10 @@ _DIRECT = 64
 class BoxBlur(Filter):
     """Blur evenly with a box: hard-edged and fast at any radius. Repeated, it comes close to a Gaussian.
 
-    A box is 2 radius + 1 pixels wide; with a fractional radius its two end pixels count in part. Wide boxes are sums of
-    blocks, minus the pixels outside of the box: exact. Three boxes with a reach over 70 pixels are applied to a smaller
-    picture: the spread of a single pixel is exact to 1e-3. The cost hardly grows with the radius. Three boxes: Wells
-    1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
+    A box is 2 radius + 1 pixels wide. If the radius is not a whole number, the two pixels at its ends count in part.
+    Wide boxes are added up from blocks, which is exact, so that the cost hardly grows with the radius. Three boxes that
+    reach farther than 70 pixels are applied to a smaller picture; a single pixel then spreads as it should to within
+    1e-3. Three boxes: Wells 1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
     """
 
     aliases = ("fast box blur", "fast blur", "average blur", "mean filter")

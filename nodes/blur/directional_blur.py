@@ -7,7 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
 class DirectionalBlur(Filter):
     """Blur along a straight line, as if the camera had moved during the exposure.
 
-    The mean along the line, sampled at every pixel or closer (bilinear). The cost grows with the length.
+    Each pixel becomes the mean along the line, which is sampled at least once per pixel (bilinear). The cost grows with
+    the length.
     """
 
     aliases = ("dir blur", "motion blur 2d", "linear blur", "angle blur", "cross blur", "smear", "streak blur")

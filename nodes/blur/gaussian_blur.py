@@ -4,9 +4,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Trait
 
 
 class GaussianBlur(Filter):
-    """Blur with a Gaussian, equal in all directions or different across and down. The cost hardly grows with sigma.
+    """Blur with a Gaussian, equally in all directions or differently in x and y. The cost hardly grows with sigma.
 
-    Within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, within 3e-4 (RMS) of it above.
+    The result is within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, and within 3e-4 (RMS) above it.
     """
 
     aliases = ("blur", "soften", "defocus", "smooth", "fast blur", "low pass", "feather", "edge blur", "out of focus")
@@ -32,7 +32,7 @@ class GaussianBlur(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="Factor on sigma across and down: (1, 0) blurs across alone, (1, 0.25) looks anamorphic.",
+            doc="Factor on sigma in x and y: (1, 0) blurs horizontally only, (1, 0.25) looks anamorphic.",
         ),
     ] = (1.0, 1.0)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -4,10 +4,10 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image
 
 
 class Median(Filter):
-    """Remove single bright or dark pixels without blurring edges: each channel's middle value of a square.
+    """Remove single bright or dark pixels without blurring edges: each channel becomes the median of a small square.
 
-    By forgetful selection: of more than half of all pixels, the largest and the smallest can never be the median
-    (Paeth 1990, McGuire 2008).
+    The median is found by forgetful selection: in a group of more than half of all pixels, neither the largest nor the
+    smallest can be the median, so both are dropped (Paeth 1990, McGuire 2008).
     """
 
     aliases = (
@@ -16,7 +16,7 @@ class Median(Filter):
     )  # fmt: skip
 
     image = Image()
-    window: Annotated[Literal["3x3", "5x5"], Doc("Which neighbors are sorted.")] = "3x3"
+    window: Annotated[Literal["3x3", "5x5"], Doc("The size of the square.")] = "3x3"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def passes(self, draw: Draw) -> Drawn:

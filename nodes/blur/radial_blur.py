@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class RadialBlur(Filter):
     """Blur around a point, as if the camera had turned (spin) or zoomed during the exposure.
 
-    The mean along an arc, or along the line through the center: sampled at every pixel or closer (bilinear), up to 512
-    times.
+    Each pixel becomes the mean along an arc around the center (spin) or along the line through the center (zoom). The
+    way is sampled at least once per pixel (bilinear), but at most 512 times.
     """
 
     aliases = ("zoom blur", "spin blur", "rotational blur", "cc radial blur", "cc radial fast blur", "crash zoom")
@@ -27,7 +27,10 @@ class RadialBlur(Filter):
         ),
     ] = 0.15
     angle: Annotated[
-        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: how far a pixel turns in all.")
+        float,
+        Slider(
+            0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: the whole angle that a pixel turns by."
+        ),
     ] = 10.0
     center: Annotated[Position, Doc("The point that stays sharp.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -6,8 +6,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
 class Sharpen(Filter):
     """Sharpen by an unsharp mask: the detail that a Gaussian blur would remove is added once more.
 
-    `out = in + amount * detail`. `detail = in - blur(in, sigma)`, reduced by the threshold so that faint grain is not
-    sharpened, and limited so that lamps do not get black halos. Alpha is kept.
+    `out = in + amount * detail`, where `detail = in - blur(in, sigma)`. The threshold reduces the detail, so that faint
+    grain is not sharpened. The limit keeps it small, so that lamps do not get black halos. Alpha is kept.
     """
 
     aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture")
@@ -33,7 +33,13 @@ class Sharpen(Filter):
     ] = 0.0
     limit: Annotated[
         float,
-        Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="The largest detail, as a part of the pixel's own brightness."),
+        Slider(
+            0.0,
+            2.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="The largest detail that is added, as a part of the pixel's own brightness.",
+        ),
     ] = 0.3
     channels: Annotated[
         Literal["luminance", "separate"],

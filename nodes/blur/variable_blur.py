@@ -14,17 +14,18 @@ _NOTHING = 0.1
 
 
 class VariableBlur(Filter):
-    """Blur by a mask: with the full sigma where the field is 1, not at all where it is 0.
+    """Blur by a mask: with the full sigma where the field is 1, and not at all where it is 0.
 
-    Every pixel is blurred by a Gaussian with its own sigma, `sigma * field`. It is a mixture of three blurs of a ladder
-    with three steps per octave, with the right variance, the most similar shape, and no negative weights. It is within
-    1.5 percent (RMS) of that Gaussian even on white noise, and far closer on pictures.
+    Every pixel is blurred by a Gaussian of its own, with the sigma `sigma * field`. That Gaussian is mixed from three
+    blurs out of a series that has three steps per octave. The weights of the mix are never negative; they give the
+    right variance and the most similar shape. The result is within 1.5 percent (RMS) of the exact Gaussian even on
+    white noise, and much closer on pictures.
     """
 
     aliases = ("vari blur", "compound blur", "blur by mask", "tilt shift", "channel blur", "masked blur", "lens blur")
 
     image = Image()
-    field = Field(1.0, doc="The factor on sigma, 0..1.")
+    field = Field(1.0, doc="Factor on sigma for each pixel, 0..1.")
     sigma: Annotated[
         float,
         Slider(0.0, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="Standard deviation where the field is 1."),

@@ -17,7 +17,7 @@ Pick = Annotated[
         "other alpha",
         "other luminance",
     ],
-    Doc("What this channel is filled with: a channel of the image or of the other image, or a constant."),
+    Doc("Where this channel comes from: a channel of the image or of the other image, or a constant."),
 ]
 
 

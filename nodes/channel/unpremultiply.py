@@ -2,7 +2,7 @@ from .._declare import Image, Pointwise, Trait
 
 
 class Unpremultiply(Pointwise):
-    """Divide color by alpha, so that it is the color of the thing and not of its coverage.
+    """Divide color by alpha: the color that an object has itself, however much of the pixel it covers.
 
     Where alpha is 0 the color stays as it is.
     """

@@ -4,10 +4,11 @@ from .._declare import RGBA, Doc, Image, Pointwise, Slider, Trait
 
 
 class Cdl(Pointwise):
-    """Grade with a color decision list: slope, offset, power, then saturation, as exchanged between programs.
+    """Grade with a color decision list: slope, offset, power, then saturation. Many programs exchange such lists.
 
-    `(in * slope + offset) ^ power` per channel, then away from or toward Rec.709 luminance: ASC CDL 1.2 (2009). Works
-    on the color without its alpha; alpha stays, and so do the alphas of the three colors.
+    Each channel becomes `(in * slope + offset) ^ power`. Then saturation moves it away from or toward the Rec.709
+    luminance (ASC CDL 1.2, 2009). Works on the color without its alpha; alpha stays. The alphas of the three colors
+    have no effect.
     """
 
     aliases = ("ocio cdl transform", "asc cdl", "color decision list", "slope offset power", "color balance")
@@ -17,8 +18,8 @@ class Cdl(Pointwise):
     style: Annotated[
         Literal["no clamp", "asc"],
         Doc(
-            "ASC limits light to 0..1 before the power and at the end, as the standard says. No clamp keeps all light; "
-            "what is below 0 skips the power, as in OpenColorIO."
+            "ASC limits light to 0..1 before the power and at the end, as the standard says. No "
+            "clamp keeps all light; light below 0 then skips the power, as in OpenColorIO."
         ),
     ] = "no clamp"
     slope: Annotated[RGBA, Doc("Factor on the light, channel by channel.")] = (1.0, 1.0, 1.0, 1.0)

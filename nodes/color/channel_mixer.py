@@ -8,8 +8,9 @@ _Mix = tuple[float, float, float]
 class ChannelMixer(Pointwise):
     """Make every color channel from a mix of red, green and blue.
 
-    `red = red.r * R + red.g * G + red.b * B + constant.r`, and so on. Monochrome mixes one gray instead, as black and
-    white film behind a colored filter. Linear: the constant is added where alpha covers. Alpha stays.
+    `red = red.r * R + red.g * G + red.b * B + constant.r`, and so on. Monochrome makes one gray for all channels
+    instead, like black and white film behind a colored filter. The node is linear: the constant is added only as far as
+    alpha covers the pixel. Alpha stays.
     """
 
     aliases = ("channel mix", "mix channels", "rgb mixer", "monochrome mixer", "crosstalk")

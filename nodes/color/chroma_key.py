@@ -6,10 +6,10 @@ from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwis
 class ChromaKey(Pointwise):
     """Cut out a subject in front of a green, blue or red screen, and remove the screen's light from it.
 
-    The color of the screen decides which channel is keyed. Difference is the color difference of film and video keyers
-    (Vlahos 1964): how far that channel exceeds the others, relative to the screen; exact for gray subjects (Smith and
-    Blinn 1996). Distance compares colors without brightness: the distance of `rgb / (r + g + b)` from the screen's,
-    divided by the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
+    The largest channel of the screen's color is keyed. Difference is the method of film and video keyers (Vlahos 1964):
+    how far that channel exceeds the others, relative to the screen. It is exact for gray subjects (Smith and Blinn
+    1996). Distance compares colors without their brightness: it is how far `rgb / (r + g + b)` is from that of the
+    screen, divided by the tolerance. `out` is the subject without the light of the screen, `matte` is its coverage.
     """
 
     aliases = (
@@ -30,8 +30,8 @@ class ChromaKey(Pointwise):
     limit: Annotated[
         Literal["maximum", "average"],
         Doc(
-            "What the screen's channel may not exceed: the larger of the other two, or their average, which takes "
-            "more off."
+            "The limit of the screen's channel in the subject: the larger of the other two, or "
+            "their average, which removes more."
         ),
     ] = "maximum"
     black: Annotated[
@@ -58,7 +58,13 @@ class ChromaKey(Pointwise):
     ] = 1.0
     tolerance: Annotated[
         float,
-        Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="Distance: how far from the screen's color a pixel is solid."),
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="For distance: from this far away from the screen's color, a pixel is solid.",
+        ),
     ] = 0.5
     spill: Annotated[
         Fraction,

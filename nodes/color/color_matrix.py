@@ -58,11 +58,11 @@ _MATRICES: Mapping[str, Kernel3x3] = MappingProxyType(
 
 
 class ColorMatrix(Filter):
-    """Multiply colors by a 3 x 3 matrix: a conversion between primaries, a look, or numbers of your own.
+    """Multiply colors by a 3 x 3 matrix: a conversion between primaries, a look, or nine numbers of your own.
 
-    out = matrix * rgb, one row per output channel, plus the offset where alpha covers. Conversions follow the
-    primaries of ITU-R BT.709, BT.2020, SMPTE EG 432 (P3, D65), ACES S-2014-004 (Bradford from D65) and CIE 1931 XYZ.
-    Alpha stays.
+    out = matrix * rgb, with one row per output channel. The offset is added as far as alpha covers the pixel.
+    Conversions follow the primaries of ITU-R BT.709, BT.2020, SMPTE EG 432 (P3, D65), ACES S-2014-004 (Bradford from
+    D65) and CIE 1931 XYZ. Alpha stays.
     """
 
     aliases = ("matrix", "rgb matrix", "color transform matrix", "matrix color")
@@ -82,7 +82,7 @@ class ColorMatrix(Filter):
     matrix: Annotated[Kernel3x3, Doc("Nine numbers row by row, for the preset `custom`.")] = _IDENTITY
     direction: Annotated[
         Literal["forward", "inverse"],
-        Doc("Inverse takes back what forward did. A matrix that has no inverse is used as it is."),
+        Doc("Inverse undoes what forward did. A matrix that has no inverse is used as it is."),
     ] = "forward"
     offset: Annotated[
         tuple[float, float, float],

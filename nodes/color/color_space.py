@@ -7,10 +7,11 @@ from ._spaces import WORKING, Space, name_space
 class ColorSpace(Filter):
     """Convert colors from one space to another: primaries, white point and encoding.
 
-    Between nodes pictures are in the working space, linear Rec.709 unless the graph says otherwise: convert to another
-    space for an operation that needs it, and back. A space of the graph's color config is named in `source_name` or
-    `target_name`. To the HDR displays (PQ, HLG) 1 is 100 cd/m2. Computed by OpenColorIO's own GLSL, exactly; what the
-    config does not have comes from the ACES studio config. Works on the color without its alpha; alpha stays.
+    Between nodes, pictures are in the working space: linear Rec.709, unless the graph names another one. Convert to
+    another space for an operation that needs it, and then back. `source_name` and `target_name` can name a space of the
+    graph's color config. For the HDR displays (PQ, HLG), the number 1 is 100 cd/m2. The conversion is OpenColorIO's own
+    GLSL, so it is exact. A space that the config does not have comes from the ACES studio config. Works on the color
+    without its alpha; alpha stays.
     """
 
     aliases = (

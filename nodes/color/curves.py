@@ -6,11 +6,11 @@ _STRAIGHT = (0.0, 0.0, 1.0, 1.0)
 
 
 class Curves(Pointwise):
-    """Bend tones by curves: one for all channels, then one each for red, green and blue.
+    """Change tones by curves: one for all channels, then one each for red, green and blue.
 
-    A curve is a monotone cubic through its points (Fritsch and Butland 1984) that never overshoots them; beyond its
-    first and last point it goes on as steep as there, so that highlights keep their detail. Works on the color without
-    its alpha; alpha stays.
+    A curve is a monotone cubic through its points (Fritsch and Butland 1984): between two points it never leaves their
+    range. Before its first and after its last point it continues with the slope that it has there, so that highlights
+    keep their detail. Works on the color without its alpha; alpha stays.
     """
 
     aliases = (
@@ -27,7 +27,7 @@ class Curves(Pointwise):
         ),
     ] = "display"
     keep_color: Annotated[
-        bool, Doc("The curve for all channels changes brightness alone; hue and saturation stay.")
+        bool, Doc("The curve for all channels changes only the brightness; hue and saturation stay.")
     ] = False
     master: Annotated[Points, Doc("For all channels, before the others.")] = _STRAIGHT
     red: Points = _STRAIGHT

@@ -4,12 +4,12 @@ from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 
 class Dither(Pointwise):
-    """Reduce the picture to a few levels without banding: between two levels, a pattern decides.
+    """Reduce the picture to a few levels without banding: a pattern decides which of two levels a pixel gets.
 
-    `ceil(c (levels - 1) - threshold) / (levels - 1)`; the average stays. Blue noise: void and cluster (Ulichney
-    1993). Bayer: 8 x 8, ordered (1973). White: pcg3d (Jarzynski and Olano 2020). As the last node before 256 levels
-    are written it removes banding; with two levels it is the look of old computers. Works on the color without its
-    alpha; alpha stays.
+    `ceil(c (levels - 1) - threshold) / (levels - 1)`. The average stays the same. Blue noise: void and cluster
+    (Ulichney 1993). Bayer: 8 x 8, ordered (1973). White: pcg3d (Jarzynski and Olano 2020). As the last node before a
+    file of 256 levels it removes banding; with two levels it gives the look of old computers. Works on the color
+    without its alpha; alpha stays.
     """
 
     aliases = ("ordered dither", "bayer", "banding", "deband", "reduce banding")
@@ -18,7 +18,9 @@ class Dither(Pointwise):
     image = Image()
     pattern: Annotated[
         Literal["blue noise", "bayer", "white"],
-        Doc("Blue noise is the least visible, Bayer a regular weave, white noise the grain of bad film."),
+        Doc(
+            "Blue noise is the least visible. Bayer looks like a regular weave, white noise like the grain of bad film."
+        ),
     ] = "blue noise"
     levels: Annotated[
         float,
@@ -28,8 +30,13 @@ class Dither(Pointwise):
     ] = 256.0
     space: Annotated[
         Literal["display", "linear"],
-        Doc("In what the levels are evenly spaced: sRGB values, as files of 8 bits store them, or scene light."),
+        Doc(
+            "The numbers in which the levels are evenly spaced: sRGB values, as files of 8 bits "
+            "store them, or scene light."
+        ),
     ] = "display"
-    size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a dot, at least one pixel.")] = 1.0
+    size: Annotated[
+        float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="The side of a dot of the pattern, at least one pixel.")
+    ] = 1.0
     colored: Annotated[bool, Doc("Another pattern for each of red, green and blue.")] = False
     animate: Annotated[bool, Doc("Another pattern for each frame.")] = False

@@ -4,11 +4,11 @@ from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider
 
 
 class Grade(Pointwise):
-    """Shape shadows, midtones and highlights with lift, gamma, gain and offset.
+    """Grade shadows, midtones and highlights with lift, gamma, gain and offset.
 
-    `out = (in * (gain - lift) + lift + offset) ^ (1 / gamma)` per channel, as Nuke's Grade with black point 0 and white
-    point 1: lift is what black becomes, gain what white becomes. Negative light keeps its sign and skips the gamma.
-    Works on the color without its alpha; alpha stays as it is, and so do the alphas of the four colors.
+    Each channel becomes `(in * (gain - lift) + lift + offset) ^ (1 / gamma)`, as Nuke's Grade does with black point 0
+    and white point 1: black becomes lift, and white becomes gain. Negative light skips the gamma and stays negative.
+    Works on the color without its alpha; alpha stays as it is. The alphas of the four colors have no effect.
     """
 
     aliases = (

@@ -7,8 +7,8 @@ from ._palettes import PALETTES
 class GradientMap(Filter):
     """Map brightness to the colors of a ramp: heat vision, false color, duotones.
 
-    The luminance (Rec.709) of the color without its alpha runs along the ramp from the low to the high end. Alpha is
-    multiplied by that of the ramp. Link a Field to the image to paint data.
+    The luminance (Rec.709) of the color without its alpha chooses the place on the ramp: `low` is its beginning, `high`
+    its end. Alpha is multiplied by the alpha of the ramp. Link a Field to the image to color data.
     """
 
     aliases = (
@@ -29,7 +29,7 @@ class GradientMap(Filter):
             "black hot",
             "ramp",
         ],
-        Doc("A known palette, or the ramp below. The first four also read well in gray and to the color-blind."),
+        Doc("A known palette, or the ramp below. The first four are also clear in gray and for color-blind viewers."),
     ] = "inferno"
     ramp: Annotated[Stops, Doc("Your own colors, dark to bright.")] = (
         0.0,
@@ -55,7 +55,10 @@ class GradientMap(Filter):
     )
     scale: Annotated[
         Literal["stops", "display", "linear"],
-        Doc("In what the ramp is evenly spaced: stops of light, sRGB values as the eye sees, or scene light."),
+        Doc(
+            "The numbers in which the ramp is evenly spaced: stops of light, sRGB values as the "
+            "eye sees, or scene light."
+        ),
     ] = "stops"
     low: Annotated[
         float,

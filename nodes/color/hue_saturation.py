@@ -6,9 +6,9 @@ from .._declare import Doc, Image, Pointwise, Slider, Trait
 class HueSaturation(Pointwise):
     """Rotate all hues on the color wheel, and make colors stronger, paler or brighter.
 
-    Perceptual works in OKLab (Ottosson 2020): lightness and saturation stay as perceived. Luminance rotates around the
-    gray axis and keeps the luminance of the working space (Haeberli 1993); it is linear. HSV (Smith 1978) keeps the
-    largest channel, as paint programs do. Alpha stays.
+    Perceptual works in OKLab (Ottosson 2020) and keeps perceived lightness and saturation. Luminance is linear: it
+    rotates around the gray axis and keeps the luminance of the working space (Haeberli 1993). HSV (Smith 1978) keeps
+    the largest channel, as paint programs do. Alpha stays.
     """
 
     aliases = (

@@ -4,7 +4,7 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise
 
 
 class Luminance(Pointwise):
-    """One channel from color: how bright every pixel is, as it lies over black."""
+    """Make one channel from color: how bright every pixel is, as it looks over black."""
 
     aliases = (
         "rgb to bw", "black and white", "grayscale", "greyscale", "gray", "desaturate", "luma", "brightness",
@@ -15,7 +15,8 @@ class Luminance(Pointwise):
     measure: Annotated[
         Literal["luminance", "average", "maximum", "minimum"],
         Doc(
-            "Luminance is what the eye sees: 0.2126 R + 0.7152 G + 0.0722 B (Rec.709). The others treat channels alike."
+            "Luminance is what the eye sees: 0.2126 R + 0.7152 G + 0.0722 B (Rec.709). The others"
+            " give all channels the same weight."
         ),
     ] = "luminance"
 

@@ -7,9 +7,10 @@ from ._spaces import WORKING, Space, name_space
 class LutFile(Filter):
     """Apply a lookup table or a list of color operations from a file: .cube, .3dl, .csp, .spi3d, .clf, .cc, .icc, ...
 
-    Say what the table was made for: most looks take a camera's log or sRGB codes and give codes for a display, which
-    are brought back to scene light. Computed by OpenColorIO's own GLSL, exactly: tables of three dimensions are
-    interpolated in tetrahedra. Works on the color without its alpha; alpha stays. Without a file the picture passes.
+    Choose the color spaces that the table was made for. Most looks take a camera's log or sRGB codes, and give codes
+    for a display, which the node brings back to scene light. The result is OpenColorIO's own GLSL, so it is exact;
+    tables of three dimensions use tetrahedral interpolation. Works on the color without its alpha; alpha stays. Without
+    a file the picture passes unchanged.
     """
 
     aliases = (
@@ -20,7 +21,7 @@ class LutFile(Filter):
 
     image = Image()
     file: Annotated[TablePath, Doc("The table. A relative path starts at the folder of the graph.")] = ""
-    takes: Annotated[Space, Doc("The color space that the table takes.")] = WORKING
+    takes: Annotated[Space, Doc("The color space that the table expects.")] = WORKING
     gives: Annotated[Space, Doc("The color space that the table gives.")] = WORKING
     inverse: Annotated[bool, Doc("Undo the table, where it has an inverse.")] = False
     amount: Annotated[Fraction, Doc("Mix with the input.")] = 1.0

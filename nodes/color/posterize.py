@@ -6,8 +6,8 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider
 class Posterize(Pointwise):
     """Round the picture to a few levels of light, as in a screen print.
 
-    `round(c (levels - 1)) / (levels - 1)`; brighter than 1, the steps continue. Works on the color without its alpha;
-    alpha stays.
+    `round(c (levels - 1)) / (levels - 1)`. Light brighter than 1 gets more levels with the same distance. Works on the
+    color without its alpha; alpha stays.
     """
 
     aliases = ("quantize", "reduce colors", "color steps", "threshold", "banding", "levels of color")
@@ -21,13 +21,13 @@ class Posterize(Pointwise):
     ] = 5.0
     space: Annotated[
         Literal["display", "linear"],
-        Doc("In what the levels are evenly spaced: sRGB values, as the eye sees, or scene light."),
+        Doc("The numbers in which the levels are evenly spaced: sRGB values, as the eye sees, or scene light."),
     ] = "display"
     channels: Annotated[
         Literal["luminance", "separate"],
         Doc(
-            "Luminance rounds how bright a pixel is and keeps its color; separate rounds red, green and blue on "
-            "their own."
+            "Luminance rounds how bright a pixel is and keeps its color. Separate rounds red, "
+            "green and blue on their own."
         ),
     ] = "luminance"
     amount: Annotated[

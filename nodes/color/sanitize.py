@@ -6,8 +6,8 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
 class Sanitize(Filter):
     """Repair pixels that are NaN, infinite, too bright or negative, before they spread.
 
-    `neighbors` gives a broken channel the mean of the finite ones among the 3 x 3 pixels around, or 0 without any, as
-    OpenImageIO's fixNonFinite; finite channels of the same pixel stay.
+    `neighbors` gives a broken channel the mean of its finite values among the 3 x 3 pixels around, or 0 if there are
+    none, as OpenImageIO's fixNonFinite does. Channels of the same pixel that are finite stay.
     """
 
     aliases = ("remove nan", "fix nan", "clean infinite", "nan fix", "kill nan", "remove infinity")

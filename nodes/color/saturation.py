@@ -4,7 +4,7 @@ from .._declare import Image, Pointwise, Slider, Trait
 
 
 class Saturation(Pointwise):
-    """Move colors away from or toward the gray of the same luminance (Rec.709), which stays."""
+    """Move colors away from or toward gray. The luminance (Rec.709) stays."""
 
     aliases = ("vibrance", "desaturate", "black and white", "monochrome", "chroma", "color boost", "grayscale")
     traits = (Trait.NEEDS_COLOR,)

@@ -6,9 +6,9 @@ from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Trait
 class SplitToning(Pointwise):
     """Tint shadows and highlights in different colors, as toned prints and film looks do; luminance stays.
 
-    The share of the highlights in a pixel rises smoothly (3t^2 - 2t^3) over the range, in stops around middle gray
-    (0.18). A gray tint changes nothing. Works on the color without its alpha; alpha stays, and so do the alphas of the
-    tints.
+    How much a pixel belongs to the highlights rises smoothly (3t^2 - 2t^3) over the range, which is counted in stops
+    around middle gray (0.18). A gray tint changes nothing. Works on the color without its alpha; alpha stays. The
+    alphas of the tints have no effect.
     """
 
     aliases = (
@@ -29,7 +29,7 @@ class SplitToning(Pointwise):
         float, Slider(-6.0, 6.0, unit="EV", doc="Where shadows end and highlights begin, in stops above middle gray.")
     ] = 0.0
     range: Annotated[
-        float, Slider(0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops the one changes into the other.")
+        float, Slider(0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops shadows change into highlights.")
     ] = 6.0
     amount: Annotated[
         Fraction,

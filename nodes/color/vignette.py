@@ -6,7 +6,7 @@ from .._declare import Doc, Fraction, Image, Pointwise, Position, Slider
 class Vignette(Pointwise):
     """Darken toward the edges, as lenses do.
 
-    Distances are in half pictures: 1 is the middle of an edge, 1.41 a corner.
+    Distances are parts of half the picture: 1 is the middle of an edge, 1.41 a corner.
     """
 
     aliases = ("cc vignette", "darken corners", "lens falloff", "edge darkening", "vignetting")
@@ -15,9 +15,9 @@ class Vignette(Pointwise):
     falloff: Annotated[
         Literal["smooth", "cos4"],
         Doc(
-            "Smooth is a soft ring at the radius. Cos4 is the natural light loss of a lens, cos^4 of the angle off "
-            "axis, "
-            "where the radius is the focal length and softness has no effect."
+            "Smooth is a soft ring at the radius. Cos4 is the natural light loss of a lens, cos^4"
+            " of the angle to its axis: the radius is then the focal length, and softness has no "
+            "effect."
         ),
     ] = "smooth"
     amount: Annotated[
@@ -27,7 +27,7 @@ class Vignette(Pointwise):
         ),
     ] = 0.5
     radius: Annotated[
-        float, Slider(0.1, 2.0, unit="ratio", minimum=0.001, doc="Where the ring lies, in half pictures.")
+        float, Slider(0.1, 2.0, unit="ratio", minimum=0.001, doc="Where the ring lies: 1 is the middle of an edge.")
     ] = 1.0
     softness: Annotated[
         Fraction,

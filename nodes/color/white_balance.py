@@ -6,11 +6,12 @@ _DAYLIGHT = 6504.0
 
 
 class WhiteBalance(Pointwise):
-    """Make the light of the scene white: give its color, and gray objects become gray.
+    """Make the light of the scene white: enter the color of the light, and gray objects become gray.
 
-    Above 6504 kelvin (the working white, D65) the picture gets warmer, below colder, as in raw converters. The light
-    lies on the Planckian locus (Krystek 1985), moved to pass through D65; tint moves it across, 3000 for a distance of
-    1 in CIE 1960 uv. The eye adapts by Bradford (Lam 1985) or CAT16 (Li et al. 2017). Linear: alpha does not matter.
+    Above 6504 kelvin (the working white, D65) the picture gets warmer, below it colder, as in raw converters. The color
+    of the light lies on the Planckian locus (Krystek 1985), which is moved so that it passes through D65. Tint moves
+    the color away from the locus: 3000 is a distance of 1 in CIE 1960 uv. The adaptation of the eye is Bradford (Lam
+    1985) or CAT16 (Li et al. 2017). Linear: alpha does not matter.
     """
 
     aliases = (
@@ -44,7 +45,10 @@ class WhiteBalance(Pointwise):
     ] = 0.0
     method: Annotated[
         Literal["bradford", "cat16"],
-        Doc("How the eye adapts. Bradford is that of ICC profiles; CAT16 treats saturated blues better."),
+        Doc(
+            "How the adaptation of the eye is computed. Bradford is the way of ICC profiles; "
+            "CAT16 treats saturated blues better."
+        ),
     ] = "bradford"
 
     def identity(self) -> str | None:
