@@ -13,6 +13,7 @@ from .axes import draw_axes
 from .focus import distance_in_words, find_focus_port, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
 from .ground import depth_at
+from .grips import draw_grip, is_near
 from .handles import handles
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
@@ -112,11 +113,8 @@ def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> N
     scale = ui_scale()
     for handle in handles(context):
         x, y = sight.place(handle.at)
-        near = math.dist((mouse.x, mouse.y), (x, y)) <= 10.0 * scale
-        color = context.palette.accent if near else WHITE
-        cross(lines, (x, y), 9.0 * scale, color)
-        lines.add_circle((x, y), 5.0 * scale, u32(BLACK, 0.6), 0, 3.0 * scale)
-        lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
+        near = is_near((x, y), (mouse.x, mouse.y))
+        draw_grip(lines, (x, y), "place", is_lit=near)
         port, words = handle.port, [str(handle.port)] if near else []
         if port == find_focus_port(context.session):
             words.append(distance_in_words(depth_at(context, handle.at)))
