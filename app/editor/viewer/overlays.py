@@ -12,8 +12,8 @@ from ..theme.style import u32, ui_scale
 from .axes import draw_axes
 from .focus import distance_in_words, find_focus_port, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
-from .ground import depth_at
 from .grips import draw_grip, is_near
+from .ground import depth_at
 from .handles import handles
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
