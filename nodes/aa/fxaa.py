@@ -7,12 +7,12 @@ _REACH = 25
 
 
 class Fxaa(Filter):
-    """Smooth jagged edges of a finished picture, without any other layer: best after tone mapping.
+    """Smooth jagged edges of a finished picture. It needs no other layer, and works best after tone mapping.
 
-    FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper. Where the tone changes, the two ends of the step
-    are searched along the edge, and the pixel is read from a place across the edge, farther away the nearer the end is.
-    Within about 25 degrees of a diagonal it does less; SMAA handles diagonals. The tone is the luminance as a display
-    shows it (sRGB); colors are mixed in linear light.
+    FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper. Where the tone changes in a step, the node
+    searches along the edge for both ends of the step. Then it reads the pixel from a place across the edge; the nearer
+    an end is, the farther away that place. It does less for edges within about 25 degrees of a diagonal, which SMAA
+    smooths too. The tone is the luminance as a display shows it (sRGB); colors are mixed in linear light.
     """
 
     aliases = ("anti-aliasing", "antialias", "aa", "fast approximate anti-aliasing", "smooth edges", "jaggies")
@@ -20,7 +20,7 @@ class Fxaa(Filter):
     image = Image()
     quality: Annotated[
         Literal["low", "medium", "high"],
-        Doc("How far and how finely the ends of an edge are searched: the presets 12, 29 and 39."),
+        Doc("How far and how finely the ends of an edge are searched: the presets 12, 29 and 39 of FXAA."),
     ] = "medium"
     subpixel: Annotated[Fraction, Doc("How much single pixels and fine lines are softened.")] = 0.75
     threshold: Annotated[
@@ -31,7 +31,7 @@ class Fxaa(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The least contrast of an edge, as a part of the brightest tone around.",
+            doc="The smallest contrast of an edge, as a part of the brightest tone around it.",
         ),
     ] = 0.166
     threshold_dark: Annotated[
@@ -42,7 +42,7 @@ class Fxaa(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The least contrast in dark areas; black to white is 1.",
+            doc="The smallest contrast in dark areas; black to white is 1.",
         ),
     ] = 0.0833
 

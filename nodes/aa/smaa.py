@@ -7,11 +7,11 @@ _REACH = {"low": (8, 0), "medium": (16, 0), "high": (32, 8), "ultra": (64, 16)}
 
 
 class Smaa(Filter):
-    """Smooth jagged edges of a finished picture and keep its fine detail and corners: best after tone mapping.
+    """Smooth jagged edges of a finished picture, but keep fine detail and corners. It works best after tone mapping.
 
-    SMAA 1x (Jimenez et al. 2012): each stair of an edge is treated as a slanted line, and pixels are mixed by the areas
-    on both sides of the line. Areas are exact, not from a table. Edges are steps of the tone as a display shows it
-    (sRGB); colors are mixed in linear light.
+    SMAA 1x (Jimenez et al. 2012): the stairs of an edge are replaced by slanted lines, and each pixel is mixed by how
+    much of it lies on either side of the line. These areas are computed exactly, not read from a table. An edge is a
+    step of the tone as a display shows it (sRGB); colors are mixed in linear light.
     """
 
     aliases = ("anti-aliasing", "antialias", "aa", "morphological anti-aliasing", "smooth edges", "jaggies")
@@ -35,13 +35,17 @@ class Smaa(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The least step that counts as an edge; black to white is 1.",
+            doc="The smallest step that counts as an edge; black to white is 1.",
         ),
     ] = 0.1
     contrast: Annotated[
         float,
         Slider(
-            1.0, 8.0, unit="ratio", minimum=1.0, doc="An edge is ignored beside one that is this many times as strong."
+            1.0,
+            8.0,
+            unit="ratio",
+            minimum=1.0,
+            doc="An edge beside another one that is this many times as strong is ignored.",
         ),
     ] = 2.0
     corner_rounding: Annotated[Fraction, Doc("How much sharp corners are rounded: 0 keeps them.")] = 0.25

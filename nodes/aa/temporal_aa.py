@@ -7,19 +7,23 @@ from .._declare import Doc, Draw, Drawn, Field, Fraction, Image, Slider, Tempora
 class TemporalAa(Temporal):
     """Smooth edges and detail with samples of many frames: for renders with jittered samples.
 
-    The result of the previous frame is read where each surface was then (by its velocity, that of the nearest of 3 x 3
-    pixels), and mixed with this frame. It is limited to the mean and the standard deviation of the 3 x 3 colors around,
-    in YCoCg (Karis 2014, Salvi 2016), so that objects that are gone leave no ghosts. See `jitter` of Scene.
+    Each surface is found in the result of the previous frame by its velocity (that of the nearest of 3 x 3 pixels), and
+    its color there is mixed with this frame. The old color is limited to the mean plus or minus the standard deviation
+    of the 3 x 3 colors around, in YCoCg (Karis 2014, Salvi 2016), so that objects that are gone leave no ghosts. See
+    `jitter` of Scene.
     """
 
     aliases = ("taa", "anti-aliasing", "temporal anti-aliasing", "supersampling")
 
-    image = Image(doc="One sample per pixel.")
+    image = Image(doc="The render, with one sample per pixel.")
     velocity = Vector(
         width=4,
-        doc=("Pixels of the full-size picture, x right, y down: x and y from the frame before. The rest is not used."),
+        doc=(
+            "Motion in pixels of the full-size picture, x right, y down: x and y since the "
+            "previous frame. The rest is not used."
+        ),
     )
-    depth = Field(0.0, doc="Shows which surface is nearest, and which was hidden in the frame before.")
+    depth = Field(0.0, doc="Shows which surface is nearest, and which one was hidden in the previous frame.")
     share: Annotated[
         Fraction,
         Doc(
@@ -35,7 +39,7 @@ class TemporalAa(Temporal):
             unit="ratio",
             minimum=0.0,
             maximum=100.0,
-            doc="How many standard deviations the past may differ: more is smoother, less leaves no ghosts.",
+            doc="How many standard deviations the old color may differ: more is smoother, less leaves no ghosts.",
         ),
     ] = 1.0
     weigh_light: Annotated[
@@ -44,7 +48,7 @@ class TemporalAa(Temporal):
     ] = True
     kernel: Annotated[
         Literal["catmull-rom", "lanczos"],
-        Doc("The interpolation of the past: Lanczos (3 lobes) keeps it sharper during motion."),
+        Doc("The interpolation of the old picture: Lanczos (3 lobes) keeps it sharper during motion."),
     ] = "lanczos"
     tolerance: Annotated[
         float,
@@ -54,7 +58,7 @@ class TemporalAa(Temporal):
             unit="ratio",
             minimum=0.0,
             maximum=1e6,
-            doc="With depth: a surface whose depth differs by more than this part is another surface.",
+            doc="If depth is linked: a pixel whose depth differs by more than this part shows another surface.",
         ),
     ] = 0.1
 

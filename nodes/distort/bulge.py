@@ -7,8 +7,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class Bulge(Filter):
     """Enlarge a part of the picture, as a magnifying glass does, or pinch it.
 
-    At the center a strength of 0.5 magnifies two times, -1 shrinks two times; toward the radius it fades without a
-    border: the image is read at center + distance * (1 - strength (1 - (distance / radius)^2)^2).
+    At the center a strength of 0.5 makes things twice as large, and -1 half as large. Toward the radius the effect
+    fades out without a visible border: the image is read at center + distance * (1 - strength (1 - (distance /
+    radius)^2)^2).
     """
 
     aliases = (
@@ -22,7 +23,7 @@ class Bulge(Filter):
     radius: Annotated[
         float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="The radius at which the picture is unchanged.")
     ] = 0.4
-    center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
+    center: Annotated[Position, Doc("The middle of the effect, which does not move.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:

@@ -7,9 +7,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class ChromaticAberration(Filter):
     """Spread light into its colors, as a lens that bends blue more than red.
 
-    The light of a pixel is gathered along a line from its red to its blue end. Each step counts for the primaries that
-    its wavelength excites (overlapping tents), and the weights of each primary sum to 1, so that no light is lost and
-    evenly gray areas stay gray. Alpha is gathered evenly.
+    The light of a pixel is gathered along a line, from its red end to its blue end. Each step counts for the primaries
+    that its wavelength excites (overlapping tents). The weights of each primary add up to 1, so that no light is lost
+    and even gray areas stay gray. Alpha is gathered with equal weights.
     """
 
     aliases = (
@@ -20,7 +20,10 @@ class ChromaticAberration(Filter):
     image = Image()
     shape: Annotated[
         Literal["radial", "straight"],
-        Doc("Radial grows from the center to the edges, as lenses do; straight is the same everywhere, as a prism."),
+        Doc(
+            "Radial grows from the center to the edges, as with a lens; straight is the same "
+            "everywhere, as with a prism."
+        ),
     ] = "radial"
     amount: Annotated[
         float,
@@ -28,11 +31,13 @@ class ChromaticAberration(Filter):
             -0.05,
             0.05,
             unit="height",
-            doc="How far red and blue each lie from green: at half the height from the center, or everywhere if "
-            "straight.",
+            doc="How far red and blue are from green. For radial, this holds half the picture's "
+            "height away from the center.",
         ),
     ] = 0.006
-    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where red goes, 0 is right.")] = 0.0
+    angle: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction in which red moves; 0 is right.")
+    ] = 0.0
     samples: Annotated[
         int,
         Slider(

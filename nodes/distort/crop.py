@@ -7,7 +7,7 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Position, Size, Slider
 class Crop(Filter):
     """Keep a rectangle of the picture.
 
-    Corners are fractions of the picture, rounded to whole pixels. At least one pixel remains.
+    Corners are fractions of the picture and are rounded to whole pixels. At least one pixel remains.
     """
 
     aliases = (
@@ -18,7 +18,9 @@ class Crop(Filter):
     image = Image()
     top_left: Annotated[Position, Doc("One corner of what is kept.")] = (0.0, 0.0)
     bottom_right: Annotated[Position, Doc("The opposite corner.")] = (1.0, 1.0)
-    resize: Annotated[bool, Doc("Make the picture as small as the rectangle; off leaves it empty around.")] = True
+    resize: Annotated[
+        bool, Doc("Make the picture as small as the rectangle; off keeps the size, with nothing around the rectangle.")
+    ] = True
     softness: Annotated[
         float,
         Slider(0.0, 200.0, unit="px", minimum=0.0, doc="Fade out over this many pixels inside the rectangle."),

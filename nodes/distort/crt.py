@@ -7,8 +7,9 @@ from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider
 class Crt(Filter):
     """Show the picture on an old television tube.
 
-    The screen bulges, lines start unevenly, color is delayed, and light comes in scan lines and phosphor stripes. Lines
-    and stripes are cosines, averaged over each pixel so that they cause no moire, and they keep the light.
+    The screen bulges, lines are shifted unevenly, color comes late, and the light is divided into scan lines and
+    phosphor stripes. Lines and stripes are cosines. They are averaged over each pixel, so that they cause no moire and
+    keep the light.
     """
 
     aliases = (
@@ -32,7 +33,7 @@ class Crt(Filter):
         float, Slider(0.0, 0.05, unit="height", minimum=0.0, doc="How far lines are shifted at most.")
     ] = 0.002
     chroma_delay: Annotated[
-        float, Slider(-0.05, 0.05, unit="height", doc="How far color is shifted to the right of its luminance.")
+        float, Slider(-0.05, 0.05, unit="height", doc="How far color is shifted to the right of its brightness.")
     ] = 0.006
     lines: Annotated[
         float,
@@ -45,7 +46,7 @@ class Crt(Filter):
             "Aperture grille: upright stripes of red, green and blue; shadow mask: every second row of them is offset."
         ),
     ] = "aperture grille"
-    mask_strength: Annotated[Fraction, Doc("How far the stripes keep colors apart.")] = 0.3
+    mask_strength: Annotated[Fraction, Doc("How strongly the stripes separate the colors.")] = 0.3
     triad: Annotated[
         float, Slider(2.0, 16.0, unit="px", minimum=0.5, doc="Width of a red, a green and a blue stripe together.")
     ] = 3.0

@@ -4,7 +4,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
 
 
 class Displace(Filter):
-    """Displace the picture by a vector map: every pixel shows the place `vector * amount` pixels away.
+    """Displace the picture by a vector map: every pixel shows what is `vector * amount` pixels away.
 
     x points right and y down. Positions between pixels are interpolated (bilinear).
     """
@@ -20,7 +20,7 @@ class Displace(Filter):
     )
     amount: Annotated[
         tuple[float, float],
-        Slider(-200.0, 200.0, unit="px", doc="How far a vector of length 1 reaches, across and down."),
+        Slider(-200.0, 200.0, unit="px", doc="How far a vector of length 1 reaches, in x and in y."),
     ] = (20.0, 20.0)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

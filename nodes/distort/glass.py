@@ -5,11 +5,11 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
 
 
 class Glass(Filter):
-    """Show the picture through uneven glass that lies in front of it.
+    """Show the picture through uneven glass in front of it.
 
-    The slope of the surface bends the view by Snell's law: with the ray at angle a to the surface's normal, the picture
-    moves by thickness * tan(a - asin(sin(a) / index)). Dispersion gives red light a smaller index than blue. Without a
-    link to `surface` the glass is hammered at random (gradient noise, Perlin 2002).
+    The slope of the surface bends the view by Snell's law: if a ray meets the surface at angle a to its normal, the
+    picture moves by thickness * tan(a - asin(sin(a) / index)). Dispersion gives red light a smaller index than blue
+    light. If `surface` is not linked, the glass has random bumps (gradient noise, Perlin 2002).
     """
 
     aliases = ("cc glass", "refraction", "frosted glass", "ribbed glass", "fluted glass", "window", "glass distort")
@@ -30,7 +30,7 @@ class Glass(Filter):
             unit="ratio",
             minimum=1.0,
             maximum=5.0,
-            doc="Index of refraction: water 1.33, glass 1.5, diamond 2.4.",
+            doc="Refractive index: water 1.33, glass 1.5, diamond 2.4.",
         ),
     ] = 1.5
     dispersion: Annotated[
@@ -38,7 +38,7 @@ class Glass(Filter):
     ] = 0.06
     samples: Annotated[
         int,
-        Slider(3, 32, unit="count", minimum=3, maximum=128, doc="Steps from red to blue, where there is dispersion."),
+        Slider(3, 32, unit="count", minimum=3, maximum=128, doc="Steps from red to blue, if there is dispersion."),
     ] = 9
     size: Annotated[float, Slider(0.005, 0.5, unit="height", minimum=1e-4, doc="Size of random bumps.")] = 0.08
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern of bumps.")] = 0

@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Slider
 class Glitch(Filter):
     """Break the picture into bands that jump sideways, as damaged video does.
 
-    Wide bands and bands a quarter as high jump separately, with their colors shifted. Which bands jump, and how far, is
-    decided by a hash (pcg3d: Jarzynski and Olano 2020), so that a frame always looks the same.
+    Wide bands and bands of a quarter of their height jump separately, and their colors move apart. A hash (pcg3d:
+    Jarzynski and Olano 2020) decides which bands jump and how far, so that a frame always looks the same.
     """
 
     aliases = (
@@ -20,7 +20,7 @@ class Glitch(Filter):
     amount: Annotated[Fraction, Doc("How many of the bands jump.")] = 0.25
     shift: Annotated[float, Slider(0.0, 0.5, unit="height", doc="How far they jump at most.")] = 0.12
     colors: Annotated[
-        float, Slider(0.0, 0.1, unit="height", doc="How far red and blue come apart in them at most.")
+        float, Slider(0.0, 0.1, unit="height", doc="How far red and blue move apart in these bands at most.")
     ] = 0.03
     band: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Height of the wide bands.")] = 0.12
     hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="How many frames a glitch lasts.")] = 2

@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
 class HeatHaze(Filter):
     """Let the picture shimmer as above a fire or a hot road.
 
-    Two noises (gradient noise, Perlin 2002; two octaves) push every point across and down. They rise, and change with
-    every frame; the same frame always looks the same.
+    Two noises (gradient noise, Perlin 2002; two octaves) move every point in x and in y. They rise and change over
+    time; the same frame always looks the same.
     """
 
     aliases = ("heat distortion", "haze", "hot air", "shimmer", "air distortion", "mirage")
@@ -18,7 +18,10 @@ class HeatHaze(Filter):
     amount: Annotated[float, Slider(0.0, 0.05, unit="height", doc="How far points move at most.")] = 0.008
     size: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Size of the swirls.")] = 0.06
     stretch: Annotated[
-        float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below flatter.")
+        float,
+        Slider(
+            0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below 1 wider than tall."
+        ),
     ] = 1.6
     rise: Annotated[float, Slider(-2.0, 2.0, unit="height", doc="How far swirls rise per second.")] = 0.25
     change: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How many times per second the swirls change.")] = 1.5

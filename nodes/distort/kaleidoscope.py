@@ -18,7 +18,7 @@ class Kaleidoscope(Filter):
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the figure, clockwise.")] = 0.0
     slice: Annotated[
         float,
-        Slider(-180.0, 180.0, unit="deg", doc="Where in the picture the slice lies, seen from the center; 0 is right."),
+        Slider(-180.0, 180.0, unit="deg", doc="The direction of the slice from the center of the picture; 0 is right."),
     ] = 0.0
     zoom: Annotated[float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the slice.")] = 1.0
     center: Annotated[Position, Doc("Where the mirrors meet.")] = (0.5, 0.5)

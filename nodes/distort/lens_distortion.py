@@ -15,9 +15,9 @@ _MISSED = 1e-3
 class LensDistortion(Filter):
     """Distort the picture as a lens does, or straighten footage that a lens has distorted.
 
-    The model of Brown (1971) and Conrady (1919), with OpenCV's names: seen from the center in focal lengths, a point
-    moves to p (1 + k1 r^2 + k2 r^4 + k3 r^6) plus the tangential terms of p1 and p2. Distort applies it, undistort
-    takes it back; with equal numbers each undoes the other.
+    The model of Brown (1971) and Conrady (1919), with OpenCV's names. Let p be a point, measured from the center in
+    focal lengths. It moves to p (1 + k1 r^2 + k2 r^4 + k3 r^6) plus the tangential terms of p1 and p2. Distort applies
+    this, undistort inverts it; with equal numbers each undoes the other.
     """
 
     aliases = (
@@ -33,10 +33,14 @@ class LensDistortion(Filter):
     k1: Annotated[
         float, Slider(-0.5, 0.5, unit="ratio", doc="Below 0 gives barrel distortion, above 0 pincushion distortion.")
     ] = -0.15
-    k2: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, more toward the corners.")] = 0.0
-    k3: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, in the very corners.")] = 0.0
-    p1: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="A lens tilted up or down.")] = 0.0
-    p2: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="A lens tilted sideways.")] = 0.0
+    k2: Annotated[
+        float, Slider(-0.5, 0.5, unit="ratio", doc="The same as k1, with more effect toward the corners.")
+    ] = 0.0
+    k3: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same as k1, with effect only near the corners.")] = (
+        0.0
+    )
+    p1: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="Tangential: a lens that is tilted up or down.")] = 0.0
+    p2: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="Tangential: a lens that is tilted to the side.")] = 0.0
     focal: Annotated[
         float,
         Slider(0.25, 4.0, unit="height", minimum=0.01, doc="Focal length; a longer lens bends less of what it sees."),

@@ -7,8 +7,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider, Vec
 class NoiseWarp(Filter):
     """Warp the picture by moving noise: wobbling, flowing, dissolving.
 
-    Simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm). Push moves points by two independent
-    noises; flow by the curl of one (Bridson, Hourihan and Nordenstam, 2007), which stirs without squeezing anything.
+    The noise is simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in several layers (fBm). Push moves points by
+    two independent noises. Flow moves them by the curl of one noise (Bridson, Hourihan and Nordenstam, 2007), which
+    stirs the picture without squeezing it.
     """
 
     aliases = (
@@ -18,9 +19,7 @@ class NoiseWarp(Filter):
 
     image = Image()
     mask = Field(1.0, doc="Factor on the amount, pixel by pixel.")
-    amount: Annotated[float, Slider(0.0, 0.2, unit="height", doc="How far points move at most, across and down.")] = (
-        0.06
-    )
+    amount: Annotated[float, Slider(0.0, 0.2, unit="height", doc="How far points move at most, in x and in y.")] = 0.06
     kind: Annotated[
         Literal["push", "flow"], Doc("Push bulges and pinches; flow stirs and, while the amount is small, keeps areas.")
     ] = "push"

@@ -5,9 +5,9 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
 
 
 class Pixelate(Filter):
-    """Show the picture in coarse squares, each the average of what it covers.
+    """Show the picture in coarse squares, each the average of the pixels that it covers.
 
-    A square weights pixels at its border by the part that it covers.
+    Pixels at the border of a square count by the part that it covers.
     """
 
     aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate")
@@ -20,7 +20,8 @@ class Pixelate(Filter):
     sampling: Annotated[
         Literal["average", "center"],
         Doc(
-            "Average keeps the light; center shows the pixel at the middle, as an enlarged small picture that aliases."
+            "Average keeps the light. Center shows the pixel in the middle, which looks like a "
+            "small picture that was enlarged, with aliasing."
         ),
     ] = "average"
 

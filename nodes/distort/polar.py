@@ -6,9 +6,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class Polar(Filter):
     """Wrap the picture into a disc, or unwrap a disc into a strip.
 
-    Wrap maps the picture's width once around the center, clockwise, with its top at the center and its bottom at the
-    radius; unwrap is the inverse. Effects in between work around the center and along the radius: a horizontal blur,
-    wrapped back, is a spin blur.
+    Wrap bends the picture once around the center, clockwise: its top is at the center, and its bottom at the radius.
+    Unwrap is the inverse. Effects between the two work around the center or along the radius: a horizontal blur between
+    unwrap and wrap is a spin blur.
     """
 
     aliases = (
@@ -20,11 +20,19 @@ class Polar(Filter):
     radius: Annotated[float, Slider(0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc.")] = 0.5
     rotation: Annotated[
         float,
-        Slider(-180.0, 180.0, unit="deg", doc="Where around the center the picture's left side lies; 0 is right."),
+        Slider(
+            -180.0,
+            180.0,
+            unit="deg",
+            doc="The direction from the center in which the left side of the picture lies; 0 is right.",
+        ),
     ] = -90.0
     center: Annotated[Position, Doc("The middle of the disc.")] = (0.5, 0.5)
     edge: Annotated[
-        Edge, Doc("What lies outside: of the disc nothing for black, else its rim stretched; of the picture as usual.")
+        Edge,
+        Doc(
+            "What lies outside the disc and the picture. Outside the disc, black is empty; the others stretch its rim."
+        ),
     ] = "clamp"
 
     def passes(self, draw: Draw) -> Drawn:

@@ -8,8 +8,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Size, Slider, Trai
 class Resize(Filter):
     """Make the picture larger or smaller in pixels.
 
-    The filter spans source pixels when enlarging and result pixels when shrinking, so that nothing aliases. Catmull-Rom
-    and Mitchell: Mitchell and Netravali 1988. The size is rounded to whole pixels, at least one.
+    The filter covers pixels of the source when it enlarges and pixels of the result when it shrinks, so that nothing
+    aliases. Catmull-Rom and Mitchell: Mitchell and Netravali 1988. The size is rounded to whole pixels, at least one.
     """
 
     aliases = (
@@ -26,8 +26,9 @@ class Resize(Filter):
     kernel: Annotated[
         Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"],
         Doc(
-            "Box averages the very area that a pixel covers and keeps hard pixels, triangle is soft; Catmull-Rom and "
-            "Lanczos (3 lobes) are sharp and may ring around lights, Mitchell is between."
+            "Box averages exactly the area that a pixel covers and keeps enlarged pixels hard. "
+            "Triangle is soft. Catmull-Rom and Lanczos (3 lobes) are sharp and may ring around "
+            "lights. Mitchell is in between."
         ),
     ] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

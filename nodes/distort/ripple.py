@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 class Ripple(Filter):
     """Shake the picture in waves, as a reflection in water.
 
-    Every point moves along the wave by amplitude * sin(2 pi (distance / wavelength - phase)), which fades with the
-    distance from the center as exp(-distance / reach).
+    Every point moves by amplitude * sin(2 pi (distance / wavelength - phase)). This fades with the distance from the
+    center as exp(-distance / reach).
     """
 
     aliases = (
@@ -20,16 +20,22 @@ class Ripple(Filter):
         "circular"
     )
     motion: Annotated[
-        Literal["along", "across"], Doc("Along pushes and pulls in the direction of the wave, across sideways.")
+        Literal["along", "across"],
+        Doc("Along moves points in the direction of the wave, across moves them to its sides."),
     ] = "along"
     amplitude: Annotated[float, Slider(0.0, 0.1, unit="height", doc="How far points move.")] = 0.01
     wavelength: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="From one crest to the next.")] = (
         0.08
     )
-    phase: Annotated[float, Slider(-4.0, 4.0, unit="ratio", doc="How many waves have passed; change it to move.")] = 0.0
-    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where waves run, 0 is right.")] = 0.0
+    phase: Annotated[
+        float, Slider(-4.0, 4.0, unit="ratio", doc="How many waves have passed; animate it to make the waves move.")
+    ] = 0.0
+    angle: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction of the waves; 0 is right.")
+    ] = 0.0
     reach: Annotated[
-        float, Slider(0.1, 10.0, unit="height", minimum=1e-3, doc="Where waves have fallen to 37 percent.")
+        float,
+        Slider(0.1, 10.0, unit="height", minimum=1e-3, doc="The distance at which waves have fallen to 37 percent."),
     ] = 1.0
     center: Annotated[Position, Doc("Where the waves begin.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"

@@ -6,8 +6,8 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Vector
 class StMap(Filter):
     """Remap the picture: every pixel of the map holds a position in the picture, from 0 to 1.
 
-    Maps come from lens calibration and render passes (UV). A pixel whose neighbors point far apart averages the area in
-    between. Where the map is NaN, the result is empty.
+    Maps come from lens calibration or from a UV pass of a render. Where neighboring pixels of the map point far apart,
+    the area between is averaged. Where the map is NaN, the result is empty.
     """
 
     aliases = (
@@ -19,7 +19,9 @@ class StMap(Filter):
     st = Vector(width=2, doc="The position to read: 0 to 1 across the picture; pixel centers are at halves.")
     origin: Annotated[
         Literal["bottom left", "top left"],
-        Doc("Where 0, 0 lies: bottom left for renders and most compositors, top left for OpenImageIO and textures."),
+        Doc(
+            "Which corner is 0, 0: bottom left for renders and most compositors, top left for OpenImageIO and textures."
+        ),
     ] = "bottom left"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 

@@ -5,9 +5,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 
 
 class Swirl(Filter):
-    """Rotate the picture around a point, less with the distance.
+    """Rotate the picture around a point, less with the distance from it.
 
-    The rotation falls off as a Gaussian, angle * exp(-(distance / radius)^2), so that there is no visible border. The
+    The rotation falls off as a Gaussian, angle * exp(-(distance / radius)^2), so that no border is visible. The
     opposite angle with the same radius undoes it.
     """
 
@@ -16,9 +16,12 @@ class Swirl(Filter):
     image = Image()
     angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
     radius: Annotated[
-        float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="Where the turn has fallen to 37 percent.")
+        float,
+        Slider(
+            0.0, 1.0, unit="height", minimum=0.0, doc="The distance at which the rotation has fallen to 37 percent."
+        ),
     ] = 0.25
-    center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
+    center: Annotated[Position, Doc("The middle of the rotation, which does not move.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:

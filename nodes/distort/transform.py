@@ -10,10 +10,10 @@ _SMALLEST = 1e-3
 class Transform(Filter):
     """Move, rotate and scale the picture within its frame.
 
-    The picture is scaled, then rotated about the pivot, then moved. The filter is wider where the picture shrinks, so
-    that nothing aliases. Transforms in a row with the same edge act as one, as in Nuke: pixels are filtered once, by
-    the kernel of the last one, and parts that left the frame in between come back. Catmull-Rom and Mitchell: Mitchell
-    and Netravali 1988.
+    The picture is scaled, then rotated around the pivot, then moved. Where the picture shrinks, the filter is wider, so
+    that nothing aliases. Several transforms in a row with the same edge work as one, as in Nuke: pixels are filtered
+    only once, by the filter of the last one, and what left the frame in between comes back. Catmull-Rom and Mitchell:
+    Mitchell and Netravali 1988.
     """
 
     aliases = (
@@ -25,21 +25,20 @@ class Transform(Filter):
 
     image = Image()
     position: Annotated[
-        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the picture moves, right and down.")
+        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the picture moves, to the right and down.")
     ] = (0.0, 0.0)
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Clockwise.")] = 0.0
     scale: Annotated[
         tuple[float, float],
         Slider(0.1, 4.0, unit="ratio", doc="Factor on the width and on the height; below 0 mirrors."),
     ] = (1.0, 1.0)
-    pivot: Annotated[Position, Doc("The point about which the picture turns and grows.")] = (0.5, 0.5)
-    direction: Annotated[Literal["forward", "inverse"], Doc("Inverse takes back what forward did.")] = "forward"
+    pivot: Annotated[Position, Doc("The point around which the picture is rotated and scaled.")] = (0.5, 0.5)
+    direction: Annotated[Literal["forward", "inverse"], Doc("Inverse undoes what forward did.")] = "forward"
     kernel: Annotated[
         Kernel,
         Doc(
-            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may "
-            "ring "
-            "around lights, Mitchell is between."
+            "Nearest keeps data as it is. Triangle is bilinear. Catmull-Rom and Lanczos (3 lobes)"
+            " are sharp and may ring around lights. Mitchell is in between."
         ),
     ] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"

@@ -11,8 +11,8 @@ _STEP = 3
 class Canny(Filter):
     """Draw edges as clean lines one pixel wide, without faint and short ones.
 
-    Canny 1986 as in OpenCV: blur, Sobel gradient, its ridges, then hysteresis with two thresholds. It uses the tone
-    (luminance as a display shows it, sRGB), in which a step from black to white is 1. Alpha is kept.
+    Canny 1986 as in OpenCV: blur, Sobel gradient, ridges of the gradient, then hysteresis with two thresholds. It uses
+    the tone (luminance as a display shows it, sRGB), in which a step from black to white is 1. Alpha is kept.
     """
 
     aliases = ("edge detect", "find edges", "edges", "line art", "contours")
@@ -39,7 +39,7 @@ class Canny(Filter):
             1.0,
             unit="ratio",
             minimum=0.0,
-            doc="Stronger edges are always drawn; those between, if they touch one.",
+            doc="Stronger edges are always drawn. Edges between the two thresholds are drawn if they touch one.",
         ),
     ] = 0.15
     reach: Annotated[

@@ -8,10 +8,11 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocke
 class DifferenceOfGaussians(Filter):
     """Draw the picture in ink, or find its fine detail: the difference of two blurs of its tone.
 
-    XDoG (Winnemöller et al. 2012): `S = (1 + p) G(sigma) - p G(ratio sigma)`, white where S is at least epsilon, else
-    `1 + tanh(phi (S - epsilon))`. DoG (Marr and Hildreth 1980): `strength * (G(sigma) - G(ratio sigma))`, which may be
-    negative. Guided by the flow (Kang et al. 2007), the blurs run only across the lines, then along them, which draws
-    long calm strokes. All work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
+    XDoG (Winnemöller et al. 2012): `S = (1 + p) G(sigma) - p G(ratio sigma)`. The result is white where S is at least
+    epsilon, else `1 + tanh(phi (S - epsilon))`. DoG (Marr and Hildreth 1980): `strength * (G(sigma) - G(ratio sigma))`,
+    which may be negative. With the flow (Kang et al. 2007), the two blurs run only across the lines, and a third one
+    along them, which draws long smooth strokes. All work on the luminance as a display shows it (sRGB, 0..1). Alpha is
+    kept.
     """
 
     aliases = ("dog", "xdog", "line drawing", "edge detect", "sketch", "ink", "lines", "photocopy", "pencil")
@@ -19,7 +20,7 @@ class DifferenceOfGaussians(Filter):
     proxy_notes = (ProxyNote(("out", "value"), "its lines have hard edges, and a proxy averages small specks away"),)
 
     image = Image()
-    kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the bare difference.")] = "xdog"
+    kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the difference itself.")] = "xdog"
     sigma: Annotated[float, Slider(0.3, 6.0, unit="px", minimum=0.05, maximum=500.0, doc="Width of the lines.")] = 1.0
     ratio: Annotated[
         float,
@@ -29,9 +30,17 @@ class DifferenceOfGaussians(Filter):
     ] = 1.6
     strength: Annotated[
         float,
-        Slider(0.0, 50.0, unit="ratio", minimum=0.0, doc="p of XDoG: how much lines stand out. The factor on DoG."),
+        Slider(
+            0.0,
+            50.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="For XDoG p, the contrast of the lines; for DoG the factor on the difference.",
+        ),
     ] = 20.0
-    epsilon: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="For XDoG: tones below this become ink.")] = 0.4
+    epsilon: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="For XDoG, epsilon: tones below this become ink.")] = (
+        0.4
+    )
     phi: Annotated[
         float,
         Slider(
@@ -39,7 +48,7 @@ class DifferenceOfGaussians(Filter):
             50.0,
             unit="ratio",
             minimum=0.0,
-            doc="For XDoG: how hard the border between ink and paper is; low values keep grays.",
+            doc="For XDoG, phi: how hard the border between ink and paper is; low values keep grays.",
         ),
     ] = 6.0
     guide: Annotated[
@@ -71,7 +80,7 @@ class DifferenceOfGaussians(Filter):
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = OutputSocket()
-    value = OutputSocket(Field(doc="The same as one number, before it becomes a gray."))
+    value = OutputSocket(Field(doc="The result as one number per pixel, before it becomes a gray."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())

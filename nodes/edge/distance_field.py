@@ -6,10 +6,10 @@ from .._declare import Draw, Drawn, Field, Filter, OutputSocket, ProxyNote, Vect
 class DistanceField(Filter):
     """Measure the distance of every pixel from the edge of a mask: in pixels, below 0 inside the mask.
 
-    Exact (Euclidean) for a hard mask: the nearest pixel of the other kind in every column, by jump flooding (Rong and
-    Tan 2006), then the nearest of those along the row. Where the border pixels of a mask are soft, the edge lies
-    between pixels: exact along rows and columns, within 0.7 pixels where it is slanted. A mask without an edge is as
-    far away as the picture's diagonal.
+    Exact (Euclidean) for a hard mask: jump flooding (Rong and Tan 2006) finds the nearest pixel of the other kind in
+    every column, then the nearest of those along the row. Where the border pixels of a mask are soft, the edge lies
+    between pixels: the distance is then exact along rows and columns, and within 0.7 pixels where the edge is slanted.
+    If a mask has no edge, the distance is the diagonal of the picture.
     """
 
     aliases = (

@@ -7,7 +7,7 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocke
 class EdgeDetect(Filter):
     """Show how fast the picture changes: the length of its gradient, or its Laplacian.
 
-    Every operator is scaled so that a step of height 1 along a row or column reads 1; switching operators keeps the
+    Every operator is scaled so that a step of height 1 along a row or column gives 1, so that all of them have the same
     brightness. Sobel and Feldman 1968, Prewitt 1970, Scharr 2000. Alpha is kept.
     """
 
@@ -21,7 +21,7 @@ class EdgeDetect(Filter):
     image = Image()
     operator: Annotated[
         Literal["sobel", "scharr", "prewitt", "laplace"],
-        Doc("Scharr treats all directions most alike; Laplace draws thin double lines."),
+        Doc("Scharr differs least between directions; Laplace draws thin double lines."),
     ] = "sobel"
     channels: Annotated[
         Literal["luminance", "separate"],
@@ -30,7 +30,7 @@ class EdgeDetect(Filter):
     strength: Annotated[float, Slider(0.0, 10.0, unit="ratio", minimum=0.0, doc="Factor on the edges.")] = 1.0
     threshold: Annotated[
         float,
-        Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Subtracted from every edge, so that weaker ones vanish."),
+        Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Subtracted from every edge, so that weaker edges disappear."),
     ] = 0.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

@@ -4,10 +4,10 @@ from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, 
 
 
 class Emboss(Filter):
-    """Turn the picture into a relief that is lit from one side, or shade the picture itself by it.
+    """Turn the picture into a relief that is lit from one side, or shade the picture itself like one.
 
-    The tone (luminance as a display shows it) is a height; its slope by Sobel gives a normal, which a distant light
-    shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978), 1 where the picture is flat. Alpha is kept.
+    The tone (luminance as a display shows it) is taken as a height. Its slope (Sobel) gives a normal, which a distant
+    light shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978). That is 1 where the picture is flat. Alpha is kept.
     """
 
     aliases = ("bump boss", "bump", "relief", "bevel", "color emboss", "create bump map", "texturize", "bevel alpha")
@@ -35,12 +35,12 @@ class Emboss(Filter):
         ),
     ] = 30.0
     height: Annotated[
-        float, Slider(-20.0, 20.0, unit="px", doc="How far white rises above black; below 0 it sinks.")
+        float, Slider(-20.0, 20.0, unit="px", doc="How far white rises above black; below 0 it lies deeper.")
     ] = 6.0
     softness: Annotated[
         float,
         Slider(
-            0.0, 10.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of a blur that rounds the relief off first."
+            0.0, 10.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of a blur that makes the relief smooth first."
         ),
     ] = 0.7
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -8,8 +8,8 @@ from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, OutputSocke
 class Outline(Filter):
     """Draw a line of any width around a mask, or around the picture's own alpha.
 
-    The line follows the exact distance to the contour, where the mask crosses one half (see Distance Field); the cost
-    grows slowly with its width. Around the picture's own alpha, an outside line lies behind the picture.
+    The line follows the exact distance to the contour, where the mask crosses one half (see Distance Field). A wider
+    line costs little more. Around the picture's own alpha, an outside line lies behind the picture.
     """
 
     aliases = ("stroke", "contour", "cel outline", "ink", "toon lines", "line art", "freestyle", "border")
@@ -17,7 +17,7 @@ class Outline(Filter):
     proxy_notes = (ProxyNote(("line", "out"), "its lines have hard edges, and a proxy averages small specks away"),)
 
     image = Image()
-    mask = Field(0.0, doc="What is outlined. Without a link, what the picture's alpha covers.")
+    mask = Field(0.0, doc="The mask that gets the line. Without a link, it is the picture's alpha.")
     position: Annotated[Literal["outside", "inside", "center"], Doc("On which side of the contour the line lies.")] = (
         "outside"
     )

@@ -29,8 +29,7 @@ _KERNELS: Mapping[str, Kernel3x3] = MappingProxyType(
 class Convolve3x3(Filter):
     """Weight each pixel and its eight neighbors: sharpen, emboss, Laplacian, gradients or a kernel of your own.
 
-    out = scale * sum(kernel * neighbors) + bias. The kernel is applied as it is written (correlation: it is not
-    flipped).
+    out = scale * sum(kernel * neighbors) + bias. The kernel is not flipped (correlation, not convolution).
     """
 
     aliases = (
@@ -63,12 +62,20 @@ class Convolve3x3(Filter):
     kernel: Annotated[Kernel3x3, Doc("Nine weights in reading order, for the preset `custom`.")] = _IDENTITY
     normalize: Annotated[
         Literal["none", "sum", "absolute sum"],
-        Doc("Divide the weights by their sum (keeps brightness) or by the sum of their sizes, where that is not 0."),
+        Doc(
+            "Divide the weights by their sum, which keeps the brightness, or by the sum of their "
+            "absolute values. A sum of 0 divides nothing."
+        ),
     ] = "none"
     scale: Annotated[float, Slider(-4.0, 4.0, unit="ratio", doc="Factor on the filtered color.")] = 1.0
     bias: Annotated[
         float,
-        Slider(-1.0, 1.0, unit="scene", doc="Added to the color where alpha covers: 0.18 puts an emboss on mid-gray."),
+        Slider(
+            -1.0,
+            1.0,
+            unit="scene",
+            doc="Added to the color, as far as alpha covers the pixel: 0.18 puts an emboss on middle gray.",
+        ),
     ] = 0.0
     filter_alpha: Annotated[bool, Doc("Filter alpha like a color instead of keeping it.")] = False
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

@@ -6,20 +6,22 @@ from .._declare import CameraModel, CameraSocket, Draw, Drawn, Field, Filter, Ou
 class CameraVelocity(Filter):
     """Compute the motion of every pixel that the camera causes, from depth and the cameras of two frames.
 
-    Each point is placed in the world and projected by the other camera, as in TU Wien's "Screenspace Effects"; objects
-    are assumed to stand still. Pixels without depth are sky: only rotation moves them. In pixels of the full-size
-    picture, x to the right and y down: x and y are this frame minus the one before, z and w the frame after minus this
-    one.
+    Each point is placed in the world and projected by the other camera, as in TU Wien's "Screenspace Effects". Objects
+    are taken to stand still. Pixels without depth are sky, which only a rotation moves. The motion is in pixels of the
+    full-size picture, x to the right and y down: x and y are this frame minus the previous one, z and w the next frame
+    minus this one.
     """
 
     aliases = (
         "motion vectors", "vector generator", "velocity", "camera motion", "motion vector pass", "vector pass", "speed",
     )  # fmt: skip
 
-    depth = Field(doc="Planar distance along the way the camera looks.")
-    camera = CameraSocket(doc="The camera now.")
-    before = CameraSocket(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")
-    after = CameraSocket(0.0, doc="The camera of the frame after; if only this lacks a link, it goes on evenly.")
+    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
+    camera = CameraSocket(doc="The camera of this frame.")
+    before = CameraSocket(0.0, doc="The camera of the previous frame. Without a link, it is `camera` at that frame.")
+    after = CameraSocket(
+        0.0, doc="The camera of the next frame. If only `before` is linked, the camera keeps its speed."
+    )
 
     velocity = OutputSocket(Vector(width=4))
 

@@ -21,7 +21,7 @@ _AT_ONCE = 32
 
 
 class Cryptomatte(Reader):
-    """Cut out objects, materials or assets by name, with the soft edges and the blur that the render has.
+    """Cut out objects, materials or assets by name, with soft edges and motion blur as in the render.
 
     Reads the cryptomatte layers of a render (Friedman and Jones 2015, by Psyop's specification 1.2.0): the matte is the
     exact sum of the coverage of all chosen ids. Names are looked up in the file's manifest, else hashed.
@@ -33,19 +33,20 @@ class Cryptomatte(Reader):
     )  # fmt: skip
 
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
-    layer: Annotated[Literal["object", "material", "asset"], Doc("What the ids name.")] = "object"
+    layer: Annotated[Literal["object", "material", "asset"], Doc("What the ids stand for.")] = "object"
     pick: Annotated[
         str,
         Picks("layer"),
         Doc(
-            'Names, such as monkey, ring_*, "with, comma". In a name, * is any text, ? any letter, [ab] one of these. '
-            "What follows after a minus is left out: *, -floor."
+            'Names, such as monkey, ring_*, "with, comma". In a name, * stands for any text, ? '
+            "for any letter, and [ab] for one of these letters. Names after a minus are excluded:"
+            " *, -floor."
         ),
     ] = "*"
-    invert: Annotated[bool, Doc("Everything else.")] = False
+    invert: Annotated[bool, Doc("Mask everything else.")] = False
 
-    matte = OutputSocket(Field(doc="How much of each pixel is covered by what was picked, 0..1."))
-    colors = OutputSocket(Image(doc="A color for every id, to find them in the picture."))
+    matte = OutputSocket(Field(doc="How much of each pixel the chosen names cover, 0..1."))
+    colors = OutputSocket(Image(doc="A color for every id, which shows where each one is."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         matte = matte_of(draw.render(self.path).mattes, self.layer)

@@ -7,9 +7,10 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 class Curvature(Filter):
     """Find ridges and cavities: how strongly surfaces bend toward the viewer and away.
 
-    The mean curvature, half the trace of the shape operator: the change of normals relative to the change of positions
-    from pixel to pixel, never across a gap in depth. It is exact on balls: 1 / radius. Positions come from position, or
-    from depth and camera; with normals alone the view is taken as parallel, and lengths are picture heights.
+    The mean curvature, half the trace of the shape operator: how much the normal changes from pixel to pixel, relative
+    to the change of the position. It is never measured across a gap in depth. On balls it is exactly 1 / radius.
+    Positions come from `position`, or from depth and camera. If only normals are linked, the view is taken as parallel,
+    and lengths are picture heights.
     """
 
     aliases = ("edge wear", "cavity", "convexity", "dirt mask", "pointiness", "worn edges", "ridges")
@@ -18,16 +19,25 @@ class Curvature(Filter):
         ProxyNote(("cavity", "mean", "ridge"), "it compares neighboring pixels, which are farther apart in a proxy"),
     )
 
-    normal = Vector(width=3, doc="Directions of surfaces.")
-    position = Vector(0.0, width=3, doc="Places in the world.")
+    normal = Vector(width=3, doc="Normals of surfaces.")
+    position = Vector(0.0, width=3, doc="Positions in the world.")
     depth = Field(0.0, doc="Distance from the camera, in place of positions.")
     camera = CameraSocket(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
     radius: Annotated[
-        float, Slider(0.01, 10.0, unit="scene", minimum=0.0, doc="A ball of this radius reads 1; larger ones less.")
+        float,
+        Slider(
+            0.01,
+            10.0,
+            unit="scene",
+            minimum=0.0,
+            doc="The radius of a ball whose curvature gives 1. Larger balls give less.",
+        ),
     ] = 0.25
     reach: Annotated[
         float,
-        Slider(1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."),
+        Slider(
+            1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="The distance between the pixels that are compared."
+        ),
     ] = 1.0
 
     ridge = OutputSocket(Field(doc="Curvature of ridges, 0..1."))

@@ -10,7 +10,7 @@ class DepthFromPosition(Filter):
 
     aliases = ("depth", "z depth", "position to depth", "depth generator", "world to depth")
 
-    position = Vector(width=3, doc="Places in the world.")
+    position = Vector(width=3, doc="Positions in the world.")
     camera = CameraSocket(doc="The camera that the positions were rendered with.")
 
     depth = OutputSocket(Field())

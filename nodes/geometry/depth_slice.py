@@ -6,8 +6,8 @@ from .._declare import Doc, Field, OutputSocket, Pointwise, Slider
 class DepthSlice(Pointwise):
     """Make a mask of the surfaces between two distances.
 
-    It is 1 from near to far and falls to 0 over the softness beyond them, linearly in depth. A far softness as long as
-    the scene makes a ramp of the depth. Pixels without depth are farther than everything.
+    It is 1 from near to far. Outside of that range it falls to 0 over the softness, linearly in depth. A far softness
+    as long as the scene makes a ramp of the depth. Pixels without depth are farther than everything.
     """
 
     aliases = (

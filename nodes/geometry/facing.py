@@ -2,17 +2,17 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 
 
 class Facing(Filter):
-    """Measure how much every surface faces the camera: 1 straight on, 0 where it turns away.
+    """Measure how much every surface faces the camera: 1 if it faces it directly, 0 if it turns away.
 
-    The cosine of the angle between the normal and the direction to the camera; 0 for surfaces seen from behind, and for
-    the background. Where antialiasing has mixed several normals, it is the mean of the pixels around.
+    The cosine of the angle between the normal and the direction to the camera. It is 0 for surfaces seen from behind,
+    and for the background. Where antialiasing has mixed several normals, it is the mean of the pixels around.
     """
 
     aliases = ("facing ratio", "fresnel", "incidence", "falloff", "layer weight", "rim", "silhouette")
 
     proxy_notes = (ProxyNote(("facing",), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
-    normal = Vector(width=3, doc="Directions of surfaces.")
+    normal = Vector(width=3, doc="Normals of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
 
     facing = OutputSocket(Field(doc="0..1."))

@@ -22,10 +22,10 @@ from .._declare import (
 class Fog(Filter):
     """Add fog to the picture: denser with the distance, or a layer on the ground.
 
-    The visible part is exp(-density * distance) or exp(-(density * distance)^2), or falls linearly from start to end
-    (OpenGL's three kinds of fog). Height fog thins out upward as exp(-height / thickness), integrated in closed form
-    along the ray of every pixel (Wenzel 2006, Quilez 2010). With a camera the distance is measured along the ray;
-    without one it is the depth. Distances are in units of the scene.
+    The visible part is exp(-density * distance) or exp(-(density * distance)^2), or it falls linearly from start to end
+    (the three kinds of fog of OpenGL). Height fog gets thinner upward as exp(-height / thickness); the fog along the
+    ray of every pixel is an exact integral (Wenzel 2006, Quilez 2010). If a camera is linked, the distance is measured
+    along the ray, else it is the depth. Distances are in units of the scene.
     """
 
     aliases = (
@@ -36,17 +36,16 @@ class Fog(Filter):
 
     image = Image()
     depth = Field(doc="Distance from the camera; pixels without depth are sky.")
-    position = Vector(0.0, width=3, doc="Places in the world, for the height without a camera.")
+    position = Vector(0.0, width=3, doc="Positions in the world, for the height if no camera is linked.")
     camera = CameraSocket(0.0, doc="For the height, the sun, and true distances.")
     mode: Annotated[
         Literal["linear", "exponential", "exponential squared", "height"],
         Doc(
-            "Linear: from start to end. Exponential squared keeps what is near clearer. Height: a layer on the "
-            "ground; it "
-            "needs a camera, or positions and eye."
+            "Linear: from start to end. Exponential squared keeps near things clearer. Height: a "
+            "layer on the ground, which needs a camera, or positions and eye."
         ),
     ] = "exponential"
-    color: Annotated[RGBA, Doc("Light of the thickest fog; its alpha is the most that fog covers.")] = (
+    color: Annotated[RGBA, Doc("The light of the thickest fog. Its alpha is the most that fog covers.")] = (
         0.3,
         0.36,
         0.45,
@@ -81,20 +80,21 @@ class Fog(Filter):
     ] = 1.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     eye: Annotated[
-        float, Slider(-10.0, 10.0, unit="scene", doc="How high the camera stands, where only positions are linked.")
+        float, Slider(-10.0, 10.0, unit="scene", doc="The height of the camera, if only positions are linked.")
     ] = 1.6
-    sky: Annotated[Fraction, Doc("How much of the fog is in front of pixels without depth.")] = 1.0
+    sky: Annotated[Fraction, Doc("How much fog covers pixels without depth.")] = 1.0
     alpha: Annotated[
         Literal["keep", "fill"],
         Doc(
-            "Keep: fog only on what the picture covers, for a layer that goes over others. Fill: fog where it is "
-            "empty too."
+            "Keep: fog only where the picture covers, for a layer that lies over others. Fill: fog in empty places too."
         ),
     ] = "keep"
     sun: Annotated[Fraction, Doc("How much the fog glows towards the sun; it needs a camera.")] = 0.0
     sun_color: Annotated[RGBA, Doc("Color of the fog in front of the sun.")] = (1.6, 1.1, 0.6, 1.0)
     sun_direction: Annotated[
-        tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")
+        tuple[float, float, float],
+        Slider(-1.0, 1.0, unit="ratio"),
+        Doc("The direction to the sun, in the axes of the world."),
     ] = (0.3, 0.9, 0.3)
     sun_focus: Annotated[
         float, Slider(1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher values keep the glow closer to the sun.")

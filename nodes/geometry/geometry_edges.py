@@ -9,11 +9,12 @@ _SEAM = 2.0
 
 
 class GeometryEdges(Filter):
-    """Find where surfaces end, fold and meet, as lines of any width: by depth, normals and ids, whichever are linked.
+    """Find where surfaces end, fold and meet, as lines of any width. It uses depth, normals and ids, as far as they are
+    linked.
 
     Depth: the second difference of 1 / depth along a row or column, relative to the nearest of three pixels. 1 / depth
-    is linear on every plane, so flat surfaces make no edge at any angle; between two surfaces it is 1 - near / far.
-    Normals: the angle between neighbors. Ids: any difference. Lines run between pixels.
+    is linear on every plane, so that flat surfaces at any angle have no edge. Between two surfaces the difference is 1
+    - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run between pixels.
     """
 
     aliases = (
@@ -26,7 +27,7 @@ class GeometryEdges(Filter):
     )
 
     depth = Field(0.0, doc="Distance from the camera.")
-    normal = Vector(0.0, width=3, doc="Directions of surfaces.")
+    normal = Vector(0.0, width=3, doc="Normals of surfaces.")
     ids = Field(0.0, doc="Numbers of objects or materials.")
     width: Annotated[
         float,
@@ -35,11 +36,17 @@ class GeometryEdges(Filter):
     depth_amount: Annotated[Fraction, Doc("How strong lines by depth are.")] = 1.0
     depth_threshold: Annotated[
         float,
-        Slider(0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth are no lines."),
+        Slider(
+            0.0,
+            0.5,
+            unit="ratio",
+            minimum=0.0,
+            doc="Steps in depth that are a smaller part of the depth make no lines.",
+        ),
     ] = 0.05
     crease_amount: Annotated[Fraction, Doc("How strong lines by normals are.")] = 1.0
     crease_threshold: Annotated[
-        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds with smaller angles are no lines.")
+        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds with smaller angles make no lines.")
     ] = 35.0
     id_amount: Annotated[Fraction, Doc("How strong lines between ids are.")] = 1.0
     softness: Annotated[
@@ -51,8 +58,8 @@ class GeometryEdges(Filter):
     ] = 0.5
 
     edges = OutputSocket(Field(doc="How much of each pixel lines cover, 0..1."))
-    gap = OutputSocket(Field(doc="Between surfaces, as a part of the depth."))
-    crease = OutputSocket(Field(doc="Between neighboring normals, in degrees; 180 at the background."))
+    gap = OutputSocket(Field(doc="The step in depth between surfaces, as a part of the depth."))
+    crease = OutputSocket(Field(doc="The angle between neighboring normals, in degrees; 180 at the background."))
     border = OutputSocket(Field(doc="1 where two ids meet."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:

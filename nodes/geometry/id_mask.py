@@ -25,11 +25,11 @@ class IdMask(Filter):
     proxy_notes = (ProxyNote(("colors",), "it has hard edges between strong colors, as wide as a pixel of the proxy"),)
 
     ids = Field(doc="Numbers of objects or materials.")
-    pick: Annotated[str, Doc("Numbers and spans of numbers, such as 1, 4, 7-9.")] = "1"
+    pick: Annotated[str, Doc("Numbers and ranges of numbers, such as 1, 4, 7-9.")] = "1"
     invert: Annotated[bool, Doc("Mask everything else.")] = False
 
     mask = OutputSocket(Field(doc="1 or 0."))
-    colors = OutputSocket(Image(doc="A color for every number, to find them in the picture; 0 is black."))
+    colors = OutputSocket(Image(doc="A color for every number, which shows where each one is; 0 is black."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         mask, spans = draw.point("id_mask_none", result=Field()), _spans(self.pick)

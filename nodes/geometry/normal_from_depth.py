@@ -7,10 +7,10 @@ from .._declare import CameraSocket, Draw, Drawn, Field, Filter, OutputSocket, P
 class NormalFromDepth(Filter):
     """Compute normals from depth and the camera, for renders without a normal pass.
 
-    1 / depth is linear on planes, so its slopes give the tangent plane. They are taken on the side where it stays
-    linear for two pixels, as in Wu 2021 ("Accurate Normal Reconstruction from Depth Buffer"): edges stay sharp.
-    `curvature` is the mean curvature in 1 / world units: above 0 where a surface bulges (1 / r on a ball), below 0 in
-    hollows. On the background both are 0.
+    1 / depth is linear on planes, so that its slopes give the tangent plane. The slopes are measured on that side of
+    the pixel where 1 / depth stays linear for two pixels (Wu 2021, "Accurate Normal Reconstruction from Depth Buffer"),
+    so that edges stay sharp. `curvature` is the mean curvature per world unit: above 0 where a surface bulges (1 / r on
+    a ball), below 0 in hollows. On the background both are 0.
     """
 
     aliases = ("normals", "create normals", "depth to normal", "normal map", "surface normal")
@@ -19,16 +19,23 @@ class NormalFromDepth(Filter):
         ProxyNote(("curvature", "normal"), "it compares neighboring pixels, which are farther apart in a proxy"),
     )
 
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
     reach: Annotated[
         float,
         Slider(
-            1.0, 8.0, unit="px", minimum=1.0, maximum=64.0, doc="How far apart normals are compared for the curvature."
+            1.0,
+            8.0,
+            unit="px",
+            minimum=1.0,
+            maximum=64.0,
+            doc="The distance between the normals that are compared for the curvature.",
         ),
     ] = 2.0
 
-    normal = OutputSocket(Vector(width=3, doc="Of length 1, in the world, towards the camera."))
+    normal = OutputSocket(
+        Vector(width=3, doc="Normals of length 1 in the axes of the world, on the side of the camera.")
+    )
     curvature = OutputSocket(Field())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:

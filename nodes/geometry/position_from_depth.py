@@ -13,7 +13,7 @@ class PositionFromDepth(Filter):
         "reconstruct position", "points",
     )  # fmt: skip
 
-    depth = Field(doc="Planar distance along the way the camera looks.")
+    depth = Field(doc="Planar distance, along the viewing direction of the camera.")
     camera = CameraSocket(doc="The camera that the depth was rendered with.")
 
     position = OutputSocket(Vector(width=3))

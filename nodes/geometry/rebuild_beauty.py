@@ -6,9 +6,9 @@ from .._declare import Draw, Drawn, Field, Filter, Image, Number, OutputSocket, 
 class RebuildBeauty(Filter):
     """Rebuild the picture from its light passes, each of which can be graded before.
 
-    Color * (direct + indirect) for diffuse, glossy and transmission, plus volume, emission, environment and everything
-    else: the sum that Cycles makes. A color that is not linked counts as white, for renderers whose light passes
-    contain the color. With the render itself as beauty, it measures the error of the sum.
+    The sum is the one of Cycles: color * (direct + indirect) for diffuse, glossy and transmission, plus volume,
+    emission, environment and other light. A color that is not linked counts as white, for renderers whose light passes
+    contain the color. Link the render itself to beauty to measure the error of the sum.
     """
 
     aliases = (
@@ -30,7 +30,7 @@ class RebuildBeauty(Filter):
     volume_indirect = Image(0.0)
     emission = Image(0.0)
     environment = Image(0.0)
-    other = Image(0.0, doc="Light that has no place above: subsurface, coat, sheen.")
+    other = Image(0.0, doc="Light without an input of its own: subsurface, coat, sheen.")
 
     out = OutputSocket()
     difference = OutputSocket(

@@ -22,8 +22,8 @@ from .._declare import (
 class RimLight(Filter):
     """Add light along the rims of surfaces, where they turn away from the camera.
 
-    The rim is (1 - n.v)^power: n is the normal, v the way to the camera. It can come from all around or from one side.
-    It is added on what the mask and the picture's alpha cover.
+    The rim is (1 - n.v)^power, where n is the normal and v the direction to the camera. The light can come from all
+    around or from one side. It is added where the mask and the picture's alpha cover.
     """
 
     aliases = ("rim", "back light", "edge light", "fresnel light", "light wrap", "kicker")
@@ -31,21 +31,25 @@ class RimLight(Filter):
     proxy_notes = (ProxyNote(("out", "rim"), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     image = Image()
-    normal = Vector(width=3, doc="Directions of surfaces.")
+    normal = Vector(width=3, doc="Normals of surfaces.")
     camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
-    mask = Field(1.0, doc="Where the light falls: use it to exclude flat ground, which is all rim at a grazing angle.")
+    mask = Field(
+        1.0,
+        doc="Where the light falls. Use it to exclude flat ground, which the camera sees at a "
+        "grazing angle, so that all of it is rim.",
+    )
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.7, 1.0)
     intensity: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="How strong it is.")] = 2.0
     power: Annotated[
         float, Slider(0.5, 10.0, unit="ratio", minimum=0.0, maximum=1000.0, doc="Higher makes the rim narrower.")
     ] = 3.0
-    focus: Annotated[Fraction, Doc("0: from all around; 1: from one side alone.")] = 0.0
-    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="The side it comes from: 0 is right, 90 above.")] = (
-        45.0
-    )
+    focus: Annotated[Fraction, Doc("0: light from all around; 1: light from one side only.")] = 0.0
+    angle: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="The side that the light comes from: 0 is right, 90 is above.")
+    ] = 45.0
 
     out = OutputSocket()
-    rim = OutputSocket(Field(doc="How much of the light every pixel takes, 0..1, whatever the mask."))
+    rim = OutputSocket(Field(doc="How much of the light each pixel gets, 0..1, without the mask."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)

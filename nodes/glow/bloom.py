@@ -34,9 +34,9 @@ _FAINTEST = 1e-12
 class Bloom(Filter):
     """Let bright light bleed over its surroundings, as in a lens or on film.
 
-    A pyramid of ever smaller pictures, blurred on the way down and up again (Jimenez 2014), at a cost that does not
-    grow with the radius. `out` is the picture with its glow, `glow` the glow alone. Without threshold, limit and
-    firefly filter the glow is linear and loses no light. Alpha is kept.
+    The glow is made with a pyramid of smaller and smaller pictures, which are blurred on the way down and on the way up
+    again (Jimenez 2014). So a larger radius hardly costs more. `out` is the picture with its glow, `glow` the glow
+    alone. Without threshold, limit and firefly filter the glow is linear and loses no light. Alpha is kept.
     """
 
     aliases = (
@@ -48,15 +48,16 @@ class Bloom(Filter):
     image = Image()
     radius: Annotated[
         float,
-        Slider(0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the glow at its widest."),
+        Slider(0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the widest glow."),
     ] = 0.1
     scatter: Annotated[Fraction, Doc("How much light reaches wider levels: 0 gives a narrow glow, 1 a wide one.")] = 0.7
     levels: Annotated[
         Points,
         Curve(0.0, 2.0, minimum=0.0),
         Doc(
-            "The weight of each width, in addition to scatter: from a sixteenth of the radius (left),"
-            " in doublings, to the whole radius (right). The sum stays."
+            "The weight of each width, in addition to scatter. The left is a sixteenth of the "
+            "radius, the right the whole radius, in steps of a factor of 2. The sum of the "
+            "weights stays."
         ),
     ] = (0.0, 1.0, 1.0, 1.0)
     tint: Annotated[RGBA, Doc("Color of the glow; white keeps that of the light.")] = _WHITE

@@ -4,13 +4,13 @@ from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider, Trait
 
 
 class BrightPass(Pointwise):
-    """Keep only the light that shall glow: bright pixels, or those in a mask.
+    """Keep only the light that should glow: bright pixels, or those in a mask.
 
-    `L` is how bright a pixel is and `t` the threshold; the color is scaled to the new `L` and keeps its hue. Hard keeps
-    `L > t` as it is. Soft takes `t` off and eases in by a quadratic knee (KinoBloom, Takahashi 2015). Clamp
-    keeps everything up to the limit. Exponential keeps `1 - exp(-(L/t)^power)` of it, power `(L/t)^power`: both without
-    an edge that could flicker. To glow by mask only, link `mask` and set the threshold to 0. Light is measured as it
-    arrives, that is premultiplied; alpha is kept.
+    `L` is the brightness of a pixel and `t` the threshold. The color is scaled to the new `L` and keeps its hue. Hard
+    keeps `L > t` as it is. Soft subtracts `t`, with a smooth transition by a quadratic knee (KinoBloom, Takahashi
+    2015). Clamp keeps everything up to the limit. Exponential keeps `1 - exp(-(L/t)^power)` of the light, power keeps
+    `(L/t)^power`; neither has a hard border that could flicker. To choose the light only by a mask, link `mask` and set
+    the threshold to 0. Light is measured premultiplied, as it arrives; alpha is kept.
     """
 
     aliases = (
@@ -21,9 +21,9 @@ class BrightPass(Pointwise):
 
     image = Image()
     mask = Field(1.0, doc="How much of each pixel may glow: emission, a matte.")
-    mode: Annotated[
-        Literal["hard", "soft", "clamp", "exponential", "power"], Doc("How light is picked: see above.")
-    ] = "soft"
+    mode: Annotated[Literal["hard", "soft", "clamp", "exponential", "power"], Doc("How bright light is chosen.")] = (
+        "soft"
+    )
     measure: Annotated[
         Literal["luminance", "maximum"],
         Doc(
@@ -36,7 +36,10 @@ class BrightPass(Pointwise):
     ] = 1.0
     knee: Annotated[Fraction, Doc("For soft: the part of the threshold over which light fades in.")] = 0.5
     power: Annotated[
-        float, Slider(0.5, 8.0, unit="ratio", minimum=0.0, maximum=16.0, doc="For exponential and power: how steep.")
+        float,
+        Slider(
+            0.5, 8.0, unit="ratio", minimum=0.0, maximum=16.0, doc="For exponential and power: how steep the curve is."
+        ),
     ] = 2.0
     limit: Annotated[
         float,

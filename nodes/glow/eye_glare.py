@@ -16,11 +16,11 @@ _DATA = Vector(width=4)
 class EyeGlare(Filter):
     """Add the glare that lights have in the human eye, with rays and a colored halo.
 
-    Spencer, Shirley, Zimmerman and Greenberg (1995): at an angle t in degrees the eye scatters per steradian
-    `20.91 / (t + 0.02)^3` and `72.37 / (t + 0.02)^2`, and in the dark, for every wavelength, a halo of
-    `436.9 (568/nm) exp(-19.75 (t - 3 nm/568)^2)`. The light that is not scattered stays sharp. Every pixel gives away
-    what it scatters, so no light is made or lost, and an even picture stays as it is. `glow` is the scattered light
-    alone. Alpha is kept.
+    Spencer, Shirley, Zimmerman and Greenberg (1995): at an angle of t degrees, the eye scatters `20.91 / (t + 0.02)^3`
+    and `72.37 / (t + 0.02)^2` per steradian. In the dark it also has a halo for each wavelength, `436.9 (568/nm)
+    exp(-19.75 (t - 3 nm/568)^2)`. Light that is not scattered stays sharp. Every pixel loses the light that it
+    scatters: no light is made or lost, and an even picture does not change. `glow` is the scattered light alone. Alpha
+    is kept.
     """
 
     aliases = ("glare", "starburst", "veiling glare", "temporal glare", "lens glare", "eyelashes")
@@ -49,8 +49,10 @@ class EyeGlare(Filter):
             doc="The visual angle of the picture's height. Smaller angles make the glare larger.",
         ),
     ] = 40.0
-    rays: Annotated[Fraction, Doc("How far the glare breaks up into rays, the ciliary corona.")] = 0.5
-    strength: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is that of the eye.")] = 1.0
+    rays: Annotated[Fraction, Doc("How strongly the glare is divided into rays (the ciliary corona).")] = 0.5
+    strength: Annotated[
+        float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="The strength of the glare: 1 is that of the eye.")
+    ] = 1.0
 
     out = OutputSocket()
     glow = OutputSocket()

@@ -27,18 +27,20 @@ _SIGMAS = (0.22, 0.33, 0.5, 0.74, 1.11, 1.67, 2.5, 3.76)
 class FilmHalation(Filter):
     """Give bright light the red-orange halo that it has on film.
 
-    Light that passes the emulsion spreads in the film base, is reflected at its back and exposes the emulsion once
-    more from behind: the red-sensitive layer first, which lies deepest, less the green one above it, hardly the blue
-    one on top under a yellow filter. Rays flatter than the critical angle, asin(1 / 1.48) for triacetate, are reflected
-    wholly, so the halo is brightest in a ring of radius `2 t tan(angle)`: 0.24 mm for a base t = 0.13 mm thick, 0.015
-    of the 16 mm height of a Super 35 frame. Light that enters the base in all directions comes back as
-    `b^2 / (pi (r^2 + b^2)^2)`, b = 2 t, less the 42 percent that leave within the angle, taken off as a Gaussian so
-    narrow that in the middle just what Fresnel reflects is left. Flat rays cross more emulsion, so the upper layers see
-    a smaller halo. An anti-halation backing (remjet) absorbs nearly all of this; film without it glows. (Kodak, "The
-    Essential Reference Guide for Filmmakers"; Mees and James, "The Theory of the Photographic Process".)
+    Light that passes through the emulsion spreads in the film base, is reflected at its back and exposes the emulsion
+    again from behind. It exposes mostly the red-sensitive layer, which lies deepest, less the green-sensitive one above
+    it, and hardly the blue-sensitive one, which lies on top behind a yellow filter. Rays that are flatter than the
+    critical angle, asin(1 / 1.48) for triacetate, are reflected completely. So the halo is brightest in a ring of
+    radius `2 t tan(angle)`: 0.24 mm for a base of t = 0.13 mm, which is 0.015 of the 16 mm height of a Super 35 frame.
 
-    A channel's halo has `amount * color` times the sum of its light above the threshold, and is added. `glow` is the
-    halo alone. Alpha is kept.
+    Light that enters the base in all directions comes back as `b^2 / (pi (r^2 + b^2)^2)` with b = 2 t. The 42 percent
+    that leave the film within the critical angle are subtracted as a narrow Gaussian, so that in the middle only the
+    Fresnel reflection is left. Flat rays cross more emulsion, so that the upper layers get a smaller halo. An
+    anti-halation backing (remjet) absorbs nearly all of this light; film without it glows. (Kodak, "The Essential
+    Reference Guide for Filmmakers"; Mees and James, "The Theory of the Photographic Process".)
+
+    The halo of a channel is `amount * color` times the light of the channel above the threshold, and is added to the
+    picture. `glow` is the halo alone. Alpha is kept.
     """
 
     aliases = ("halation", "red glow", "film glow")
@@ -56,7 +58,12 @@ class FilmHalation(Filter):
             doc="How much of the bright light comes back. 0: the backing absorbs all of it; 0.58: there is no backing.",
         ),
     ] = 0.2
-    color: Annotated[RGBA, Doc("How much of it the red, green and blue layers absorb.")] = (1.0, 0.15, 0.02, 1.0)
+    color: Annotated[RGBA, Doc("How much of that light the red, green and blue layers absorb.")] = (
+        1.0,
+        0.15,
+        0.02,
+        1.0,
+    )
     radius: Annotated[
         float,
         Slider(
@@ -71,7 +78,12 @@ class FilmHalation(Filter):
     reach: Annotated[
         tuple[float, float, float],
         Slider(
-            0.5, 1.0, unit="ratio", minimum=0.5, maximum=1.0, doc="The radius in red, green and blue, as a part of it."
+            0.5,
+            1.0,
+            unit="ratio",
+            minimum=0.5,
+            maximum=1.0,
+            doc="The radius of the halo in red, green and blue, as a part of the radius above.",
         ),
     ] = (1.0, 0.85, 0.7)
     threshold: Annotated[

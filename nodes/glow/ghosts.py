@@ -27,13 +27,13 @@ _VEIL = 0.15
 
 
 class Ghosts(Filter):
-    """Add a lens flare: reflections between the lens elements, a halo and dirt that lights up.
+    """Add a lens flare: reflections between the lens elements, a halo, and dirt that lights up.
 
-    A ghost is a picture of the bright light, magnified by its own factor from the optical axis, mostly flipped, and out
-    of focus. Every ghost has the same share of the light, so the larger the dimmer. The halo is the light moved along
-    its own ray from the axis by the radius of a ring (Chapman 2017, "Screen Space Lens Flare"). The veil is light that
-    strays over the whole lens. All of it is multiplied by the dirt, and fades out for lights that leave the picture.
-    `glow` is the flare alone. Alpha is kept.
+    A ghost is a picture of the bright light, out of focus and mostly flipped. Each ghost is magnified around the
+    optical axis by a factor of its own. All ghosts have the same share of the light, so that a larger ghost is dimmer.
+    The halo is the light, moved away from the axis by the radius of a ring (Chapman 2017, "Screen Space Lens Flare").
+    The veil is light that is scattered over the whole lens. All of it is multiplied by the dirt, and fades out for
+    lights that leave the picture. `glow` is the flare alone. Alpha is kept.
     """
 
     aliases = (
@@ -44,17 +44,28 @@ class Ghosts(Filter):
     proxy_notes = (ProxyNote(("glow",), "it interpolates many times, which softens it by pixels of the proxy"),)
 
     image = Image()
-    dirt = Image(1.0, doc="A picture of the front lens: the flare is multiplied by it. Unlinked, there are smudges.")
+    dirt = Image(
+        1.0,
+        doc="A picture of the dirt on the front lens, by which the flare is multiplied. Without a"
+        " link there are smudges.",
+    )
     count: Annotated[int, Slider(0, 12, unit="count", minimum=0, maximum=12, doc="How many ghosts.")] = 7
     spread: Annotated[
         float,
-        Slider(0.2, 2.0, unit="ratio", minimum=0.05, maximum=8.0, doc="Factor on how large and how far out they lie."),
+        Slider(
+            0.2,
+            2.0,
+            unit="ratio",
+            minimum=0.05,
+            maximum=8.0,
+            doc="Factor on the size of the ghosts and on their distance from the axis.",
+        ),
     ] = 1.0
     ghosts: Annotated[
-        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light each ghost has.")
+        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light each ghost gets.")
     ] = 0.015
     halo: Annotated[
-        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How bright the halo is, of the light that it moves.")
+        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the halo.")
     ] = 0.015
     veil: Annotated[
         float,
@@ -80,7 +91,7 @@ class Ghosts(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=0.9,
-            doc="How much farther out red lies than green, and green than blue.",
+            doc="How much farther out red is than green, and green than blue.",
         ),
     ] = 0.03
     colors: Annotated[Fraction, Doc("How strongly each ghost is tinted by its own coating.")] = 0.6

@@ -35,10 +35,11 @@ _DATA = Vector(width=4)
 class KernelGlare(Filter):
     """Turn every light into a picture: a starburst, a heart, dirt on a lens.
 
-    Convolves the light with the picture that is linked to `kernel`. The center of the kernel lies on the light, its
-    alpha is ignored, and its sum is scaled to a luminance of 1, so that color tints but no light is added. Without a
-    link it is the starburst of an iris: Fraunhofer diffraction at a regular polygon, summed over all wavelengths. It
-    has as many rays as blades, twice as many if their number is odd. `glow` is the glare alone. Alpha is kept.
+    Convolves the light with the picture that is linked to `kernel`. The center of the kernel lies on the light, and its
+    alpha is ignored. The kernel is scaled so that the luminance of its sum is 1: it colors the light but adds none.
+    Without a link it is the starburst of an iris: Fraunhofer diffraction at a regular polygon, added up over all
+    wavelengths. It has one ray for each blade, or two if the number of blades is odd. `glow` is the glare alone. Alpha
+    is kept.
     """
 
     aliases = (
@@ -63,7 +64,7 @@ class KernelGlare(Filter):
             unit="ratio",
             minimum=0.1,
             maximum=2.0,
-            doc="How fast the rays of the iris fade: 1 is physical; below 1, rays of weak lamps become longer too.",
+            doc="How fast the rays of the iris fade: 1 is physical. Below 1, the rays of weak lamps are longer too.",
         ),
     ] = 0.7
     intensity: Annotated[
@@ -73,7 +74,7 @@ class KernelGlare(Filter):
         Literal["mix", "add"], Doc("Mix moves light into the glare and keeps the sum; add puts the glare on top.")
     ] = "mix"
     threshold: Annotated[
-        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glares.")
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance makes glare.")
     ] = 1.0
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
     limit: Annotated[
@@ -84,7 +85,7 @@ class KernelGlare(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The largest luminance that glares, to limit suns and noise; 65504 is no limit.",
+            doc="The largest luminance that makes glare, to limit suns and noise; 65504 is no limit.",
         ),
     ] = _NO_LIMIT
     quality: Annotated[

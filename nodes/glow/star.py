@@ -28,11 +28,11 @@ _SQUARE = 1e-5
 class Star(Filter):
     """Put a four-pointed star on bright light, as a cross filter on a lens does.
 
-    The bright light is blurred by a Gaussian along one direction (u) and, apart from that, along the other (v); both
-    are added: `out = image + intensity / 2 (G_u light + G_v light)` (the star of TU Wien's "Screenspace Effects").
-    `glow` is the star alone; without threshold and limit it is linear and has the sum of the light. Off the axes the
-    light is turned, blurred and turned back, which softens the arms by less than a pixel and keeps the sum of lights
-    of a single pixel within 7 percent only. Alpha is kept.
+    The bright light is blurred by a Gaussian in one direction (u) and separately in the other one (v), and both are
+    added: `out = image + intensity / 2 (G_u light + G_v light)` (the star of TU Wien's "Screenspace Effects"). `glow`
+    is the star alone. Without threshold and limit it is linear and has the same sum as the light. If the star is
+    turned, the light is rotated, blurred and rotated back. That makes the arms softer by less than a pixel, and keeps
+    the sum of lights of a single pixel only within 7 percent. Alpha is kept.
     """
 
     aliases = (
@@ -68,7 +68,10 @@ class Star(Filter):
     ] = _NO_LIMIT
     edge: Annotated[
         Edge,
-        Doc("What lies outside the picture. Black: no light. Clamp suits glow without threshold, which it keeps even."),
+        Doc(
+            "What lies outside the picture. Black: no light. Clamp is for glow without a "
+            "threshold: an even picture then stays even."
+        ),
     ] = "black"
 
     out = OutputSocket()

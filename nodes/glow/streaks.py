@@ -19,11 +19,12 @@ _WAVELENGTHS = (611.0, 549.0, 464.0)
 class Streaks(Filter):
     """Draw long straight streaks from bright light, as star filters, aperture blades and anamorphic lenses do.
 
-    Along an arm, light fades by the same factor from pixel to pixel, to a hundredth at `length`. Passes of four
-    samples, each four times as far apart (Kawase 2003, "Frame Buffer Postprocessing Effects in DOUBLE-S.T.E.A.L."),
-    give exactly that sum; the cost grows only with the logarithm of the length. `glow` is the streaks alone: each arm
-    has its share of the light and keeps the sum. Off the axes and diagonals, interpolation softens an arm by about a
-    pixel. Two arms at 0 degrees are an anamorphic lens. Alpha is kept.
+    Along an arm the light fades by the same factor from pixel to pixel, to a hundredth at `length`. Passes of four
+    samples, each pass with four times the distance between samples (Kawase 2003, "Frame Buffer Postprocessing Effects
+    in DOUBLE-S.T.E.A.L."), give exactly that sum, so that the cost grows only with the logarithm of the length. `glow`
+    is the streaks alone: the light is shared between the arms, and its sum stays. An arm that is neither on an axis nor
+    on a diagonal is softer by about a pixel, because it is interpolated. Two arms at 0 degrees are the streak of an
+    anamorphic lens. Alpha is kept.
     """
 
     aliases = (
@@ -37,12 +38,19 @@ class Streaks(Filter):
     arms: Annotated[
         int,
         Slider(
-            2, 16, unit="count", minimum=1, maximum=16, doc="An aperture of n blades has n arms, or 2 n where n is odd."
+            2, 16, unit="count", minimum=1, maximum=16, doc="An aperture of n blades has n arms, or 2 n if n is odd."
         ),
     ] = 6
     length: Annotated[
         float,
-        Slider(0.0, 1.0, unit="height", minimum=0.0, maximum=4.0, doc="Where a hundredth of an arm's light is left."),
+        Slider(
+            0.0,
+            1.0,
+            unit="height",
+            minimum=0.0,
+            maximum=4.0,
+            doc="The distance at which a hundredth of an arm's light is left.",
+        ),
     ] = 0.4
     angle: Annotated[
         float, Slider(-180.0, 180.0, unit="deg", doc="Where the first arm points: 0 is right, 90 is up.")
@@ -55,7 +63,7 @@ class Streaks(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=8.0,
-            doc="How much farther red reaches than blue. 1 is what diffraction does: in proportion to the wavelength.",
+            doc="How much farther red reaches than blue. 1 is that of diffraction, in proportion to the wavelength.",
         ),
     ] = 1.5
     intensity: Annotated[
@@ -79,7 +87,7 @@ class Streaks(Filter):
     ] = 200.0
     quality: Annotated[
         Literal["full", "half", "quarter"],
-        Doc("The size at which streaks are made: the smaller, the softer, and 4 or 16 times as fast."),
+        Doc("The size at which streaks are made. Smaller ones are softer, and 4 or 16 times as fast."),
     ] = "half"
     edge: Annotated[
         Literal["black", "clamp"],

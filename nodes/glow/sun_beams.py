@@ -28,12 +28,12 @@ _LEFT = 0.01
 class SunBeams(Filter):
     """Make light shafts that fan out from a light: sun through leaves, windows or mist.
 
-    Every pixel gathers the bright light between itself and the source, so that whatever stands before the light throws
-    a dark shaft (Mitchell 2007, "Volumetric Light Scattering as a Post-Process", GPU Gems 3). The mean is taken at
-    `source + (pixel - source) shrink^n` with weights `fade^n`, for n from 0 to where `length` of the way is gone.
-    Such steps multiply, so passes of four samples that quadruple n (as Kawase 2003 does for streaks) give the whole
-    sum; samples are less than a pixel apart, at a cost that grows with the logarithm of their number only. `glow` is
-    the beams alone. Alpha is kept.
+    Every pixel gathers the bright light between itself and the source, so that an object before the light makes a dark
+    shaft (Mitchell 2007, "Volumetric Light Scattering as a Post-Process", GPU Gems 3). The light is the mean at the
+    points `source + (pixel - source) shrink^n` with the weights `fade^n`, from n = 0 until `length` of the way is
+    covered. Passes of four samples, each of which makes n four times as large (as Kawase 2003 does for streaks), give
+    the whole sum. Samples are less than a pixel apart, and the cost grows only with the logarithm of their number.
+    `glow` is the beams alone. Alpha is kept.
     """
 
     aliases = (
@@ -54,8 +54,8 @@ class SunBeams(Filter):
             unit="height",
             minimum=0.0,
             maximum=16.0,
-            doc="Only light this near to the source throws beams; it fades out over as much again. Large: all light "
-            "does.",
+            doc="Only light this near to the source makes beams; beyond, it fades out over the same "
+            "distance. If large, all light makes beams.",
         ),
     ] = 0.06
     length: Annotated[
@@ -81,7 +81,7 @@ class SunBeams(Filter):
     ] = 0.3
     tint: Annotated[RGBA, Doc("Color of the beams; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
     threshold: Annotated[
-        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance throws beams.")
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance makes beams.")
     ] = 1.5
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
     limit: Annotated[
@@ -92,12 +92,12 @@ class SunBeams(Filter):
             unit="scene",
             minimum=0.0,
             maximum=_NO_LIMIT,
-            doc="The largest luminance that throws beams, to limit suns and noise; 65504 is no limit.",
+            doc="The largest luminance that makes beams, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 50.0
     quality: Annotated[
         Literal["full", "half", "quarter"],
-        Doc("The size at which beams are made: the smaller, the softer, and 4 or 16 times as fast."),
+        Doc("The size at which beams are made. Smaller ones are softer, and 4 or 16 times as fast."),
     ] = "full"
 
     out = OutputSocket()
