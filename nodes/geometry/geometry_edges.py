@@ -9,12 +9,12 @@ _SEAM = 2.0
 
 
 class GeometryEdges(Filter):
-    """Find where surfaces end, fold and meet, as lines of any width. It uses depth, normals and ids, as far as they are
-    linked.
+    """Find where surfaces end, fold and meet, as lines of any width, from depth, normals and ids.
 
-    Depth: the second difference of 1 / depth along a row or column, relative to the nearest of three pixels. 1 / depth
-    is linear on every plane, so that flat surfaces at any angle have no edge. Between two surfaces the difference is 1
-    - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run between pixels.
+    It uses those of the three that are linked. Depth: the second difference of 1 / depth along a row or column, relative
+    to the nearest of three pixels. 1 / depth is linear on every plane, so that flat surfaces at any angle have no edge;
+    between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines run
+    between pixels.
     """
 
     aliases = (

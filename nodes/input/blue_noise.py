@@ -4,7 +4,7 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise, ProxyNote, Sl
 
 
 class BlueNoise(Pointwise):
-    """Random dots that never clump: the least visible noise, for thresholds of dissolves and stipples.
+    """Random dots that never clump: the least visible noise, for the thresholds of dissolves and stipples.
 
     Void and cluster (Ulichney, 1993): 64 x 64 cells that repeat, with 256 values that are equally frequent. It has
     almost no low frequencies.

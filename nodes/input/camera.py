@@ -15,8 +15,8 @@ class Camera(Filter):
 
     aliases = ("camera 3d", "lens", "projection", "view", "camera3d")
 
-    eye: Annotated[Place, Doc("Where it stands.")] = (0.0, -5.0, 1.5)
-    target: Annotated[Place, Doc("What it looks at.")] = (0.0, 0.0, 1.0)
+    eye: Annotated[Place, Doc("The position of the camera.")] = (0.0, -5.0, 1.5)
+    target: Annotated[Place, Doc("The point that the camera looks at.")] = (0.0, 0.0, 1.0)
     focal: Annotated[
         float, Slider(8.0, 200.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
     ] = 50.0

@@ -20,4 +20,4 @@ class Checker(Pointwise):
     )
 
     out = OutputSocket(Image(doc="The colors."))
-    value = OutputSocket(Field(doc="0 on the first color's squares, 1 on the second's: a mask."))
+    value = OutputSocket(Field(doc="A mask: 0 on squares of the first color, 1 on those of the second."))

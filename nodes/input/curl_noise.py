@@ -6,8 +6,8 @@ from .._declare import Field, OutputSocket, Pointwise, Slider, Vector
 class CurlNoise(Pointwise):
     """A random flow with eddies, like smoke or water, without sources or sinks. A vector map for Displace.
 
-    Curl noise (Bridson, Hourihan and Nordenstam, 2007) in two dimensions: (d/dy, -d/dx) of a stream function, the slope
-    taken exactly. The stream function is simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm).
+    Curl noise (Bridson, Hourihan and Nordenstam, 2007) in two dimensions: (d/dy, -d/dx) of a stream function, with
+    exact derivatives. The stream function is simplex noise (Perlin, 2001; Gustavson and McEwan, 2022) in layers (fBm).
     """
 
     aliases = ("flow field", "turbulence", "vector noise", "swirl noise", "flow")
@@ -27,13 +27,17 @@ class CurlNoise(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=4.0,
-            doc="How far each layer moves compared to the one before; its speed is equal at 1 / lacunarity.",
+            doc="How far each layer moves compared to the one before. At 1 / lacunarity all layers "
+            "have the same speed.",
         ),
     ] = 0.4
     strength: Annotated[
         float,
         Slider(
-            0.0, 4.0, unit="ratio", doc="Factor on the vectors; at 1 none is longer than 1, and few are half as long."
+            0.0,
+            4.0,
+            unit="ratio",
+            doc="Factor on the vectors. At 1 no vector is longer than 1, and few are longer than 0.5.",
         ),
     ] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another flow.")] = 0
@@ -41,5 +45,5 @@ class CurlNoise(Pointwise):
 
     vector = OutputSocket(Vector(width=2, doc="The flow: x points right and y down."))
     stream = OutputSocket(
-        Field(doc="The stream function, along whose level lines the flow runs; its slope is per size.")
+        Field(doc="The stream function: the flow runs along its contour lines. Its slope is per size.")
     )

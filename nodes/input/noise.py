@@ -4,11 +4,11 @@ from .._declare import Doc, Field, Image, OutputSocket, Pointwise, Slider, Vecto
 
 
 class Noise(Pointwise):
-    """Random but repeatable texture, layered in octaves, from integer hashes: the same on every device.
+    """Random but repeatable texture in layers (octaves), from integer hashes: the same on every device.
 
     Hash: pcg3d (Jarzynski and Olano, 2020). Gradient noise: Perlin (2002); simplex: Perlin (2001), Gustavson and McEwan
     (2022). Layers: fBm (Mandelbrot and van Ness, 1968), ridged (Musgrave, 1994), turbulence (Perlin, 1985), warped
-    (Quilez, 2002). They are divided by the sum of their strengths: every output keeps its range whatever the values.
+    (Quilez, 2002). Layers are divided by the sum of their strengths, so that every output keeps its range.
     """
 
     aliases = (
@@ -19,9 +19,9 @@ class Noise(Pointwise):
     kind: Annotated[
         Literal["gradient", "value", "white", "simplex"],
         Doc(
-            "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between "
-            "neighbors, "
-            "simplex is like gradient with more contrast, and as strong at every evolution."
+            "Gradient is smooth and even (Perlin). Value is smooth and blotchy. White has no "
+            "relation between neighbors. Simplex is like gradient with more contrast, which stays"
+            " the same at every evolution."
         ),
     ] = "gradient"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest features.")] = 64.0
@@ -45,8 +45,8 @@ class Noise(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=64.0,
-            doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is "
-            "cut.",
+            doc="1 keeps the range of the noise, whose ends it rarely reaches. Above 1, values beyond"
+            " the ends are clipped.",
         ),
     ] = 2.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
@@ -57,17 +57,20 @@ class Noise(Pointwise):
     fractal: Annotated[
         Literal["fbm", "ridged", "turbulence", "warped"],
         Doc(
-            "How layers add up. Fbm: as they are, for clouds. Ridged: sharp crests, fine ones on coarse ones only, for "
-            "mountains and lightning. Turbulence: sharp creases, for smoke. Warped: fbm bent by fbm, for marble."
+            "How layers are added. Fbm: as they are, for clouds. Ridged: sharp crests, with fine "
+            "ones only on coarse ones, for mountains and lightning. Turbulence: sharp creases, "
+            "for smoke. Warped: fbm distorted by fbm, for marble."
         ),
     ] = "fbm"
-    warp: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is bent, in sizes.")] = 2.0
+    warp: Annotated[
+        float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is distorted, as a factor on the size.")
+    ] = 2.0
 
     out = OutputSocket(Image(doc="The value as an opaque gray."))
-    value = OutputSocket(Field(doc="0..1; of fbm 0.5 on average."))
+    value = OutputSocket(Field(doc="The value, 0..1. The average of fbm is 0.5."))
     vector = OutputSocket(
         Vector(
             width=2,
-            doc="Two more noises, each -1..1, of fbm with average 0: an offset for Displace. See also Curl Noise.",
+            doc="Two more noises, each -1..1: an offset for Displace. The average of fbm is 0. See also Curl Noise.",
         )
     )

@@ -4,7 +4,7 @@ from .._declare import RGBA, Doc, Field, Fraction, Image, OutputSocket, Pointwis
 
 
 class Ramp(Pointwise):
-    """A gradient between two colors: along a line, around a point outward, or as a clock hand sweeps."""
+    """A gradient between two colors: along a line, outward from a point, or around a point like a clock hand."""
 
     aliases = (
         "gradient", "gradient ramp", "gradient texture", "linear gradient", "radial", "radial gradient",
@@ -35,4 +35,4 @@ class Ramp(Pointwise):
     ] = 0.0
 
     out = OutputSocket(Image(doc="The colors."))
-    value = OutputSocket(Field(doc="0 at the start, 1 at the end: a mask."))
+    value = OutputSocket(Field(doc="A mask: 0 at the start, 1 at the end."))

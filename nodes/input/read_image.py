@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Field, File, OfSpace, OutputSocket, Rea
 class ReadImage(Reader):
     """Read one layer of an image file.
 
-    `out` is the layer as color, `field` its first channel as data (depth, a mask), `vector` its first three channels
-    as data (normals, positions). Files: whatever OpenImageIO reads; a layer may be named in any of the usual ways
+    `out` is the layer as color, `field` its first channel as data (depth, a mask), `vector` its first three channels as
+    data (normals, positions). It reads all files that OpenImageIO reads. A layer can be named in any of the usual ways
     (`Depth`, `Depth.Z`, `ViewLayer.Combined`).
     """
 
@@ -18,13 +18,13 @@ class ReadImage(Reader):
     )  # fmt: skip
 
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""
-    layer: Annotated[str, Doc("Name of the layer; empty for the file's first color layer.")] = ""
+    layer: Annotated[str, Doc("Name of the layer. If empty, it is the first color layer of the file.")] = ""
     color_space: Annotated[
         str,
         OfSpace(),
         Doc(
-            "The color space of `out`, by a name or role of the color config, such as ACEScg; empty "
-            "recognizes it. Data is never converted."
+            "The color space of `out`, by a name or role of the color config, such as ACEScg. If "
+            "empty, it is recognized. Data is never converted."
         ),
     ] = ""
 

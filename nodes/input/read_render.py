@@ -35,10 +35,10 @@ _FOUND = "empty for the one that was found"
 
 
 class ReadRender(Reader):
-    """Read a render: its layers are recognized, whatever names the renderer uses.
+    """Read a render and recognize its layers, whatever names the renderer gives them.
 
-    Recognizes names of Blender, Arnold, V-Ray, Karma, RenderMan, Redshift, Nuke and others, in files of one part or
-    many; `halation info FILE` prints the result and the reasons. Data is converted to one convention: depth along the
+    Recognizes the names of Blender, Arnold, V-Ray, Karma, RenderMan, Redshift, Nuke and others, in files of one part or
+    many. `halation info FILE` prints what was recognized, and why. Data is converted to one convention: depth along the
     camera's axis, normals in the world, motion in pixels from the previous frame and to the next one, y down. The
     camera is solved from positions, or read from the header. If a guess is wrong, name the layer or the convention.
     """
@@ -65,7 +65,9 @@ class ReadRender(Reader):
         Doc("The axes of normals: x right, y up, z toward the viewer."),
     ] = "found"
     position_layer: Annotated[
-        str, OfLayer("position"), Doc(f"The layer of places in the world, which the camera is solved from; {_FOUND}.")
+        str,
+        OfLayer("position"),
+        Doc(f"The layer of positions in the world, from which the camera is solved; {_FOUND}."),
     ] = ""
     velocity_layer: Annotated[str, OfLayer("velocity"), Doc(f"The layer of motion; {_FOUND}.")] = ""
     velocity_is: Annotated[
@@ -81,8 +83,8 @@ class ReadRender(Reader):
         str,
         OfSpace(),
         Doc(
-            "The color space of the picture, by a name or role of the color config, such as ACEScg; "
-            "empty recognizes it."
+            "The color space of the picture, by a name or role of the color config, such as "
+            "ACEScg. If empty, it is recognized."
         ),
     ] = ""
 
@@ -92,7 +94,9 @@ class ReadRender(Reader):
     depth = OutputSocket(Field(doc="Along the camera's axis."))
     normal = OutputSocket(Vector(doc="In the world."))
     position = OutputSocket(Vector())
-    velocity = OutputSocket(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
+    velocity = OutputSocket(
+        Vector(width=4, doc="Motion in pixels: x and y since the previous frame, z and w until the next one; y down.")
+    )
     occlusion = OutputSocket(Field())
     object_id = OutputSocket(Field())
     material_id = OutputSocket(Field())

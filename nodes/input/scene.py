@@ -30,13 +30,13 @@ _JITTERS = 16
 
 
 class Scene(Source):
-    """Draw meshes into every channel that effects want: albedo, normals, depth, position, velocity, ids and more.
+    """Draw meshes into every channel that effects need: albedo, normals, depth, position, velocity, ids and more.
 
-    All in one pass. The camera orbits its target. Movable objects (all of a file, the red ball of the stage) rotate
-    about the world's vertical axis and drift. Positions are in world units, z up; depth is measured along the camera's
-    axis, 1e10 on the background; velocity is in pixels, y down: from the previous frame, and to the next one. Pixels
-    are sampled at their centers, so edges are hard and data is exact; with jitter, at other places in each frame
-    (Halton 1960).
+    All channels come from one pass. The camera moves around its target. Movable objects (all objects of a file, the red
+    ball of the stage) rotate around the vertical axis of the world and drift. Positions are in world units, z up. Depth
+    is measured along the camera's axis and is 1e10 on the background. Velocity is in pixels, y down: since the previous
+    frame, and until the next one. Pixels are sampled at their centers, so that edges are hard and data is exact; with
+    jitter, the place changes with each frame (Halton 1960).
     """
 
     aliases = (
@@ -58,10 +58,11 @@ class Scene(Source):
     ] = 6.5
     azimuth: Annotated[
         float,
-        Slider(-180.0, 180.0, unit="deg", doc="Where the camera stands around the target; at 0 it looks along y."),
+        Slider(-180.0, 180.0, unit="deg", doc="The direction of the camera from the target; at 0 it looks along y."),
     ] = 8.0
     elevation: Annotated[
-        float, Slider(-89.0, 89.0, unit="deg", minimum=-90.0, maximum=90.0, doc="How high it stands.")
+        float,
+        Slider(-89.0, 89.0, unit="deg", minimum=-90.0, maximum=90.0, doc="The angle of the camera above the ground."),
     ] = 14.0
     focal: Annotated[
         float,
@@ -69,7 +70,9 @@ class Scene(Source):
             12.0, 200.0, unit="ratio", minimum=1.0, maximum=10000.0, doc="Focal length in mm, on a sensor 36 mm wide."
         ),
     ] = 50.0
-    orbit: Annotated[float, Slider(-10.0, 10.0, unit="deg", doc="How far the camera goes around, each frame.")] = 0.0
+    orbit: Annotated[
+        float, Slider(-10.0, 10.0, unit="deg", doc="How far the camera moves around the target in each frame.")
+    ] = 0.0
     turn: Annotated[float, Slider(-30.0, 30.0, unit="deg", doc="How far movable objects turn in each frame.")] = 0.0
     drift: Annotated[
         tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far movable objects move in each frame.")
@@ -77,24 +80,26 @@ class Scene(Source):
     jitter: Annotated[
         Fraction,
         Doc(
-            "How far from its center a pixel is sampled, for Temporal AA: 1 is anywhere in the pixel."
-            " Cameras and velocity are those of the center."
+            "How far from its center a pixel is sampled, for Temporal AA: 1 is anywhere in the "
+            "pixel. The camera and velocity outputs are those of the center."
         ),
     ] = 0.0
 
-    color = OutputSocket(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
+    color = OutputSocket(Image(doc="The scene in the light of one soft lamp and the sky, as a preview."))
     albedo = OutputSocket(Image())
-    normal = OutputSocket(Vector(doc="Unit length, in the world, towards the camera."))
+    normal = OutputSocket(Vector(doc="Normals of length 1 in the axes of the world, on the side of the camera."))
     position = OutputSocket(Vector(doc="In the world."))
-    depth = OutputSocket(Field(doc="Along the camera's axis; 1e10 where nothing is."))
+    depth = OutputSocket(Field(doc="Depth along the camera's axis; 1e10 on the background."))
     emission = OutputSocket(Image())
     material = OutputSocket(Vector(width=2, doc="Metal and roughness, 0..1."))
-    velocity = OutputSocket(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
+    velocity = OutputSocket(
+        Vector(width=4, doc="Motion in pixels: x and y since the previous frame, z and w until the next one; y down.")
+    )
     uv = OutputSocket(Vector(width=2))
     object_id = OutputSocket(Field(doc="A whole number for every object, from 1."))
     material_id = OutputSocket(Field(doc="A whole number for every material, from 1."))
     camera = OutputSocket(CameraSocket())
-    camera_before = OutputSocket(CameraSocket(doc="Where the camera was in the frame before."))
+    camera_before = OutputSocket(CameraSocket(doc="The camera of the previous frame."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | CameraModel]:
         scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)

@@ -5,10 +5,10 @@ from .._declare import CameraModel, CameraSocket, Doc, Draw, OutputSocket, Reade
 
 
 class SolveCamera(Reader):
-    """Find the camera that a render was made with: solved from its positions, or as its header names it.
+    """Find the camera that a render was made with: solved from its positions, or read from its header.
 
-    The projection is fitted to the position of every pixel by linear least squares, in double precision; `halation info
-    FILE` says how many pixels it is off.
+    The projection is fitted to the position of every pixel by linear least squares, in double precision. `halation info
+    FILE` says how exact the fit is, in pixels.
     """
 
     aliases = ("camera from position", "match camera", "camera solve", "camera tracker", "extract camera")

@@ -6,9 +6,9 @@ from .._declare import Doc, Field, Fraction, Image, OutputSocket, Pointwise, Pro
 class Worley(Pointwise):
     """Cells, as in stone, scales or foam: the distance of every pixel from the nearest of scattered points.
 
-    Worley 1996, "A Cellular Texture Basis Function", with one point in every cell of a cubic lattice, of which the
-    picture shows a slice; the 27 cells around are searched. Distances are counted in cells. Hash: pcg3d (Jarzynski and
-    Olano 2020), the same on every device.
+    Worley 1996, "A Cellular Texture Basis Function", with one point in every cell of a cubic lattice. The picture shows
+    a slice of the lattice, and the 27 cells around each pixel are searched. Distances are counted in cells. Hash: pcg3d
+    (Jarzynski and Olano 2020), the same on every device.
     """
 
     aliases = (
@@ -29,7 +29,7 @@ class Worley(Pointwise):
         Doc("Euclidean cells are round, Manhattan ones diamonds, Chebyshev ones square."),
     ] = "euclidean"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of a cell.")] = 48.0
-    jitter: Annotated[Fraction, Doc("How far points stray from the middle of their cells; 0 is a regular grid.")] = 1.0
+    jitter: Annotated[Fraction, Doc("How far points are from the middle of their cells; 0 is a regular grid.")] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another pattern.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Moves the slice: changes the cells smoothly.")] = (
         0.0
@@ -37,4 +37,4 @@ class Worley(Pointwise):
 
     out = OutputSocket(Image(doc="The distance as an opaque gray."))
     value = OutputSocket(Field(doc="The distance, in cells."))
-    cell = OutputSocket(Vector(doc="Three random numbers 0..1, the same all over a cell."))
+    cell = OutputSocket(Vector(doc="Three random numbers 0..1 for each cell."))

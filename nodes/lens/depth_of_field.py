@@ -37,11 +37,12 @@ _MIDDLE = 0.72
 class DepthOfField(Filter):
     """Focus like a lens: surfaces that are nearer or farther spread into discs of light (bokeh).
 
-    The circle of confusion is `f / N * f / sensor * width * (1 / focus - 1 / depth)` across, as Cycles' cameras project
-    (pinhole), times `focus / (focus - f)` for a thin lens. Every pixel gathers what scatters over it: what is in front
-    covers it, its own surface shares the rest with what shows behind its soft edge. Large discs are made at half,
-    quarter... size, near and far apart. Light is kept. `coc` is the disc's diameter in pixels of the full-size picture,
-    below 0 nearer than the focus.
+    The diameter of the circle of confusion is `f / N * f / sensor * width * (1 / focus - 1 / depth)`, as Cycles'
+    cameras project (pinhole), times `focus / (focus - f)` for a thin lens. Every pixel gathers the discs that reach it.
+    Surfaces in front cover the pixel; the rest is shared between its own surface and what is visible behind the soft
+    edge of that surface. Large discs are made at a half, a quarter and smaller sizes, separately for near and far
+    surfaces. The sum of the light stays. `coc` is the diameter of the disc in pixels of the full-size picture, below 0
+    for surfaces nearer than the focus.
     """
 
     aliases = (
@@ -64,7 +65,12 @@ class DepthOfField(Filter):
     f_number: Annotated[
         float,
         Slider(
-            0.7, 22.0, unit="ratio", minimum=0.01, maximum=1000.0, doc="Focal length over aperture: less blurs more."
+            0.7,
+            22.0,
+            unit="ratio",
+            minimum=0.01,
+            maximum=1000.0,
+            doc="The f-number: focal length over aperture. Lower numbers blur more.",
         ),
     ] = 1.4
     focal: Annotated[
@@ -82,18 +88,32 @@ class DepthOfField(Filter):
         ),
     ] = 36.0
     meters: Annotated[
-        float, Slider(0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="The length of a unit of the scene.")
+        float,
+        Slider(
+            0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="The length of a unit of the scene, in meters."
+        ),
     ] = 1.0
     convention: Annotated[
-        Literal["thin lens", "pinhole"], Doc("Thin lens: focusing near magnifies. Pinhole: it does not, as in Cycles.")
+        Literal["thin lens", "pinhole"],
+        Doc("With a thin lens, blur grows when the focus is near. With a pinhole it does not, as in Cycles."),
     ] = "thin lens"
     max_blur: Annotated[
         float, Slider(0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="The largest diameter of discs.")
     ] = 0.03
     aperture: Annotated[Literal["round", "blades"], Doc("The shape of bokeh.")] = "round"
-    blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=64, doc="Corners of bokeh by blades.")] = 6
-    roundness: Annotated[Fraction, Doc("How far blades bend out to a circle.")] = 0.0
-    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="How far the blades are turned.")] = 0.0
+    blades: Annotated[
+        int,
+        Slider(
+            3,
+            12,
+            unit="count",
+            minimum=3,
+            maximum=64,
+            doc="The number of blades, each of which makes a corner of the bokeh.",
+        ),
+    ] = 6
+    roundness: Annotated[Fraction, Doc("How round the blades are: 1 makes a circle.")] = 0.0
+    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="The rotation of the blades.")] = 0.0
     ratio: Annotated[
         float,
         Slider(
@@ -114,8 +134,8 @@ class DepthOfField(Filter):
     quality: Annotated[
         Literal["draft", "normal", "high", "exact"],
         Doc(
-            "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the "
-            "blur."
+            "Discs up to this diameter are made at full size: 8, 12 or 24 pixels, or all. The "
+            "cost of exact grows with the square of the blur."
         ),
     ] = "normal"
 

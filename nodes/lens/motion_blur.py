@@ -23,12 +23,12 @@ class MotionBlur(Filter):
     velocity = Vector(
         width=4,
         doc=(
-            "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame "
-            "after. "
-            "Where z and w are 0, motion goes on evenly."
+            "Motion in pixels of the full-size picture, x right, y down: x and y since the "
+            "previous frame, z and w until the next one. Where z and w are 0, the motion keeps "
+            "its speed."
         ),
     )
-    depth = Field(0.0, doc="Shows which surfaces are in front. Without it, all are equally deep.")
+    depth = Field(0.0, doc="Shows which surfaces are in front. Without a link, all surfaces have the same depth.")
     shutter: Annotated[
         float,
         Slider(
@@ -37,14 +37,16 @@ class MotionBlur(Filter):
             unit="deg",
             minimum=0.0,
             maximum=720.0,
-            doc="Shutter angle: 360 is open from frame to frame, 180 half the time.",
+            doc="Shutter angle: at 360 the shutter is open from frame to frame, at 180 half the time.",
         ),
     ] = 180.0
     phase: Annotated[
         Literal["centered", "start", "end"],
-        Doc("When the shutter is open: around the frame, from it on (start) or until it (end)."),
+        Doc("When the shutter is open: around the frame, from the frame on (start) or until the frame (end)."),
     ] = "centered"
-    path: Annotated[Literal["curved", "straight"], Doc("Straight ignores the motion after the frame.")] = "curved"
+    path: Annotated[
+        Literal["curved", "straight"], Doc("Curved follows both motions. Straight ignores the motion after the frame.")
+    ] = "curved"
     max_length: Annotated[
         float, Slider(0.0, 0.2, unit="height", minimum=0.0, maximum=1.0, doc="Longer paths are shortened to this.")
     ] = 0.06

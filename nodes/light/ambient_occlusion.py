@@ -21,12 +21,13 @@ from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_siz
 class AmbientOcclusion(Filter):
     """Darken corners, creases and contacts: how much of a uniform sky every surface sees within a radius.
 
-    From depth, better with normals. 1 is open. Multiply ambient or indirect light with it, never lamps or glow. Modes:
-    gtao, the cosine-weighted share of the sky between two horizons (Jimenez et al. 2016); hbao, the share of solid
-    angle between them (Bavoil et al. 2008); bitmask, gtao in 32 sectors, behind which light passes where objects are
-    thin (Therrien et al. 2023); hemisphere and crytek, how many points of the half or whole ball around a point are
-    behind what is seen (Mittring 2007; Chapman's hemisphere); alchemy, an obscurance that fades with distance (McGuire
-    et al. 2011). `out` is the same as a picture, tinted by light that bounces between walls of the albedo.
+    It is computed from depth, and is better if normals are linked. 1 is open. Multiply ambient or indirect light with
+    it, never lamps or glow. Modes: gtao, the cosine-weighted share of the sky between two horizons (Jimenez et al.
+    2016); hbao, the share of solid angle between them (Bavoil et al. 2008); bitmask, gtao in 32 sectors, so that light
+    passes behind thin objects (Therrien et al. 2023); hemisphere and crytek, how many points of the half or whole ball
+    around a point are behind visible surfaces (Mittring 2007; Chapman's hemisphere); alchemy, an obscurance that fades
+    with distance (McGuire et al. 2011). `out` is the same as a picture, and can be tinted by light that surfaces
+    reflect onto each other.
     """
 
     aliases = (

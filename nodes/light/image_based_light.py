@@ -61,14 +61,20 @@ class ImageBasedLight(Filter):
     roughness = Field(0.5, doc="0 is a mirror, 1 is matte. As in Blender, the square root of GGX's alpha.")
     metallic = Field(0.0, doc="1 where surfaces are metal: they only reflect, in their own color.")
     occlusion = Field(1.0, doc="The part of the light that reaches the surface: 1 is all of it.")
-    depth = Field(0.0, doc="Tells at edges which surface is in front. Without it, all are equally deep.")
+    depth = Field(
+        0.0, doc="Shows at edges which surface is in front. Without a link, all surfaces have the same depth."
+    )
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
     rotation: Annotated[
         float, Slider(-180.0, 180.0, unit="deg", doc="Rotates the environment counterclockwise, seen from above.")
     ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
     specular: Annotated[
-        Fraction, Doc("How much non-metals reflect: 0.5 is 4 percent head on, as for most materials.")
+        Fraction,
+        Doc(
+            "How much non-metals reflect: 0.5 is 4 percent where the view meets the surface at a "
+            "right angle, as for most materials."
+        ),
     ] = 0.5
 
     out = OutputSocket(Image(doc="All of the light, opaque on surfaces."))

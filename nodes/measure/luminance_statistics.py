@@ -7,8 +7,8 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Number, OutputSocket, Sl
 class LuminanceStatistics(Filter):
     """Measure how bright the picture is: average, logarithmic average, maximum and minimum of its luminance.
 
-    Exact over all pixels at any size; pixels that are not finite are left out. The results stay on the GPU and may
-    drive any value. The logarithmic average is exp(mean(ln(delta + L))) (Reinhard et al. 2002).
+    The measurement is exact over all pixels at any size; pixels that are not finite are left out. The results stay on
+    the GPU and can be linked to any value. The logarithmic average is exp(mean(ln(delta + L))) (Reinhard et al. 2002).
     """
 
     aliases = (

@@ -35,7 +35,7 @@ Operation = Literal[
 
 
 class Math(Pointwise):
-    """Arithmetic with Fields and Numbers. An undefined result (a division by 0, a root of a negative number) is 0."""
+    """Calculate with Fields and Numbers. An undefined result (a division by 0, a root of a negative number) is 0."""
 
     aliases = (
         "multiply", "add", "subtract", "divide", "expression", "calculate", "arithmetic", "calculations", "vector math",
@@ -47,15 +47,15 @@ class Math(Pointwise):
     operation: Annotated[
         Operation,
         Doc(
-            "Multiply add: a b + c. Power: a^b for a above 0. Greater, less: 1 where a is greater (less) than b. "
-            "Modulo takes the sign of b. Sine, cosine: of a in radians; arc tangent: of a / b, all around. Logarithm "
-            "and "
-            "exponential: base e. Clamp: a within b..c. Remap: 0 at a = b, 1 at a = c, on and on. Smoothstep: the same "
-            "with soft ends. Mix: a (1 - c) + b c."
+            "Multiply add: a b + c. Power: a^b for a above 0. Greater, less: 1 where a is greater"
+            " (less) than b. Modulo takes the sign of b. Sine, cosine: of a in radians. Arc "
+            "tangent: of a / b, in all four quadrants. Logarithm and exponential: base e. Clamp: "
+            "a within b..c. Remap: 0 at a = b, 1 at a = c, linear also beyond. Smoothstep: from 0"
+            " to 1 with soft ends. Mix: a (1 - c) + b c."
         ),
     ] = "add"
     b: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The second number.")] = 0.0
-    c: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The third number, where there is one.")] = 1.0
+    c: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The third number, for operations that have one.")] = 1.0
 
     out = OutputSocket(Field())
 

@@ -37,10 +37,10 @@ Mode = Literal[
 class Merge(Pointwise):
     """Combine the foreground `a` with the background `b`. The result has the size of `b`.
 
-    Over to plus are the operators of Porter and Duff (1984). The others blend colors where both cover and follow the
-    W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a)`. Within
-    0..1 they are the W3C's formulas; brighter light, which those do not define, continues them without a jump (the
-    comment beside each says how).
+    The modes from over to plus are the operators of Porter and Duff (1984). The others blend the colors where both
+    images cover, by the W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha
+    blend(b, a)`. Within 0..1 they are the formulas of the W3C, which define no brighter light; for that the formulas
+    are continued without a jump, as the comments in the shader say.
     """
 
     aliases = (
@@ -55,9 +55,8 @@ class Merge(Pointwise):
     mode: Annotated[
         Mode,
         Doc(
-            "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity "
-            "take "
-            "that of the foreground and the rest of the background."
+            "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, "
+            "color and luminosity come from the foreground, and the rest from the background."
         ),
     ] = "over"
     amount: Annotated[

@@ -14,7 +14,8 @@ class MixImages(Pointwise):
     a = Image()
     b = Image()
     factor: Annotated[
-        float, Slider(0.0, 1.0, unit="ratio", doc="0 is a, 1 is b. Beyond, the difference of both is exaggerated.")
+        float,
+        Slider(0.0, 1.0, unit="ratio", doc="0 is a, 1 is b. Values beyond exaggerate the difference between both."),
     ] = 0.5
 
     def identity(self) -> str | None:

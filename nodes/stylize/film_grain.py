@@ -4,12 +4,13 @@ from .._declare import Doc, Fraction, Image, Pointwise, ProxyNote, Slider, Trait
 
 
 class FilmGrain(Pointwise):
-    """The grain of photographic film: none in black and white, strongest in the tones between, new in every frame.
+    """Add the grain of photographic film: none in black and white, strongest in the midtones, new in every frame.
 
-    Of the silver grains that light L meets, a share u = L / (L + 0.18) is developed (a logistic characteristic curve);
-    each is or is not, so density varies as sqrt(u (1 - u)), as in the Boolean model of film (Newson, Delon and Galerne,
-    2017), for each layer of color. Density is logarithmic: light is multiplied by 2^grain and, so that its average
-    stays, divided by the average of that. Pixels that hold several clumps average them (Selwyn, 1935).
+    Of the silver grains that light L meets, the share u = L / (L + 0.18) is developed (a logistic characteristic
+    curve). Each grain is developed or not, so that the density varies as sqrt(u (1 - u)), as in the Boolean model of
+    film (Newson, Delon and Galerne, 2017), separately for each layer of color. Density is logarithmic: light is
+    multiplied by 2^grain. It is then divided by the average of that factor, so that the average light stays. Pixels
+    that hold several clumps average them (Selwyn, 1935).
     """
 
     aliases = (
@@ -28,11 +29,13 @@ class FilmGrain(Pointwise):
             unit="EV",
             minimum=0.0,
             maximum=8.0,
-            doc="The standard deviation of middle gray, in stops; clumps finer than pixels vary less.",
+            doc="The standard deviation of middle gray, in stops. Clumps that are smaller than a pixel vary less.",
         ),
     ] = 0.2
     size: Annotated[float, Slider(0.5, 8.0, unit="px", minimum=0.01, doc="Size of a clump of grains.")] = 1.5
-    color: Annotated[Fraction, Doc("0 is silver, the same for all colors; 1 is dye, each layer's grain its own.")] = 0.4
+    color: Annotated[
+        Fraction, Doc("0 is silver, the same grain for all colors; 1 is dye, another grain for each layer.")
+    ] = 0.4
     shadows: Annotated[
         float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of dark tones.")
     ] = 1.0
@@ -42,7 +45,7 @@ class FilmGrain(Pointwise):
     highlights: Annotated[
         float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of bright tones.")
     ] = 1.0
-    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another grain.")] = 0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number gives another grain.")] = 0
     animate: Annotated[bool, Doc("Another grain for each frame, as film has.")] = True
 
     def identity(self) -> str | None:

@@ -7,8 +7,8 @@ class Halftone(Pointwise):
     """Print the picture: dots or lines of ink on white paper, whose areas make the tones.
 
     Every screen covers exactly the part of the paper that the tone needs, in linear light, so that from a distance the
-    colors are correct up to white (Demichel's equation; full gray component replacement). The four inks have the
-    printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
+    colors up to white are correct (Demichel's equation; full gray component replacement). The four inks have the angles
+    that printers use: 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
     """
 
     aliases = (
@@ -21,7 +21,9 @@ class Halftone(Pointwise):
     image = Image()
     inks: Annotated[Literal["cmyk", "black"], Doc("Cyan, magenta, yellow and black ink, or black alone.")] = "cmyk"
     pattern: Annotated[Literal["dot", "line", "cross"], Doc("Round dots, parallel lines, or a grid of lines.")] = "dot"
-    size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one dot or line to the next.")] = 6.0
+    size: Annotated[
+        float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="The distance from one dot or line to the next.")
+    ] = 6.0
     angle: Annotated[
         float, Slider(-90.0, 90.0, unit="deg", doc="Rotates all screens, in addition to each ink's own angle.")
     ] = 0.0

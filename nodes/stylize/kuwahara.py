@@ -5,12 +5,12 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
 
 
 class Kuwahara(Filter):
-    """Paint over fine detail and keep edges: every pixel becomes the mean of the calmest part around it.
+    """Remove fine detail like a painter, but keep edges: every pixel becomes the mean of the most even area around it.
 
     Classic: the quadrant with the least variance (Kuwahara et al. 1976). Generalized: eight soft sectors of a disc,
-    each counting less the more it varies (Papari et al. 2007). Anisotropic: the disc is drawn out along the strokes of
-    the picture (Kyprianidis et al. 2009), with polynomial weights (Kyprianidis et al. 2010). Works on tones as a
-    display shows them (sRGB), straight and clipped nowhere.
+    which count less the more they vary (Papari et al. 2007). Anisotropic: the disc is stretched along the strokes of
+    the picture (Kyprianidis et al. 2009), with polynomial weights (Kyprianidis et al. 2010). Works on straight tones as
+    a display shows them (sRGB), which are not limited to 0..1.
     """
 
     aliases = (
@@ -37,7 +37,7 @@ class Kuwahara(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=12.0,
-            doc="How strongly the most uniform sectors dominate; without effect on classic.",
+            doc="How strongly the most even sectors dominate; classic does not use it.",
         ),
     ] = 8.0
     smoothing: Annotated[

@@ -7,8 +7,9 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, ProxyNote, Slider,
 class Oil(Filter):
     """Paint in dabs of oil: every pixel gets the color of the most frequent brightness around it.
 
-    Within a disc, pixels are sorted into steps of tone (the luminance as a display shows it, sRGB, up to 1); the mean
-    color of the fullest step is shown, of equally full ones that of the darkest (Holzmann 1988, "Beyond Photography").
+    The pixels of a disc are sorted into steps of tone (the luminance as a display shows it, sRGB, up to 1). The result
+    is the mean color of the step with the most pixels; if several have as many, of the darkest (Holzmann 1988, "Beyond
+    Photography").
     """
 
     aliases = ("oil paint", "painting", "brush strokes", "painterly", "paint", "oil painting", "impressionist")

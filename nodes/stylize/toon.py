@@ -6,9 +6,9 @@ from .._declare import Image, Pointwise, Slider
 class Toon(Pointwise):
     """Paint in few flat tones, as in cartoons: brightness in steps, hue and saturation unchanged.
 
-    Soft quantization (Winnemöller et al. 2006) of the tone, which is the luminance as a display shows it (sRGB):
-    between two steps it follows tanh, made continuous, so that without sharpness nothing changes. Black and white are
-    steps; brighter light has steps of its own. Works on the color without its alpha.
+    Soft quantization (Winnemöller et al. 2006) of the tone, which is the luminance as a display shows it (sRGB).
+    Between two steps the tone follows tanh, scaled so that it has no jumps, and so that a sharpness of 0 changes
+    nothing. Black and white are steps; brighter light has more steps. Works on the color without its alpha.
     """
 
     aliases = ("cartoon", "cel shading", "cel shader", "anime", "comic", "toon shader", "cell shading")

@@ -6,9 +6,9 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider
 class TvSnow(Pointwise):
     """Add snow to the picture, as on a television set without a signal.
 
-    Every scan line is white noise through the three taps 1/4, 1/2, 1/4, for a channel's band is limited along lines and
-    never across; hash: pcg3d (Jarzynski and Olano, 2020). Snow comes with the signal, so it is mixed with sRGB codes
-    and not with light. Works on the color without its alpha; alpha stays.
+    Every scan line is white noise, filtered by 1/4, 1/2, 1/4 along the line, because the band of a television channel
+    is limited along lines and not across them. Hash: pcg3d (Jarzynski and Olano, 2020). Snow is part of the signal, so
+    that it is mixed with sRGB codes and not with light. Works on the color without its alpha; alpha stays.
     """
 
     aliases = (
@@ -32,11 +32,12 @@ class TvSnow(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=64.0,
-            doc="1 keeps the noise's own range; above, snow is harsher and what passes black and white is cut.",
+            doc="1 keeps the range of the noise. Above 1 snow is harsher, and values beyond black and"
+            " white are clipped.",
         ),
     ] = 1.6
     lines: Annotated[Fraction, Doc("How much the brightness of whole lines varies.")] = 0.3
-    color: Annotated[Fraction, Doc("0 is gray, as sets with a color killer show it; 1 is as colorful as can be.")] = 0.0
+    color: Annotated[Fraction, Doc("0 is gray, as on sets with a color killer; 1 has the strongest colors.")] = 0.0
     interlaced: Annotated[
         bool, Doc("Only every second line is new in a frame, even and odd ones in turn: for frames that are fields.")
     ] = False

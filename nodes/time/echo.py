@@ -5,11 +5,11 @@ from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider, Vector
 
 
 class Echo(Filter):
-    """Repeat moving objects, ever fainter: earlier frames beside this one, as in a multiple exposure.
+    """Repeat moving objects, each time fainter: earlier frames beside this one, as in a multiple exposure.
 
-    Echo k is the frame `k spacing` frames before, times `decay^k`. Behind and in front lay them over each other by
-    alpha (Porter and Duff 1984), so they need a picture that is not opaque all over; the others also work with light on
-    black. Average keeps the exposure: all are added and divided by the sum of their weights.
+    Echo k is the frame `k spacing` frames earlier, times `decay^k`. Behind and in front lay the frames over each other
+    by alpha (Porter and Duff 1984), so that they need a picture with transparent parts; the others also work with light
+    on black. Average keeps the exposure: all frames are added and divided by the sum of their weights.
     """
 
     aliases = (
@@ -28,7 +28,10 @@ class Echo(Filter):
     decay: Annotated[Fraction, Doc("How strong each echo is compared to the one before.")] = 0.6
     mode: Annotated[
         Literal["brightest", "add", "screen", "average", "behind", "in front"],
-        Doc("How echoes join the picture. Brightest compares channel by channel, screen is gentle up to white."),
+        Doc(
+            "How echoes are combined with the picture. Brightest compares channel by channel; "
+            "screen adds but never passes white."
+        ),
     ] = "brightest"
 
     def identity(self) -> str | None:

@@ -5,12 +5,12 @@ from .._declare import Doc, Draw, Drawn, Image, Number, OutputSocket, ProxyNote,
 
 
 class EyeAdaptation(Temporal):
-    """Adapt to light and dark as eyes do: blinded after a tunnel, blind in the dark, until they adapt.
+    """Adapt to light and dark as eyes do: they need time after a tunnel, and longer in the dark.
 
-    The adapted luminance follows that of the picture (its logarithmic average, Reinhard et al. 2002) by `A += (L - A)
-    (1 - exp(-dt / T))`, the same at any frame rate, and becomes the key. Natural: T goes from 0.1 s of cones to 0.4 s
-    of rods, by `s = 0.04 / (0.04 + L)` with L in cd/m2, and the key is `1.03 - 2 / (2 + log10(L + 1))` (Krawczyk et al.
-    2005). At the first frame, the eye is adapted to it.
+    The adapted luminance A follows the luminance L of the picture (its logarithmic average, Reinhard et al. 2002) by `A
+    += (L - A) (1 - exp(-dt / T))`, which is the same at any frame rate. The picture is then exposed so that A becomes
+    the key. Natural: T goes from 0.1 s of cones to 0.4 s of rods, by `s = 0.04 / (0.04 + L)` with L in cd/m2, and the
+    key is `1.03 - 2 / (2 + log10(L + 1))` (Krawczyk et al. 2005). In the first frame, the eye is already adapted.
     """
 
     aliases = ("auto exposure", "adaptation", "auto gain", "hdr adaptation", "eye adaption")
@@ -31,8 +31,8 @@ class EyeAdaptation(Temporal):
     scale: Annotated[
         Literal["stops", "light"],
         Doc(
-            "What changes evenly: stops, as perceived, or light itself, as published, which adapts "
-            "faster to brightness."
+            "What changes evenly. Stops are as the eye perceives. Light is as published, and "
+            "adapts faster to bright scenes."
         ),
     ] = "stops"
     key: Annotated[
@@ -43,15 +43,11 @@ class EyeAdaptation(Temporal):
     ] = 100.0
     minimum: Annotated[
         float,
-        Slider(
-            -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
-        ),
+        Slider(-16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The smallest exposure, before compensation."),
     ] = -8.0
     maximum: Annotated[
         float,
-        Slider(
-            0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
-        ),
+        Slider(0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The largest exposure, before compensation."),
     ] = 8.0
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than adapted.")] = 0.0
 

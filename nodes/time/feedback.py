@@ -10,10 +10,10 @@ _SMALLEST = 1e-3
 class Feedback(Temporal):
     """Feed the picture back into itself: tunnels, spirals and trails that drift, rotate and change color.
 
-    The previous result is scaled and rotated about the pivot, moved, its hue rotated, faded, and combined with the
-    picture. It is read by Catmull-Rom interpolation (Mitchell and Netravali 1988), limited to the four pixels around,
-    so that it stays sharp and never rings. Nothing gets brighter than the ceiling; the history is kept in 32 bits. The
-    first frame is its own past.
+    The previous result is scaled and rotated around the pivot and moved. Its hue is rotated, it fades, and it is
+    combined with the picture. It is read by Catmull-Rom interpolation (Mitchell and Netravali 1988), limited to the
+    range of the four pixels around, so that it stays sharp and never rings. No light exceeds the ceiling. The history
+    is kept in 32 bits. The first frame is its own previous result.
     """
 
     aliases = (
@@ -23,20 +23,26 @@ class Feedback(Temporal):
 
     image = Image()
     position: Annotated[
-        tuple[float, float], Slider(-50.0, 50.0, unit="px", doc="How far the past moves each frame, right and down.")
+        tuple[float, float],
+        Slider(-50.0, 50.0, unit="px", doc="How far the previous result moves in each frame, to the right and down."),
     ] = (0.0, 0.0)
-    rotation: Annotated[float, Slider(-15.0, 15.0, unit="deg", doc="How far it turns each frame, clockwise.")] = 2.0
+    rotation: Annotated[float, Slider(-15.0, 15.0, unit="deg", doc="How far it rotates in each frame, clockwise.")] = (
+        2.0
+    )
     scale: Annotated[
-        float, Slider(0.8, 1.25, unit="ratio", minimum=_SMALLEST, maximum=1000.0, doc="How much it grows each frame.")
+        float,
+        Slider(
+            0.8, 1.25, unit="ratio", minimum=_SMALLEST, maximum=1000.0, doc="Its scale in each frame; above 1 it grows."
+        ),
     ] = 1.06
-    pivot: Annotated[Position, Doc("The point about which the past turns and grows.")] = (0.5, 0.5)
-    hue: Annotated[float, Slider(-60.0, 60.0, unit="deg", doc="How far colors go around the wheel each frame.")] = 10.0
+    pivot: Annotated[Position, Doc("The point around which it rotates and grows.")] = (0.5, 0.5)
+    hue: Annotated[float, Slider(-60.0, 60.0, unit="deg", doc="How far hues rotate in each frame.")] = 10.0
     decay: Annotated[Fraction, Doc("The part that is left after one frame.")] = 0.9
     mode: Annotated[
         Literal["brightest", "add", "screen", "over", "mix"],
         Doc(
-            "How the picture is combined with the past. Over covers the past by alpha; mix keeps the "
-            "exposure: 1 - decay of the picture, and decay of the past."
+            "How the picture is combined with the previous result. Over covers it by alpha. Mix "
+            "keeps the exposure: 1 - decay of the picture, and decay of the previous result."
         ),
     ] = "brightest"
     ceiling: Annotated[

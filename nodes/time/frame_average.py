@@ -11,12 +11,12 @@ _SIGMAS = 3.0
 
 
 class FrameAverage(Filter):
-    """Average a window of frames in linear light: noise settles, what moves is smeared, as by a long shutter.
+    """Average several frames in linear light: less noise, and motion is blurred as by a long shutter.
 
-    Frames are weighted by how far they are from this one, as part of the window: all alike, falling evenly, by a
-    Gaussian that is cut off at 3 sigma, or by an exponential that has fallen by e^3 there. Half of each end counts in a
-    centered window of an even number of frames. A shot rendered at N times its frame rate, averaged over N frames and
-    played N times as fast, has the motion blur of a whole frame.
+    The weight of a frame depends on its distance from this one, as a part of the window: equal for all, falling
+    linearly, a Gaussian that ends at 3 sigma, or an exponential that has fallen by e^3 at the end of the window. If a
+    centered window has an even number of frames, the frames at its two ends count half. A shot that is rendered at N
+    times its frame rate, averaged over N frames and played N times as fast, has the motion blur of a whole frame.
     """
 
     aliases = (
@@ -27,8 +27,11 @@ class FrameAverage(Filter):
 
     image = Image()
     frames: Annotated[int, Slider(1, 16, unit="count", minimum=1, maximum=128, doc="How many frames.")] = 5
-    weights: Annotated[Shape, Doc("How much the frames count.")] = "box"
-    window: Annotated[Literal["centered", "trailing"], Doc("As many before as after, or none after.")] = "centered"
+    weights: Annotated[Shape, Doc("How the weights of the frames fall with their distance.")] = "box"
+    window: Annotated[
+        Literal["centered", "trailing"],
+        Doc("Centered: as many frames before this one as after it. Otherwise none after it."),
+    ] = "centered"
 
     def identity(self) -> str | None:
         return "image" if self.frames == 1 else None

@@ -5,11 +5,11 @@ from .._declare import Doc, Draw, Drawn, Fraction, Image, Slider, Temporal, Vect
 
 
 class FrameBlend(Temporal):
-    """Blend every frame with all earlier ones, ever fainter: afterimages, ghosts, slow film, calm noise.
+    """Blend every frame with all earlier ones, which fade: afterimages, ghosts, slow film, less noise.
 
     `y = (1 - a) x + a y'`, where y' is the result of the previous frame. By time, `a = exp(-dt / time)`: the picture is
-    the same at any frame rate. The history is kept in 32 bits: in 16, a change below half a step of a half float is
-    lost, and trails never fade out.
+    the same at any frame rate. The history is kept in 32 bits: in 16 bits, changes of less than half a step would be
+    lost, and trails would never fade out.
     """
 
     aliases = (
@@ -18,7 +18,10 @@ class FrameBlend(Temporal):
     )  # fmt: skip
 
     image = Image()
-    mode: Annotated[Literal["time", "persistence"], Doc("How the decay of the past is given.")] = "time"
+    mode: Annotated[
+        Literal["time", "persistence"],
+        Doc("How the decay of earlier frames is given: by a time, or as the part that is left after one frame."),
+    ] = "time"
     time: Annotated[
         float,
         Slider(

@@ -5,9 +5,9 @@ from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, 
 
 
 class Freeze(Filter):
-    """Hold one frame, or each of every n frames: animation on twos, the stutter of a slow camera.
+    """Hold one frame, or every nth frame: animation on twos, the stutter of a slow camera.
 
-    Everything upstream that changes over time stands still.
+    All that is linked upstream is held, whatever changes it over time.
     """
 
     aliases = (
@@ -19,7 +19,7 @@ class Freeze(Filter):
     image = Image((0.0, 0.0, 0.0, 0.0))
     field = Field(0.0)
     vector = Vector(0.0, width=4)
-    frame: Annotated[int, Slider(1, 240, unit="count", doc="The frame that is held, or one of those that are.")] = 1
+    frame: Annotated[int, Slider(1, 240, unit="count", doc="The frame that is held, or one of the held frames.")] = 1
     every: Annotated[
         int,
         Slider(
@@ -27,7 +27,7 @@ class Freeze(Filter):
             12,
             unit="count",
             minimum=0,
-            doc="0 holds one frame forever; otherwise each held frame is shown for so many frames: 2 is on twos.",
+            doc="0 holds one frame forever. Otherwise each held frame is shown for this many frames: 2 is on twos.",
         ),
     ] = 0
 

@@ -19,7 +19,7 @@ class LightTrails(Temporal):
     image = Image()
     fade: Annotated[
         Literal["time", "never"],
-        Doc("Trails fade with time, or stay forever, as stars and the lamps of cars on film."),
+        Doc("Trails fade with time or stay forever, as the trails of stars and cars in a long exposure."),
     ] = "time"
     time: Annotated[
         float,

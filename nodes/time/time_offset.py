@@ -5,9 +5,9 @@ from .._declare import Draw, Drawn, Field, Filter, Image, OutputSocket, Slider, 
 
 
 class TimeOffset(Filter):
-    """Show another frame: later ones above zero, earlier ones below.
+    """Show another frame: a later one above zero, an earlier one below.
 
-    Everything upstream is computed at that time: sequences, keys, expressions, noise, motion in a scene.
+    All that is linked upstream is computed at that frame: sequences, keys, expressions, noise, motion in a scene.
     """
 
     aliases = (

@@ -8,8 +8,8 @@ from .._declare import Doc, Draw, Drawn, Field, Filter, Image, OutputSocket, Sli
 class TimeSpeed(Filter):
     """Play faster, slower or backward: by a speed, or by keys that say which frame is shown when.
 
-    By speed, the frame shown is `pivot + speed (frame - pivot)`. A speed that changes would have to be summed up over
-    all frames before; key `source` instead, as in a time remap: the steeper its curve, the faster.
+    By speed, the frame that is shown is `pivot + speed (frame - pivot)`. For a speed that changes, set keys on `source`
+    instead, as in a time remap: the steeper the curve, the faster.
     """
 
     aliases = (
@@ -34,7 +34,7 @@ class TimeSpeed(Filter):
             doc="By speed: 2 is twice as fast, 0.5 slow motion, below 0 backward.",
         ),
     ] = 0.5
-    pivot: Annotated[int, Slider(1, 240, unit="count", doc="By speed: the frame that stays where it is.")] = 1
+    pivot: Annotated[int, Slider(1, 240, unit="count", doc="By speed: the frame that does not move.")] = 1
     source: Annotated[
         float,
         Slider(

@@ -29,10 +29,10 @@ _LONGEST = 8192
 class AutoExposure(Filter):
     """Meter the picture and expose it, as automatic cameras do: the metered light becomes middle gray.
 
-    Histogram meters the geometric mean of the luminances between two percentiles, from 128 bins of a quarter stop
-    between 2^-16 and 2^16 (a pixel counts for its two nearest bins by distance, so that their mean is exact). Average
-    and log average (Reinhard et al. 2002) are of all pixels; maximum makes the brightest pixel 1. Pixels count by
-    their alpha; NaN does not count. `exposure` is in stops, `average` the luminance metered.
+    Histogram meters the geometric mean of the luminances between two percentiles. It has 128 bins of a quarter stop,
+    from 2^-16 to 2^16; a pixel counts for its two nearest bins by distance, so that their mean is exact. Average and
+    log average (Reinhard et al. 2002) use all pixels. Maximum makes the brightest pixel 1. Pixels count by their alpha;
+    NaN does not count. `exposure` is in stops, `average` is the metered luminance.
     """
 
     aliases = (
@@ -45,15 +45,19 @@ class AutoExposure(Filter):
     mask = Field(1.0, doc="How much each pixel counts.")
     metering: Annotated[
         Literal["histogram", "log average", "average", "maximum"],
-        Doc(
-            "Histogram leaves extremes out. Log average follows dark areas, average bright ones; maximum clips nothing."
-        ),
+        Doc("Histogram ignores extremes. Log average follows dark areas, average bright ones. Maximum clips nothing."),
     ] = "histogram"
     low: Annotated[Fraction, Doc("Histogram: this share of the pixels is too dark to count.")] = 0.1
-    high: Annotated[Fraction, Doc("Histogram: all above this share is too bright to count.")] = 0.9
+    high: Annotated[Fraction, Doc("Histogram: pixels above this share are too bright to count.")] = 0.9
     key: Annotated[
         float,
-        Slider(0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."),
+        Slider(
+            0.045,
+            0.72,
+            unit="scene",
+            minimum=1e-3,
+            doc="The luminance that the average becomes: low for night, high for snow.",
+        ),
     ] = 0.18
     auto_key: Annotated[
         bool,
@@ -66,21 +70,17 @@ class AutoExposure(Filter):
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than metered.")] = 0.0
     minimum: Annotated[
         float,
-        Slider(
-            -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
-        ),
+        Slider(-16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The smallest exposure, before compensation."),
     ] = -8.0
     maximum: Annotated[
         float,
-        Slider(
-            0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
-        ),
+        Slider(0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The largest exposure, before compensation."),
     ] = 8.0
     center_weight: Annotated[Fraction, Doc("How much more the center counts: 1 is a spot meter.")] = 0.0
-    center: Annotated[Position, Doc("What the camera is pointed at.")] = (0.5, 0.5)
+    center: Annotated[Position, Doc("The point at which the camera meters.")] = (0.5, 0.5)
     radius: Annotated[
         float,
-        Slider(0.02, 0.5, unit="height", minimum=1e-3, doc="Standard deviation of what counts around the center."),
+        Slider(0.02, 0.5, unit="height", minimum=1e-3, doc="Standard deviation of the weights around the center."),
     ] = 0.2
 
     out = OutputSocket()

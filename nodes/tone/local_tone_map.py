@@ -11,7 +11,7 @@ _SIGMA = 0.25
 
 
 class LocalToneMap(Filter):
-    """Compress scene light locally, as dodging and burning do for a print: detail stays in lights and shadows.
+    """Compress scene light locally, as dodging and burning do for a print, so that lights and shadows keep detail.
 
     Every pixel is compared with the largest area around it that is uniform in brightness (Reinhard et al. 2002, with
     the paper's eight scales), `Ld = L (1 + L / white^2) / (1 + V)`. The result is display-linear light, 0..1: encode it
@@ -32,7 +32,13 @@ class LocalToneMap(Filter):
     maximum = Number(0.0, doc="The luminance that becomes white; without a link it is measured.")
     key: Annotated[
         float,
-        Slider(0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."),
+        Slider(
+            0.045,
+            0.72,
+            unit="scene",
+            minimum=1e-3,
+            doc="The luminance that the average becomes: low for night, high for snow.",
+        ),
     ] = 0.18
     auto_key: Annotated[
         bool,
@@ -61,7 +67,8 @@ class LocalToneMap(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=30.0,
-            doc="Phi: higher stops at weaker edges, which brings out more detail and in the end dark seams.",
+            doc="Phi: higher values stop at weaker edges. That brings out more detail, and in the end"
+            " makes dark seams.",
         ),
     ] = 8.0
     threshold: Annotated[
@@ -72,7 +79,7 @@ class LocalToneMap(Filter):
             unit="ratio",
             minimum=1e-4,
             maximum=10.0,
-            doc="How uneven an area may be. Low stops at weak edges.",
+            doc="How uneven an area may be. Low values stop at weak edges.",
         ),
     ] = 0.05
     saturation: Annotated[
@@ -86,7 +93,7 @@ class LocalToneMap(Filter):
             doc="Power of the channel ratios; 0 is gray, 1 keeps them.",
         ),
     ] = 1.0
-    clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps what strong colors have beyond.")] = True
+    clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps the light of strong colors beyond that.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
         scene = draw.point(

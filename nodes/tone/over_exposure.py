@@ -4,12 +4,12 @@ from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
 
 
 class OverExposure(Pointwise):
-    """Overexpose: the picture brightens, highlights roll off into white and lose their color.
+    """Overexpose: the picture gets brighter, and highlights turn smoothly into white.
 
-    Light is doubled for every stop. The brightest channel p of a pixel passes a shoulder that starts at a share of
-    white, `start + (white - start) (1 - exp(-(p - start) / (white - start)))`, the others keep their ratio to it. What
-    the shoulder takes away turns the color to white: by `x / (1 + x)` for `bleach` times that light over white.
-    Works on the color without its alpha.
+    Light is doubled for every stop. The brightest channel p of a pixel is compressed from a share of white on, by
+    `start + (white - start) (1 - exp(-(p - start) / (white - start)))`; the others keep their ratio to it. The light
+    that is lost by that turns the color to white: by `x / (1 + x)`, where x is `bleach` times the lost light over
+    white. Works on the color without its alpha.
     """
 
     aliases = ("blown highlights", "burn out", "highlight clipping", "blow out", "highlight rolloff")
@@ -25,7 +25,7 @@ class OverExposure(Pointwise):
             unit="scene",
             minimum=1e-3,
             maximum=60000.0,
-            doc="The most light that film or sensor hold: 1 for a plain sRGB display, 16 for the view AgX.",
+            doc="The most light that film or sensor can hold: 1 for a plain sRGB display, 16 for the view AgX.",
         ),
     ] = 16.0
     shoulder: Annotated[

@@ -28,12 +28,15 @@ class PhotoreceptorToneMap(Filter):
             unit="ratio",
             minimum=0.0,
             maximum=1.0,
-            doc="The exponent m. 0 finds it: 0.3 for a mostly bright scene to 1 for one with a few bright spots.",
+            doc="The exponent m. 0 chooses it automatically: from 0.3 for a mostly bright scene to 1 "
+            "for one with a few bright spots.",
         ),
     ] = 0.0
-    light_adaptation: Annotated[Fraction, Doc("Adapt to: 0 the average of the scene, 1 the pixel itself.")] = 0.5
+    light_adaptation: Annotated[
+        Fraction, Doc("What the eye adapts to: 0 is the average of the scene, 1 the pixel itself.")
+    ] = 0.5
     color_adaptation: Annotated[
-        Fraction, Doc("Adapt red, green and blue: 0 together, 1 each on its own, which takes a color cast away.")
+        Fraction, Doc("How red, green and blue adapt: 0 together, 1 each on its own, which removes a color cast.")
     ] = 0.0
     stretch: Annotated[bool, Doc("Stretch the result so that its darkest channel is 0 and its brightest 1.")] = True
 

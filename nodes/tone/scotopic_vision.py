@@ -11,12 +11,12 @@ _FINEST, _STEP = 0.5, sqrt(2.0)
 
 
 class ScotopicVision(Filter):
-    """See as eyes do at night: dark places lose color and sharpness, reds darken, the rest turns bluish.
+    """See as eyes do at night: dark places lose color and sharpness, reds get darker, and the rest turns bluish.
 
-    Rods replace cones by `0.04 / (0.04 + Y)` for a luminance of Y cd/m2; they see `V = Y (1.33 (1 + (Y + Z) / X) -
-    1.68)` of CIE XYZ, here scaled so that white keeps its luminance (Ward Larson et al. 1997, Krawczyk et al. 2005).
-    Sharpness follows the finest stripes that are visible at Y, `17.25 atan(1.4 log10 Y + 0.35) + 25.72` cycles per
-    degree, as far as it is below that of daylight. The picture is not darkened: take its exposure down as you like.
+    Rods replace cones by `0.04 / (0.04 + Y)` for a luminance of Y cd/m2. They see `V = Y (1.33 (1 + (Y + Z) / X) -
+    1.68)` of CIE XYZ, which is scaled here so that white keeps its luminance (Ward Larson et al. 1997, Krawczyk et al.
+    2005). Sharpness follows the finest stripes that are visible at Y, `17.25 atan(1.4 log10 Y + 0.35) + 25.72` cycles
+    per degree, where that is less than in daylight. The picture does not get darker: lower its exposure yourself.
     """
 
     aliases = ("night vision", "day for night", "moonlight", "purkinje", "night", "rod vision", "moon light")

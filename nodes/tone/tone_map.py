@@ -44,10 +44,12 @@ class ToneMap(Pointwise):
             "lottes",
         ],
         Doc(
-            "Reinhard never reaches white; extended does at the maximum; unsquared, its form without the square of the "
-            "white, goes beyond. Exponential answers as film. Logarithmic and Drago hold very high ranges. ACES is "
-            "contrasty, and more so in Narkowicz's short fit. AgX keeps strong lights natural, Neutral keeps product "
-            "colors, Hable is filmic. Uchimura keeps midtones as they are, Lottes is filmic with a white of its own."
+            "Reinhard never reaches white. Extended reaches it at the maximum. Unsquared, the "
+            "form without the square of the white, goes beyond white. Exponential responds like "
+            "film. Logarithmic and Drago hold very high ranges. ACES has much contrast, "
+            "Narkowicz's short fit of it even more. AgX keeps strong lights natural, Neutral "
+            "keeps product colors, Hable is filmic. Uchimura keeps midtones as they are. Lottes "
+            "is filmic with a white of its own."
         ),
     ] = "agx"
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Brightens the picture before it is mapped.")] = 0.0
@@ -58,7 +60,7 @@ class ToneMap(Pointwise):
             0.72,
             unit="scene",
             minimum=0.0,
-            doc="Reinhard, exponential: what the average becomes, low for night, high for snow.",
+            doc="Reinhard, exponential: the luminance that the average becomes, low for night, high for snow.",
         ),
     ] = 0.18
     auto_key: Annotated[
@@ -127,4 +129,4 @@ class ToneMap(Pointwise):
             doc="Reinhard, exponential, logarithmic, Drago: power of the channel ratios; 0 is gray, 1 keeps them.",
         ),
     ] = 1.0
-    clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps what strong colors have beyond.")] = True
+    clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps the light of strong colors beyond that.")] = True
