@@ -11,7 +11,7 @@ _SEAM = 2.0
 class GeometryEdges(Filter):
     """Find where surfaces end, fold and meet, as lines of any width, from depth, normals and ids.
 
-    It uses those of the three that are linked. Depth: the second difference of 1 / depth along a row or column, relative
+    It uses those that are linked. Depth: the second difference of 1 / depth along a row or column, relative
     to the nearest of three pixels. 1 / depth is linear on every plane, so that flat surfaces at any angle have no edge;
     between two surfaces it is `1 - near / far`. Normals: the angle between neighbors. Ids: any difference. Lines run
     between pixels.
