@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from halation.presets import paths
 from oiio_pictures import write_picture
 
 EXTRAS = ("scipy", "cv2", "av", "hypothesis", "jsonschema")
@@ -34,6 +35,9 @@ for extra in json.loads(sys.argv[2]):
     except ModuleNotFoundError:
         continue
     sys.exit(f"{extra} can be imported")
+import halation.presets
+paths = halation.presets.paths()
+halation.presets.paths = lambda: paths[::20]  # those of the demo; all are rendered smaller by a command each
 from halation.cli.program import run
 for words in json.loads(sys.stdin.read()):
     code = run(words)
@@ -123,6 +127,7 @@ def test_the_demo_and_every_command(tmp_path):
     (tmp_path / "s.suite.toml").write_text('[cases.blur]\ngraph = "g.json"\n')
     commands = [
         ["demo", "-o", "demo"],
+        *(["render", str(path), "-o", f"{path.stem}.png", "--scale", "0.25"] for path in paths()),
         ["info", "a.exr"],
         ["info", "a.exr", "--json"],
         ["check", "g.json"],

@@ -14,7 +14,7 @@ import cv2
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation import nodes, presets
+from halation import document, nodes, presets
 from halation.cli import gallery, specimen
 from halation.graph import Graph, problems
 from halation.media.comparison.contact_sheet import write_sheet
@@ -105,10 +105,25 @@ def renewed(renderer: Renderer) -> None:
         write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names), sandbox=UNRESTRICTED)
 
 
-def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> None:
-    sheet = gallery.make_preset_sheet(renderer)
-    assert described(IMAGES / "presets.jpg") == [*sheet.names]
-    compare("presets", written(sheet, tmp_path), np.ones(sheet.light.shape[:2]))
+def test_the_sheet_of_presets_is_current(
+    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every ninth picture is made again and compared, the others stay black: thumbnails hold how each preset looks."""
+    names = described(IMAGES / "presets.jpg")
+    assert names == [path.stem for path in presets.paths()]
+    graphs, frames_of = [document.load(path, sandbox=UNRESTRICTED) for path in presets.paths()], gallery.render_display_frames
+
+    def blank(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
+        return dict.fromkeys(frames, np.zeros((270, 480, 3), np.float32))
+
+    def some(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
+        return (frames_of if graph in graphs[::EVERY] else blank)(graph, engine, frames)
+
+    sheets: list[gallery.Sheet] = []
+    for maker in (blank, some):
+        monkeypatch.setattr(gallery, "render_display_frames", maker)
+        sheets.append(gallery.make_preset_sheet(renderer))
+    compare("presets", written(sheets[1], tmp_path), (sheets[0].light != sheets[1].light).any(2))
     assert (IMAGES / "presets.jpg").stat().st_size < 900_000
 
 

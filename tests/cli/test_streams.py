@@ -38,11 +38,12 @@ PRINTING = (
 )
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    write_picture(tmp_path / "a.exr", np.full((8, 8, 4), 0.5, np.float32))
-    (tmp_path / "g.json").write_text(json.dumps(GRAPH))
-    return tmp_path
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("streams")
+    write_picture(folder / "a.exr", np.full((8, 8, 4), 0.5, np.float32))
+    (folder / "g.json").write_text(json.dumps(GRAPH))
+    return folder
 
 
 def run(folder: Path, words: tuple[str, ...], **options: object) -> subprocess.CompletedProcess[str]:
@@ -56,7 +57,7 @@ def close(*descriptors: int) -> Callable[[], None]:
     return lambda: [os.close(descriptor) for descriptor in descriptors] and None
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def written(folder: Path) -> Path:
     assert run(folder, ("render", "g.json", "-o", "b.exr")).returncode == 0
     return folder

@@ -60,13 +60,22 @@ def test_its_numbers_are_tested_as_contributing_says(tree: Path) -> None:
     assert style.returncode == 0, style.stdout
 
 
-def test_commands_of_the_table_select_tests(tree: Path) -> None:
-    rows = re.findall(r"^\| `\./dev test(.*?)` \|", CONTRIBUTING, re.M)
+def test_commands_of_the_table_select_tests(tree: Path, pytestconfig: pytest.Config) -> None:
+    """Every row names folders of tests and known options; the one that selects by a word is tried."""
+    rows = [row.split() for row in re.findall(r"^\| `\./dev test(.*?)` \|", CONTRIBUTING, re.M)]
     assert len(rows) >= 4
     for row in rows:
-        result = run_in_tree(tree, "-m", "pytest", "--collect-only", "-qq", "-p", "no:cacheprovider", *row.split())
-        counts = [int(count) for count in re.findall(r": (\d+)$", result.stdout, re.M)]
-        assert result.returncode == 0 and sum(counts) > 10, (row, result.stdout)
+        selection, *word = " ".join(row).split("-k ")
+        for name in selection.split():
+            if name.startswith("--"):
+                assert pytestconfig.getoption(name.removeprefix("--")) is not None
+            else:
+                assert any((tree / name).rglob("test_*.py")), name
+        if word:
+            result = run_in_tree(tree, "-m", "pytest", "--collect-only", "-qq", "-p", "no:cacheprovider", *row)
+            counts = [int(count) for count in re.findall(r": (\d+)$", result.stdout, re.M)]
+            assert result.returncode == 0 and sum(counts) > 10, (row, result.stdout)
+    assert any("-k" in row for row in rows)
 
 
 def test_nothing_else_notices_it(tree: Path) -> None:

@@ -7,7 +7,7 @@ After a change that is meant to be seen, look at the pictures (`./dev demo`), th
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -111,20 +111,45 @@ def size_of(graph: Graph) -> tuple[int, int]:
     return graph.settings.size or (480, 270)
 
 
+def small_scale(name: str) -> float:
+    """The scale at which a preset is rendered often: smaller where frames before it or a scene take long."""
+    if FINE & used(name, "id"):
+        return 1.0
+    return 0.25 if loaded(name).settings.size or name in TIME else 0.5
+
+
 def shrunk(light: Array, width: int, height: int) -> Array:
     return cv2.resize(light, (width, height), interpolation=cv2.INTER_AREA)
 
 
+class PictureTable(dict[str, Array]):
+    """A picture for each preset, made when it is asked for: a worker renders the presets of its own tests."""
+
+    def __init__(self, make: Callable[[str], Array]) -> None:
+        super().__init__()
+        self._make = make
+
+    def __missing__(self, name: str) -> Array:
+        self[name] = self._make(name)
+        return self[name]
+
+
 @pytest.fixture(scope="module")
-def raw(renderer: Renderer) -> dict[str, Array]:
+def raw(renderer: Renderer) -> PictureTable:
     """What all presets make at full size, scene-linear."""
-    return {name: rendered(renderer, loaded(name)) for name in PRESETS}
+    return PictureTable(lambda name: rendered(renderer, loaded(name)))
 
 
 @pytest.fixture(scope="module")
-def full(raw: dict[str, Array]) -> dict[str, Array]:
+def full(raw: PictureTable) -> PictureTable:
     """The same as light of the display."""
-    return {name: show_light(made, loaded(name).outputs["image"].view) for name, made in raw.items()}
+    return PictureTable(lambda name: show_light(raw[name], loaded(name).outputs["image"].view))
+
+
+@pytest.fixture(scope="module")
+def half(renderer: Renderer) -> PictureTable:
+    """The same at half size."""
+    return PictureTable(lambda name: picture(renderer, loaded(name), scale=0.5))
 
 
 @pytest.fixture(scope="module")
@@ -183,10 +208,10 @@ def ends(graph: Graph, item: Control) -> tuple[object, ...]:
 
 @each
 def test_every_control_changes_the_picture(name: str, renderer: Renderer) -> None:
-    """To either end. What moves or has a size of its own is shown at half size; if need be, at two frames."""
+    """To either end, in a small picture; of what moves, if need be, at two frames."""
     graph = loaded(name)
     assert 2 <= len(graph.controls) <= 5
-    scale = 0.5 if graph.settings.size or name in TIME else 1.0
+    scale = small_scale(name)
     parts = (0.2, 0.5) if name in TIME else (0.5,)
     before = {part: encoded(picture(renderer, graph, scale, part)) for part in parts}
     for control, item in graph.controls.items():
@@ -213,7 +238,7 @@ def test_it_moves(name: str, renderer: Renderer) -> None:
 
 
 @each
-def test_nothing_is_crushed_or_clipped(name: str, raw: dict[str, Array], full: dict[str, Array]) -> None:
+def test_nothing_is_crushed_or_clipped(name: str, raw: PictureTable, full: PictureTable) -> None:
     assert np.isfinite(raw[name]).all()
     assert full[name].shape == (*size_of(loaded(name))[::-1], 3)
     assert (full[name].max(2) < 0.001).mean() < 0.04
@@ -222,10 +247,10 @@ def test_nothing_is_crushed_or_clipped(name: str, raw: dict[str, Array], full: d
 
 
 @each
-def test_half_size_looks_the_same(name: str, renderer: Renderer, full: dict[str, Array]) -> None:
+def test_half_size_looks_the_same(name: str, half: PictureTable, full: PictureTable) -> None:
     """Mean difference of sRGB below 6/255; where fine lines or dots are drawn, a correlation above 0.75."""
     graph = loaded(name)
-    proxy = encoded(picture(renderer, graph, scale=0.5))
+    proxy = encoded(half[name])
     width, height = size_of(graph)
     expected = encoded(shrunk(full[name], width // 2, height // 2))
     if FINE & used(name, "id"):
@@ -236,7 +261,7 @@ def test_half_size_looks_the_same(name: str, renderer: Renderer, full: dict[str,
 
 @each
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
-    wanted, part = (RenderRequest(scale=0.5), 0.1) if name in TIME else (RenderRequest(), 0.5)
+    wanted, part = RenderRequest(scale=small_scale(name)), 0.1 if name in TIME else 0.5
     first = rendered(forgetful, loaded(name), wanted, part).tobytes()
     passes = forgetful.runner.counters.passes
     assert rendered(forgetful, loaded(name), wanted, part).tobytes() == first
@@ -256,7 +281,7 @@ def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
 
 
 @each
-def test_thumbnail_is_as_approved(name: str, full: dict[str, Array]) -> None:
+def test_thumbnail_is_as_approved(name: str, full: PictureTable) -> None:
     """Mean difference of what JPEG makes of both below 2/255: other devices round differently."""
     small = encoded(shrunk(full[name], 320, 180))[..., ::-1].round().astype(np.uint8)
     fine = (cv2.IMWRITE_JPEG_QUALITY, 88, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
@@ -271,7 +296,7 @@ def test_no_thumbnail_is_left_over() -> None:
     assert {file.stem for file in thumbnail(paths()[0]).parent.iterdir()} == PRESETS.keys()
 
 
-def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str, Array], tmp_path: Path) -> None:
+def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: PictureTable, tmp_path: Path) -> None:
     """What a tone map finished is not tone mapped again by the view, unless someone asks for one.
 
     What ends at 1 is finished, but for what is lit anew: that may just be dim.
@@ -288,7 +313,7 @@ def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str
         assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
 
 
-def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: dict[str, Array]) -> None:
+def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: PictureTable) -> None:
     """docs/images: the sample before and after one of the presets."""
     sample = document.loads(
         '{"halation": 1, "inputs": {"beauty": {"file": "samples/neon.exr", "layer": "Combined"}},'
