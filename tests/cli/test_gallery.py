@@ -105,13 +105,14 @@ def renewed(renderer: Renderer) -> None:
         write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names), sandbox=UNRESTRICTED)
 
 
-def test_the_sheet_of_presets_is_current(
-    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every ninth picture is made again and compared, the others stay black: thumbnails hold how each preset looks."""
     names = described(IMAGES / "presets.jpg")
     assert names == [path.stem for path in presets.paths()]
-    graphs, frames_of = [document.load(path, sandbox=UNRESTRICTED) for path in presets.paths()], gallery.render_display_frames
+    graphs, frames_of = (
+        [document.load(path, sandbox=UNRESTRICTED) for path in presets.paths()],
+        gallery.render_display_frames,
+    )
 
     def blank(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
         return dict.fromkeys(frames, np.zeros((270, 480, 3), np.float32))
