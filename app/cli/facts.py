@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from halation.nodes import Node, Socket, Value
+    from halation.nodes import Node, OutputSocket, Socket, Value
 
 
 def node_doc(node: type[Node]) -> str:
@@ -56,6 +56,11 @@ def hard_range(value: Value) -> str:
     return ", ".join(f"{word} {limit:g}" for word, limit in ends if math.isfinite(limit))
 
 
+def output_type(output: OutputSocket) -> str:
+    """The type of an output, such as `Image, or Field as image is`."""
+    return f"{socket_type(output.socket)}{f', or Field as {output.follows} is' if output.follows else ''}"
+
+
 def node_facts(node: type[Node]) -> dict[str, Any]:
     """All facts about a node type, as JSON."""
     return {
@@ -65,7 +70,10 @@ def node_facts(node: type[Node]) -> dict[str, Any]:
         **({"package": node.required_package} if node.required_package else {}),
         "doc": node_doc(node),
         "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
-        "outputs": {name: _socket_facts(output.socket) for name, output in node.outputs.items()},
+        "outputs": {
+            name: _socket_facts(output.socket) | ({"follows": output.follows} if output.follows else {})
+            for name, output in node.outputs.items()
+        },
         "values": {
             value.name: {
                 "type": value.type,

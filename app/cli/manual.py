@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from .facts import default_text, hard_range, node_doc, socket_note, socket_type, soft_range
+from .facts import default_text, hard_range, node_doc, output_type, socket_note, socket_type, soft_range
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Socket, Value
@@ -50,7 +50,7 @@ def _menu_table(nodes: Iterable[type[Node]]) -> str:
             f"[{node.id}](#{_slug(node.id)})",
             _escape_markdown(node_doc(node).splitlines()[0]),
             _list_sockets(node.inputs),
-            _list_sockets({name: output.socket for name, output in node.outputs.items()}),
+            ", ".join(f"`{name}` {output_type(output)}" for name, output in node.outputs.items()),
         )
         for node in nodes
     ]

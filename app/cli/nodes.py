@@ -7,7 +7,17 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..resources.sandbox import Sandbox
-from .facts import default_text, hard_range, node_doc, node_facts, plan_facts, socket_note, socket_type, soft_range
+from .facts import (
+    default_text,
+    hard_range,
+    node_doc,
+    node_facts,
+    output_type,
+    plan_facts,
+    socket_note,
+    socket_type,
+    soft_range,
+)
 from .options import AsJson
 from .outcome import print_json
 from .plugins import list_refused_plugins, print_refused_plugins
@@ -108,12 +118,13 @@ def _list_nodes(classes: list[type[Node]]) -> None:
 def _print_node(node: type[Node]) -> None:
     source = f", from {node.required_package.replace('==', ' ')}" if node.required_package else ""
     print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{node_doc(node)}\n")
-    outputs = {name: output.socket for name, output in node.outputs.items()}
-    for title, sockets in (("inputs", node.inputs), ("outputs", outputs)):
+    inputs = [(name, socket, socket_type(socket)) for name, socket in node.inputs.items()]
+    outputs = [(name, output.socket, output_type(output)) for name, output in node.outputs.items()]
+    for title, sockets in (("inputs", inputs), ("outputs", outputs)):
         if sockets:
             print(title)
-            for name, socket in sockets.items():
-                print(f"  {name:<16} {socket_type(socket):<10} {socket_note(socket)}".rstrip())
+            for name, socket, type_text in sockets:
+                print(f"  {name:<16} {type_text:<10} {socket_note(socket)}".rstrip())
             print()
     if node.values:
         print("values")

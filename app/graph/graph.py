@@ -16,6 +16,7 @@ from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
 from .ends import EndSection, move_end
+from .followed_types import find_field_outputs, find_type_fault
 from .method_arguments import check_method_arguments
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, class_signature, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, make_printable, pick
@@ -85,12 +86,10 @@ class Graph(Wired[Item]):
     folder: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("nodes", "links", "inputs", "outputs", "controls", "animation"):
-            if not isinstance(getattr(self, name), MappingProxyType):
-                object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
-        for name in ("ui", "extra"):
-            if not isinstance(getattr(self, name), MappingProxyType):
-                object.__setattr__(self, name, freeze(getattr(self, name)))
+        for name in ("nodes", "links", "inputs", "outputs", "controls", "animation", "ui", "extra"):
+            if not isinstance(part := getattr(self, name), MappingProxyType):
+                frozen = freeze(part) if name in ("ui", "extra") else MappingProxyType(dict(part))
+                object.__setattr__(self, name, frozen)
         object.__setattr__(self, "muted", frozenset(self.muted))
 
     # --- queries -----------------------------------------------------------------------------------------------
@@ -102,7 +101,16 @@ class Graph(Wired[Item]):
         return self.nodes[id]
 
     def source(self, port: Port) -> Socket | None:
-        """The output at `port`; None for a node of unknown type. Raises GraphError."""
+        """The output at `port`, in the type that it follows; None for a node of unknown type. Raises GraphError."""
+        return self.field_outputs.get(port) or self.declared_source(port)
+
+    @cached_property
+    def field_outputs(self) -> Mapping[Port, Socket]:
+        """The outputs that are Fields because they follow an input that a Field is linked to."""
+        return find_field_outputs(self)
+
+    def declared_source(self, port: Port) -> Socket | None:
+        """The output at `port` as its node declares it; None for a node of unknown type. Raises GraphError."""
         if port.node == INPUTS:
             return pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
         face = signature(self.node(port.node))
@@ -125,10 +133,10 @@ class Graph(Wired[Item]):
     def link_fault(self, source: Port, target: Port) -> str | None:
         """Why a link from `source` to `target` is invalid, or None. Loops are not checked."""
         try:
-            start, end = self.source(source), self.target(target)
+            start, end = self.declared_source(source), self.target(target)
         except GraphError as error:
             return str(error)
-        return None if start is None or end is None else conversion(start, end)
+        return None if start is None or end is None else find_type_fault(self, source, start, end)
 
     def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
         """The port that can feed `target` in place of node `id`: the source of its first linked input that fits."""
@@ -179,7 +187,6 @@ class Graph(Wired[Item]):
         if old == new:
             return self
         check_name(new, "node", self.nodes)
-
         ports = {*self.links, *self.links.values(), *(control.target for control in self.controls.values())}
         moves = {port: Port(new, port.socket) for port in ports if port.node == old}
         controls = {name: item.with_target(moves.get(item.target, item.target)) for name, item in self.controls.items()}
@@ -240,10 +247,7 @@ class Graph(Wired[Item]):
         return find_value(self.node(port.node), port.socket, port.node).default
 
     def set(self, port: Port, value: object) -> Self:
-        """A graph where a value of a node, or a control of a group, is set for all frames or animated.
-
-        Checks type, choice and hard range.
-        """
+        """A graph where a value of a node, or a control of a group, is set or animated; type and range are checked."""
         return self.animate(port, value) if isinstance(value, Animation) else self.put(port, self.fit(port, value))
 
     def fit(self, port: Port, value: object) -> Plain:
@@ -287,10 +291,8 @@ class Graph(Wired[Item]):
     def override(self, path: str, value: object) -> Self:
         """A graph where the value at `path` is set: `glow` (a control), `bloom.intensity`, `group.node.value`."""
         head, dot, rest = path.partition(".")
-        if not dot:
-            return self.set_control(path, value)
         if "." not in rest:
-            return self.set(Port(head, rest), value)
+            return self.set(Port(head, rest), value) if dot else self.set_control(path, value)
         item = self.node(head)
         if not isinstance(item, Group):
             raise GraphError(f"'{path}' looks inside '{head}', which is not a group: write {head}.value")

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from halation.nodes import Image
+
 from ..errors import GraphError
-from .graph import Graph, signature
+from .graph import Graph
 from .lookup import find_node_output
 from .model import Input, Output, Port
 from .names import INPUTS, OUTPUTS, did_you_mean
@@ -40,7 +42,7 @@ def select_nodes(graph: Graph, ids: Sequence[str]) -> Graph:
             inputs[names[source]] = _make_input(graph, source)
         links[target] = Port(INPUTS, names[source])
     output_port = find_node_output(graph, last_nodes[0])
-    output_socket = signature(graph.node(output_port.node)).outputs[output_port.socket]
+    output_socket = graph.source(output_port) or Image()
     links[Port(OUTPUTS, "image")] = output_port
     return replace(
         graph,
@@ -57,7 +59,7 @@ def select_nodes(graph: Graph, ids: Sequence[str]) -> Graph:
 def _make_input(graph: Graph, source: Port) -> Input:
     if source.node == INPUTS:
         return graph.inputs[source.socket]
-    socket = signature(graph.node(source.node)).outputs[source.socket]
+    socket = graph.source(source) or Image()
     return Input(socket.kind, socket.channels)
 
 

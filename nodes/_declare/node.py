@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 
 from .camera import CameraModel
 from .draw import Draw, Drawn
-from .sockets import OutputSocket, Size, Socket
+from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value, unit_factor
 
@@ -77,6 +77,9 @@ class Node:
             implied = OutputSocket()
             implied.__set_name__(cls, "out")
             outputs = {"out": implied}
+        for output in outputs.values():
+            if output.follows and not isinstance(cls.inputs.get(output.follows), Image):
+                raise TypeError(f"output '{output.name}': it follows '{output.follows}', which is no Image input")
         cls.outputs = outputs
         hints = get_type_hints(cls, include_extras=True)
         cls.values = {

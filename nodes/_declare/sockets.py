@@ -95,9 +95,15 @@ class CameraSocket(Socket):
 
 @dataclass(frozen=True)
 class OutputSocket:
-    """An output. `socket` is its type."""
+    """An output. `socket` is its type; with `follows` it is a Field where that input of the node is fed a Field.
+
+    Readers of a Field then get one channel in 32 bits, which is computed as every channel of a picture is. Readers of
+    an Image get what the node makes of the Field as an opaque gray picture, so that what it moves into the frame is
+    transparent.
+    """
 
     socket: Socket = dataclasses.field(default_factory=Image)
+    follows: str = dataclasses.field(default="", kw_only=True)
     name: str = dataclasses.field(default="", init=False, compare=False)
 
     def __set_name__(self, owner: type, name: str) -> None:

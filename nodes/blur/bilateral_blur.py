@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider
 
 
 class BilateralBlur(Filter):
@@ -18,6 +18,7 @@ class BilateralBlur(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     guide = Image(
         0.0, doc="Edges of this picture stop the blur. Without a link, the edges of the blurred picture itself do."
     )

@@ -2,7 +2,7 @@ from itertools import accumulate
 from math import floor
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Pixels, ProxyNote, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Pixels, ProxyNote, Slider, Vector
 
 _DIRECT = 64
 """Up to this many weights in a row are applied one by one; longer rows are put together from blocks."""
@@ -22,6 +22,7 @@ class BoxBlur(Filter):
     proxy_notes = (ProxyNote(("out",), "a box is a whole number of pixels wide, and one more than twice the radius"),)
 
     image = Image()
+    out = OutputSocket(follows="image")
     kind: Annotated[
         Literal["box", "tent", "iterated"],
         Doc(

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Trait
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider, Trait
 
 
 class GaussianBlur(Filter):
@@ -13,6 +13,7 @@ class GaussianBlur(Filter):
     traits = (Trait.RESAMPLES,)
 
     image = Image()
+    out = OutputSocket(follows="image")
     sigma: Annotated[
         float,
         Slider(

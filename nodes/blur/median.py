@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket
 
 
 class Median(Filter):
@@ -16,6 +16,7 @@ class Median(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     window: Annotated[Literal["3x3", "5x5"], Doc("The size of the square.")] = "3x3"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 

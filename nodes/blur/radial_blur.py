@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class RadialBlur(Filter):
@@ -14,6 +14,7 @@ class RadialBlur(Filter):
     aliases = ("zoom blur", "spin blur", "rotational blur", "cc radial blur", "cc radial fast blur", "crash zoom")
 
     image = Image()
+    out = OutputSocket(follows="image")
     kind: Annotated[Literal["zoom", "spin"], Doc("Zoom blurs away from the center, spin around it.")] = "zoom"
     zoom: Annotated[
         float,

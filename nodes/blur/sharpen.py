@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider
 
 
 class Sharpen(Filter):
@@ -13,6 +13,7 @@ class Sharpen(Filter):
     aliases = ("unsharp mask", "usm", "high pass", "detail", "clarity", "deblur", "texture")
 
     image = Image()
+    out = OutputSocket(follows="image")
     amount: Annotated[
         float,
         Slider(0.0, 3.0, unit="ratio", minimum=-1.0, maximum=100.0, doc="How much detail is added; -1 takes it away."),

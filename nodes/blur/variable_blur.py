@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider
 
 _FINEST = 0.16
 """Variance of the finest blur, in square pixels: one between it and the picture is well mixed from the two."""
@@ -25,6 +25,7 @@ class VariableBlur(Filter):
     aliases = ("vari blur", "compound blur", "blur by mask", "tilt shift", "channel blur", "masked blur", "lens blur")
 
     image = Image()
+    out = OutputSocket(follows="image")
     field = Field(1.0, doc="Factor on sigma for each pixel, 0..1.")
     sigma: Annotated[
         float,

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Image, Pointwise, Slider
+from .._declare import Image, OutputSocket, Pointwise, Slider
 
 
 class Clip(Pointwise):
@@ -12,5 +12,6 @@ class Clip(Pointwise):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="The lowest value of a channel.")] = 0.0
     high: Annotated[float, Slider(0.0, 16.0, unit="scene", doc="The highest value of a channel.")] = 1.0

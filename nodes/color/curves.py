@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Points, Pointwise
+from .._declare import Doc, Image, OutputSocket, Points, Pointwise
 
 _STRAIGHT = (0.0, 0.0, 1.0, 1.0)
 
@@ -19,6 +19,7 @@ class Curves(Pointwise):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     space: Annotated[
         Literal["display", "log", "linear"],
         Doc(

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Image, Pointwise, Slider, Trait
+from .._declare import Image, OutputSocket, Pointwise, Slider, Trait
 
 
 class Exposure(Pointwise):
@@ -10,6 +10,7 @@ class Exposure(Pointwise):
     traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
+    out = OutputSocket(follows="image")
     stops: Annotated[float, Slider(-10.0, 10.0, unit="EV", doc="+1 doubles the light, -1 halves it.")] = 0.0
 
     def identity(self) -> str | None:

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Fraction, Image, OutputSocket, Pointwise, Slider
 
 
 class Invert(Pointwise):
@@ -14,6 +14,7 @@ class Invert(Pointwise):
     aliases = ("negative", "invert color", "negate", "inverse", "complement", "invert mask")
 
     image = Image()
+    out = OutputSocket(follows="image")
     space: Annotated[
         Literal["display", "linear", "stops"],
         Doc("The numbers that are inverted: sRGB values, light, or stops around middle gray."),

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, OutputSocket, Pointwise, Slider
 
 
 class Levels(Pointwise):
@@ -17,6 +17,7 @@ class Levels(Pointwise):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     space: Annotated[
         Literal["linear", "display"], Doc("The unit of the points: scene light, or sRGB values as in paint programs.")
     ] = "linear"

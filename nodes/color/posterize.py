@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Fraction, Image, OutputSocket, Pointwise, Slider
 
 
 class Posterize(Pointwise):
@@ -13,6 +13,7 @@ class Posterize(Pointwise):
     aliases = ("quantize", "reduce colors", "color steps", "threshold", "banding", "levels of color")
 
     image = Image()
+    out = OutputSocket(follows="image")
     levels: Annotated[
         float,
         Slider(

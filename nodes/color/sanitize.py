@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Slider
 
 
 class Sanitize(Filter):
@@ -13,6 +13,7 @@ class Sanitize(Filter):
     aliases = ("remove nan", "fix nan", "clean infinite", "nan fix", "kill nan", "remove infinity")
 
     image = Image()
+    out = OutputSocket(follows="image")
     repair: Annotated[Literal["neighbors", "black"], Doc("What a broken channel (NaN, infinity) becomes.")] = (
         "neighbors"
     )

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Bulge(Filter):
@@ -17,6 +17,7 @@ class Bulge(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     strength: Annotated[
         float, Slider(-1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches.")
     ] = 0.5

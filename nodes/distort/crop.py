@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Position, Size, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Position, Size, Slider
 
 
 class Crop(Filter):
@@ -16,6 +16,7 @@ class Crop(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     top_left: Annotated[Position, Doc("One corner of what is kept.")] = (0.0, 0.0)
     bottom_right: Annotated[Position, Doc("The opposite corner.")] = (1.0, 1.0)
     resize: Annotated[

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider, Vector
 
 
 class Displace(Filter):
@@ -15,6 +15,7 @@ class Displace(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     vector = Vector(
         0.0, width=2, doc="The offset at which to read, as a multiple of `amount`. Without a link nothing moves."
     )

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider
 
 
 class HeatHaze(Filter):
@@ -14,6 +14,7 @@ class HeatHaze(Filter):
     aliases = ("heat distortion", "haze", "hot air", "shimmer", "air distortion", "mirage")
 
     image = Image()
+    out = OutputSocket(follows="image")
     heat = Field(1.0, doc="Where it is hot: factor on the amount, pixel by pixel.")
     amount: Annotated[float, Slider(0.0, 0.05, unit="height", doc="How far points move at most.")] = 0.008
     size: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Size of the swirls.")] = 0.06

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Kaleidoscope(Filter):
@@ -9,6 +9,7 @@ class Kaleidoscope(Filter):
     aliases = ("cc kaleida", "mirror", "mandala", "reflect", "symmetry", "kaleido")
 
     image = Image()
+    out = OutputSocket(follows="image")
     segments: Annotated[
         int,
         Slider(

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Reach, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Reach, Slider
 
 _ENDLESS = 1e9
 
@@ -26,6 +26,7 @@ class LensDistortion(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     direction: Annotated[
         Literal["distort", "undistort"],
         Doc("Distort gives a render the bend of a lens; undistort straightens footage."),

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, Slider, Vector
 
 
 class NoiseWarp(Filter):
@@ -18,6 +18,7 @@ class NoiseWarp(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     mask = Field(1.0, doc="Factor on the amount, pixel by pixel.")
     amount: Annotated[float, Slider(0.0, 0.2, unit="height", doc="How far points move at most, in x and in y.")] = 0.06
     kind: Annotated[

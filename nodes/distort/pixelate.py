@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Slider
 
 
 class Pixelate(Filter):
@@ -13,6 +13,7 @@ class Pixelate(Filter):
     aliases = ("mosaic", "pixelize", "pixel art", "blocks", "censor", "low resolution", "pixellate")
 
     image = Image()
+    out = OutputSocket(follows="image")
     size: Annotated[
         tuple[float, float],
         Slider(1.0, 64.0, unit="px", minimum=0.01, doc="Width and height of a square, at least one pixel."),

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Polar(Filter):
@@ -16,6 +16,7 @@ class Polar(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     direction: Annotated[Literal["wrap", "unwrap"], Doc("Wrap makes a disc, unwrap opens it.")] = "wrap"
     radius: Annotated[float, Slider(0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc.")] = 0.5
     rotation: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Size, Slider, Trait
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Size, Slider, Trait
 
 
 class Resize(Filter):
@@ -19,6 +19,7 @@ class Resize(Filter):
     traits = (Trait.RESAMPLES,)
 
     image = Image()
+    out = OutputSocket(follows="image")
     scale: Annotated[
         tuple[float, float],
         Slider(0.1, 4.0, unit="ratio", minimum=0.001, maximum=64.0, doc="Factor on the width and on the height."),

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Ripple(Filter):
@@ -16,6 +16,7 @@ class Ripple(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     shape: Annotated[Literal["circular", "straight"], Doc("Rings around the center, or waves that run one way.")] = (
         "circular"
     )

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Vector
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Vector
 
 
 class StMap(Filter):
@@ -16,6 +16,7 @@ class StMap(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     st = Vector(width=2, doc="The position to read: 0 to 1 across the picture; pixel centers are at halves.")
     origin: Annotated[
         Literal["bottom left", "top left"],

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Swirl(Filter):
@@ -14,6 +14,7 @@ class Swirl(Filter):
     aliases = ("twirl", "vortex", "twist", "whirl", "spin", "spiral")
 
     image = Image()
+    out = OutputSocket(follows="image")
     angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
     radius: Annotated[
         float,

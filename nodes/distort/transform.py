@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, Kernel, Position, Slider, Trait
+from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Slider, Trait
 
 _SMALLEST = 1e-3
 """No scale is nearer to 0."""
@@ -24,6 +24,7 @@ class Transform(Filter):
     traits = (Trait.RESAMPLES,)
 
     image = Image()
+    out = OutputSocket(follows="image")
     position: Annotated[
         tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the picture moves, to the right and down.")
     ] = (0.0, 0.0)

@@ -3,7 +3,7 @@ from math import fsum
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, ProxyNote, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, OutputSocket, ProxyNote, Slider
 
 _IDENTITY: Kernel3x3 = (0, 0, 0, 0, 1, 0, 0, 0, 0)
 
@@ -40,6 +40,7 @@ class Convolve3x3(Filter):
     proxy_notes = (ProxyNote(("out",), "it compares neighboring pixels, which are farther apart in a proxy"),)
 
     image = Image()
+    out = OutputSocket(follows="image")
     preset: Annotated[
         Literal[
             "custom",

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Slider, Vector
 
 
 class Echo(Filter):
@@ -18,6 +18,7 @@ class Echo(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     echoes: Annotated[
         int, Slider(0, 12, unit="count", minimum=0, maximum=127, doc="How many frames are added to this one.")
     ] = 4

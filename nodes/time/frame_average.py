@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Slider, Vector
 
 Shape = Literal["box", "tent", "gaussian", "exponential"]
 
@@ -26,6 +26,7 @@ class FrameAverage(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     frames: Annotated[int, Slider(1, 16, unit="count", minimum=1, maximum=128, doc="How many frames.")] = 5
     weights: Annotated[Shape, Doc("How the weights of the frames fall with their distance.")] = "box"
     window: Annotated[

@@ -34,6 +34,7 @@ from halation.nodes import (
     Uniform,
     glsl_type,
 )
+from msgspec.structs import replace
 
 from ...errors import ShaderError
 from ...glsl import GlslFunction
@@ -114,7 +115,7 @@ class Recorder:
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._find_operand_at(socket, frame)
         if isinstance(operand, Ref):
-            return self._wrap(operand)
+            return self._wrap(operand, socket.name == self._inputs.narrow)
         shape, parameters = self._make_shape(socket, self.size), (Parameter(socket.glsl, operand),)
         return self._add_op(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
@@ -170,7 +171,8 @@ class Recorder:
         for name, item in arguments.items():
             if isinstance(item, (Socket, DrawnPicture)):
                 operand = self._find_operand(item)
-                channels = item.channels if isinstance(item, Socket) else item.shape.channels
+                is_wide = isinstance(item, DrawnPicture) and item.is_narrow
+                channels = 4 if is_wide else item.channels if isinstance(item, Socket) else item.shape.channels
                 around = self._find_neighborhood(operand, shapes[0].size, overlaps.get(name))
                 accessors.append(Accessor(name, glsl_type(channels), operand, around))
             else:
@@ -236,7 +238,8 @@ class Recorder:
         axis_index = 0 if axis == "x" else 1
         origin = -(len(weights) // 2)
         return self._wrap(
-            self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index])
+            self._blurs.convolve(picture.ref, axis_index, weights, 1, origin, edge, picture.size[axis_index]),
+            picture.is_narrow,
         )
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
@@ -251,9 +254,10 @@ class Recorder:
         )
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
-        source = self._find_pixels(image).ref
-        shape = self._make_shape(None, self.size)
-        return self._wrap(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
+        picture = self._find_pixels(image)
+        shape = replace(picture.shape, size=self.size) if picture.is_narrow else self._make_shape(None, self.size)
+        placed = transforms.place(self._builder, picture.ref, self._owner, shape, matrix, kernel, edge)
+        return self._wrap(placed, picture.is_narrow)
 
     def raster(
         self,
@@ -315,15 +319,17 @@ class Recorder:
     def _add_op(self, op: Op) -> DrawnPicture:
         return DrawnPicture(self._builder.add(op), op.shapes[0])
 
-    def _wrap(self, ref: Ref) -> DrawnPicture:
-        return DrawnPicture(ref, self._builder.shape(ref))
+    def _wrap(self, ref: Ref, is_narrow: bool = False) -> DrawnPicture:
+        return DrawnPicture(ref, self._builder.shape(ref), is_narrow)
 
     def _blur(self, image: Pixels, axes: Sequence[gaussian.BlurAxis], edge: Edge) -> DrawnPicture:
-        return self._wrap(self._blurs.blur(self._find_pixels(image).ref, axes, edge))
+        picture = self._find_pixels(image)
+        return self._wrap(self._blurs.blur(picture.ref, axes, edge), picture.is_narrow)
 
     def _make_shape(self, result: Socket | None, size: Size) -> PictureShape:
         socket = result or Image()
-        return PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+        is_data = socket.kind is not Kind.IMAGE or self._inputs.narrow != ""
+        return PictureShape((1, 1) if socket.single else size, socket.channels, is_data)
 
     def _find_neighborhood(self, operand: Operand, own: Size, overlap: Overlap | None) -> Neighborhood | None:
         """The neighborhood in which a function reads a picture, as its overlap says."""
@@ -347,7 +353,9 @@ class Recorder:
         operand = self._find_operand(item)
         if isinstance(operand, UniformConstant):
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
-        return DrawnPicture(operand, self._builder.shape(operand))
+        if isinstance(item, Socket):
+            return self._wrap(operand, item.name == self._inputs.narrow)
+        return self._wrap(operand, isinstance(item, DrawnPicture) and item.is_narrow)
 
     def _make_parameters(self, signature: GlslFunction, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
         names = tuple(name for _, name in signature.parameters)

@@ -11,7 +11,7 @@ from collections import Counter
 from itertools import chain
 from types import MappingProxyType
 
-from halation.nodes import CameraModel, Image, Socket
+from halation.nodes import CameraModel, Field, Image, Socket
 
 from ...errors import GraphError, HalationError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
@@ -21,9 +21,9 @@ from ..library import Library
 from ..request import Request
 from . import constants
 from .graph_at_frames import GraphAtFrames
-from .node_lowering import LoweringContext, NodeLowering
+from .node_lowering import LoweringContext, NodeLowering, takes_field
 from .pictures import PictureBuilder
-from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey, WatchedProvider
+from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey, WatchedProvider, field_port
 
 
 def lower(graph: Graph, request: Request, library: Library, provider: ResourceProvider) -> LoweringRecord:
@@ -136,8 +136,13 @@ class Lowering:
             raise GraphError(f"output '{name}' is not linked to anything: link a node to it", node=f"{port}")
         return source or port
 
-    def _find_operand(self, port: Port, frame: int) -> Operand | None:
-        """The operand of a source port; None for a graph input that has neither a picture nor a default."""
+    def _find_operand(self, port: Port, frame: int, as_field: bool) -> Operand | None:
+        """The operand of a source port; None for a graph input that has neither a picture nor a default.
+
+        With `as_field` that of its Field, if the port carries one besides its Image.
+        """
+        if as_field and (operand := self._find_field(port, frame)) is not None:
+            return operand
         key = (port, frame - self.frame)
         if key in self.results:
             return self.results[key]
@@ -166,6 +171,10 @@ class Lowering:
         self.step.results[key] = operand
         return operand
 
+    def _find_field(self, port: Port, frame: int) -> Operand | None:
+        key = (field_port(port), frame - self.frame)
+        return self.results.get(key) or self.step.results.get(key)
+
     # --- outputs -----------------------------------------------------------------------------------------------------
 
     def _lower_outputs(self) -> None:
@@ -177,7 +186,7 @@ class Lowering:
 
     def _lower_output(self, source: Port, name: str, socket: Socket | None) -> Ref:
         """The pixels of an output in its type. A constant fills the canvas, except a single value."""
-        operand = self._find_operand(source, self.frame)
+        operand = self._find_operand(source, self.frame, takes_field(socket or Image()))
         if operand is None:
             raise GraphError(
                 f"output '{name}' shows the graph input '{source.socket}', which is not bound to a picture: "
@@ -199,6 +208,8 @@ class Lowering:
             return self.graph.outputs[target.socket].socket()
         if source in self.flat.inputs:
             return self.flat.inputs[source].socket()
+        if target == source and self._find_field(source, self.frame) is not None:
+            return Field()
         node = self.flat.nodes.get(source.node)
         output = node.outputs.get(source.socket) if node else None
         return output.socket if output else None

@@ -18,6 +18,7 @@ class NodeInputs(Struct, frozen=True):
 
     `linked` are the inputs that something is linked to, in the order in which the node declares them. Operations are
     added in that order, so it must not be a set: the order of a set of strings is another one in every process.
+    `narrow` is the Image input that is fed a Field and keeps its one channel; "" if there is none.
     """
 
     path: str
@@ -27,6 +28,7 @@ class NodeInputs(Struct, frozen=True):
     wires: dict[str, Operand] = field(default_factory=dict[str, Operand])
     at_frames: dict[tuple[str, int], Operand] = field(default_factory=dict[tuple[str, int], Operand])
     linked: list[str] = field(default_factory=list[str])
+    narrow: str = ""
 
 
 class NodeResources(Struct, frozen=True):
@@ -40,10 +42,11 @@ class NodeResources(Struct, frozen=True):
 
 
 class DrawnPicture(Struct, frozen=True):
-    """A draw's result: the `Drawn` that a node sees."""
+    """A draw's result: the `Drawn` that a node sees. `is_narrow` if it stands for a picture, but has one channel."""
 
     ref: Ref
     shape: PictureShape
+    is_narrow: bool = False
 
     @property
     def size(self) -> Size:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from halation.nodes import (
     CameraModel,
+    Field,
     Filter,
     Kind,
     Missing,
@@ -34,10 +35,11 @@ from .expand import FlatGraph, find_stand_in
 from .graph_at_frames import GraphAtFrames
 from .node_inputs import DrawnPicture, NodeInputs
 from .pictures import PictureBuilder
-from .steps import LoweringStep
+from .steps import LoweringStep, field_port
 
-OperandFinder = Callable[[Port, int], Operand | None]
-"""What a source port stands for at a frame; None for a graph input without a picture."""
+OperandFinder = Callable[[Port, int, bool], Operand | None]
+"""What a source port stands for at a frame; None for a graph input without a picture. With True its Field, if the port
+carries one besides its Image."""
 
 READS_PLACE = frozenset({"pixel", "extent"})
 """The GLSL variables from which a function knows the position of its pixel."""
@@ -87,31 +89,62 @@ class NodeLowering:
         inputs = self._collect_inputs(path, frame, node, operand_at)
         if frame == context.frame:
             step.cameras = _find_cameras(inputs)
+        offset = frame - context.frame
+        for name, operand in self._lower_outputs(inputs, step).items():
+            step.results[Port(path, name), offset] = operand
+        for name, output in node.outputs.items():
+            if output.follows and self._carries_field(path, frame, output.follows, operand_at):
+                field_inputs = self._collect_inputs(path, frame, node, operand_at, output.follows)
+                operand = self._lower_outputs(field_inputs, step)[name]
+                if isinstance(operand, Ref):
+                    operand = self.convert_type(operand, Field(), path)
+                step.results[field_port(Port(path, name)), offset] = operand
+
+    def _carries_field(self, path: str, frame: int, name: str, operand_at: OperandFinder) -> bool:
+        """True if an input of a node is fed the pixels of a Field."""
+        source, frames = self._context.frames.find_feeds((path, frame)).get(name, (None, ()))
+        operand = operand_at(source, frames[0], True) if source and frames else None
+        if not isinstance(operand, Ref):
+            return False
+        shape = self._builder.shape(operand)
+        return shape.channels == 1 and shape.size != (1, 1)
+
+    def _lower_outputs(self, inputs: NodeInputs, step: LoweringStep) -> dict[str, Operand]:
+        """The operands of a node's outputs by name."""
+        node, path = inputs.node, inputs.path
         size = self._find_size(inputs)
         passed_through = self._pass_through(inputs)
         if passed_through is not None:
-            for name, operand in passed_through.items():
-                fitted = self._pictures.fit(operand, size, path) if isinstance(operand, Ref) else operand
-                step.results[Port(path, name), frame - context.frame] = fitted
-            return
+            return {
+                name: self._pictures.fit(operand, size, path) if isinstance(operand, Ref) else operand
+                for name, operand in passed_through.items()
+            }
         self._fit_all(inputs, size)
-        scaled_node = node.to_working_units(context.request.scale, size[1])
+        scaled_node = node.to_working_units(self._context.request.scale, size[1])
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
-            self._lower_pointwise(inputs, scaled_node, size, step)
-        elif isinstance(scaled_node, Filter):
-            self._lower_filter(inputs, scaled_node, size, step)
+            return self._lower_pointwise(inputs, scaled_node, size)
+        assert isinstance(scaled_node, Filter)
+        return self._lower_filter(inputs, scaled_node, size, step)
 
     # --- what a node reads -----------------------------------------------------------------------------------------
 
-    def _collect_inputs(self, path: str, frame: int, node: Node, operand_at: OperandFinder) -> NodeInputs:
-        """A node and all that it reads. Raises GraphError for an input that must be linked and is not."""
-        inputs = NodeInputs(path, frame, node)
+    def _collect_inputs(
+        self, path: str, frame: int, node: Node, operand_at: OperandFinder, narrow: str = ""
+    ) -> NodeInputs:
+        """A node and all that it reads. Raises GraphError for an input that must be linked and is not.
+
+        `narrow` is an Image input whose Field is read.
+        """
+        inputs = NodeInputs(path, frame, node, narrow=narrow)
         feeds = self._context.frames.find_feeds((path, frame))
         for name, socket in node.inputs.items():
             source, frames = feeds.get(name, (None, ()))
-            by_frame = {at: operand for at in frames if source and (operand := operand_at(source, at)) is not None}
+            as_field = takes_field(socket) or name == narrow
+            by_frame = {
+                at: operand for at in frames if source and (operand := operand_at(source, at, as_field)) is not None
+            }
             if by_frame:
                 inputs.inputs[name] = by_frame[frame] if frame in by_frame else next(iter(by_frame.values()))
                 inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
@@ -126,9 +159,9 @@ class NodeLowering:
             else:
                 noun = socket.kind.facts.noun
                 raise GraphError(f"node '{path}': input '{name}' is not linked: link a {noun} to it")
-        for name in node.values:
+        for name, value in node.values.items():
             source, _ = feeds.get(name, (None, ()))
-            operand = operand_at(source, frame) if source is not None else None
+            operand = operand_at(source, frame, value.type != "color") if source is not None else None
             if operand is not None:
                 inputs.wires[name] = operand
         return inputs
@@ -193,7 +226,7 @@ class NodeLowering:
 
     # --- pointwise nodes -------------------------------------------------------------------------------------------
 
-    def _lower_pointwise(self, inputs: NodeInputs, node: Pointwise, size: Size, step: LoweringStep) -> None:
+    def _lower_pointwise(self, inputs: NodeInputs, node: Pointwise, size: Size) -> dict[str, Operand]:
         form = self._find_form(inputs.path, node, size)
         parameters = tuple(
             Parameter(glsl, inputs.inputs[name])
@@ -201,9 +234,9 @@ class NodeLowering:
             else self._make_value_parameter(node, value, glsl, inputs.wires.get(name), size)
             for name, glsl, value in form.arguments
         )
-        ref = self._builder.add(Call(form.shapes, inputs.path, node.shader, node.function, parameters, form.choices))
-        for index, name in enumerate(node.outputs):
-            step.results[Port(inputs.path, name), inputs.frame - self._context.frame] = Ref(ref.op, index)
+        shapes = tuple(replace(shape, data=True) for shape in form.shapes) if inputs.narrow else form.shapes
+        ref = self._builder.add(Call(shapes, inputs.path, node.shader, node.function, parameters, form.choices))
+        return {name: Ref(ref.op, index) for index, name in enumerate(node.outputs)}
 
     def _find_form(self, path: str, node: Pointwise, size: Size) -> PointwiseForm:
         """What all nodes of a class have in common, found once: a graph may have 100,000 nodes of one class."""
@@ -250,7 +283,7 @@ class NodeLowering:
 
     # --- filters ---------------------------------------------------------------------------------------------------
 
-    def _lower_filter(self, inputs: NodeInputs, node: Filter, size: Size, step: LoweringStep) -> None:
+    def _lower_filter(self, inputs: NodeInputs, node: Filter, size: Size, step: LoweringStep) -> dict[str, Operand]:
         """Record the draws of a filter, on pictures that have the channels that it declares."""
         context, path, remembers = self._context, inputs.path, isinstance(node, Temporal)
         if remembers and inputs.frame != context.frame:
@@ -259,8 +292,12 @@ class NodeLowering:
                 f"while frame {context.frame} is rendered: put what changes the time before '{path}'"
             )
         for name in inputs.linked:
+            if name == inputs.narrow:
+                continue
             inputs.inputs[name] = self._convert_to_pixels(path, node.inputs[name], inputs.inputs[name], size)
         for (name, frame), operand in inputs.at_frames.items():
+            if name == inputs.narrow:
+                continue
             inputs.at_frames[name, frame] = self._convert_to_pixels(path, node.inputs[name], operand, size)
         settings = context.graph.settings
         missing = self.choose_missing(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
@@ -279,9 +316,10 @@ class NodeLowering:
         step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
         step.reads_frame = recorder.reads_frame
         results = pictures if isinstance(pictures, Mapping) else {next(iter(node.outputs)): pictures}
-        for name, item in results.items():
-            operand = item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
-            step.results[Port(path, name), inputs.frame - context.frame] = operand
+        return {
+            name: item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
+            for name, item in results.items()
+        }
 
     def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
         """What a node remembered of the frame before, by name."""
@@ -307,6 +345,11 @@ class NodeLowering:
     def choose_missing(self, policy: Missing, frame: int) -> Missing:
         """What replaces a missing file. A node may read frames before the first or after the last: these are held."""
         return "hold" if policy == "error" and frame != self._context.frame else policy
+
+
+def takes_field(socket: Socket) -> bool:
+    """True for a socket that reads the Field of an output that carries both an Image and a Field."""
+    return socket.kind in (Kind.FIELD, Kind.VECTOR)
 
 
 def _find_cameras(inputs: NodeInputs) -> dict[Port, CameraModel]:

@@ -24,6 +24,14 @@ StepKey = tuple[str, int] | None
 """The path of a node, and how many frames after the rendered one it is lowered; None stands for the outputs."""
 
 
+def field_port(port: Port) -> Port:
+    """The key of the Field that an output has besides its Image, since it follows an input that is fed a Field.
+
+    No socket can have this name.
+    """
+    return Port(port.node, f"{port.socket} as Field")
+
+
 class LoweringStep(Struct):
     """What lowering one node at a frame added. `first` is how many operations there were before."""
 

@@ -134,10 +134,12 @@ def make_end_layout(end: ElementId, socket: Socket, picture: bool, doc: str = ""
 
 @dataclass(frozen=True, slots=True)
 class NodeFacts:
-    """What the layout of a node depends on besides the node: linked sockets, and display options."""
+    """What the layout of a node depends on besides the node: its links, and display options."""
 
     linked_ins: frozenset[str] = frozenset()
     linked_outs: frozenset[str] = frozenset()
+    field_outs: frozenset[str] = frozenset()
+    """Outputs that are Fields because they follow an input that a Field is linked to."""
     collapsed: bool = False
     expanded: bool = False
     picture: bool = False
@@ -222,7 +224,10 @@ def _list_pins(node_signature: Signature, facts: NodeFacts) -> tuple[list[Pin], 
             *(Pin(name, None, 0.0, 0.0) for name in lost_inputs),
         ],
         [
-            *(Pin(name, socket.kind, WIDTH, 0.0) for name, socket in outputs.items()),
+            *(
+                Pin(name, Kind.FIELD if name in facts.field_outs else socket.kind, WIDTH, 0.0)
+                for name, socket in outputs.items()
+            ),
             *(Pin(name, None, WIDTH, 0.0) for name in lost_outputs),
         ],
     )

@@ -124,6 +124,7 @@ class SceneBuilder:
         facts = NodeFacts(
             frozenset(ins.get(id, ())),
             frozenset(outs.get(id, ())),
+            _find_field_outputs(graph, id, item),
             collapsed,
             id in self.expanded or id == open,
             id in pictures,
@@ -181,7 +182,13 @@ def _find_interface(graph: Graph, port: Port) -> object:
     item = graph.nodes.get(port.node)
     if isinstance(item, Group):
         return item.graph.inputs, item.graph.outputs, item.graph.controls
-    return type(item) if isinstance(item, Node) else item
+    return (type(item), port in graph.field_outputs) if isinstance(item, Node) else item
+
+
+def _find_field_outputs(graph: Graph, id: str, item: Item) -> frozenset[str]:
+    """The outputs of a node that follow an input that a Field is linked to."""
+    names = item.outputs if isinstance(item, Node) else ()
+    return frozenset(name for name in names if Port(id, name) in graph.field_outputs)
 
 
 def _find_linked_sockets(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]]]:
