@@ -77,7 +77,11 @@ def make_sandboxed_files(sandbox: Sandbox) -> Any:
 
 @cache
 def _define_sandboxed_files() -> type[Any]:
-    """The class, which can be made only when OpenColorIO is loaded."""
+    """The class, which can be made only when OpenColorIO is loaded.
+
+    OpenColorIO asks it for all files of a config, so that a config cannot name one outside of the sandbox. What it
+    could not read is kept in `faults`, because an exception would not pass through the C++ code.
+    """
     import PyOpenColorIO
 
     api: Any = PyOpenColorIO

@@ -122,6 +122,9 @@ def find_requested_space(name: str, managed: ColorManager) -> OcioColorSpace | N
 def _read_name(path: str, hints: ColorHints, managed: ColorManager) -> FileSpace | None:
     """The space that the header names; None if it names none, or an unknown one that only OpenImageIO concluded.
 
+    The most certain statement counts: an ICC profile, then a gamma that the name does not have already, then the name.
+    Names that only say "linear" mean the working space, since renderers write them whatever their primaries are.
+
     Raises:
         InputError: the author of the file wrote a name that is unknown.
     """

@@ -236,6 +236,9 @@ class ColorManager:
             raise self._error(f"{self.where}: {faults[-1] if faults else describe_ocio_error(error)}") from error
 
     def _read_config(self, source: str) -> Any:
+        """Read a config file or a built-in config. A config of a graph is read inside of the sandbox; that of `$OCIO`
+        is the user's own and may read all files.
+        """
         if not source.startswith("ocio://") and (reason := self._sandbox.fault(source)):
             raise self._error(f"{self._describe_source(source)}: {reason}")
         if not source.startswith("ocio://") and not (path := Path(source)).is_file():

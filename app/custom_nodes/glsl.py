@@ -91,6 +91,9 @@ def _make_class(
     outputs: Mapping[str, OutputSocket],
     reads_neighbors: bool,
 ) -> type[CustomNode]:
+    """The class of a node. Its GLSL gets a prefix made from its text, so that codes with functions of one name can
+    fuse, and guards against loops and divisions that would stop the device.
+    """
     source = unify_lines(code.text)
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"

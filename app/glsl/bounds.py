@@ -232,7 +232,12 @@ class _Bounds:
         costs: dict[int, tuple[int, int]],
         callers: frozenset[int],
     ) -> tuple[int, int]:
-        """The length of a function with all that it calls, and how many call each other in a chain."""
+        """The length of a function with all that it calls, and how many call each other in a chain.
+
+        Each function is measured once. A call is taken for one of the functions of that name that GLSL can see from
+        there: those above, or all with a prototype. Which overload it is, only a compiler knows, so the longest one
+        counts.
+        """
         if number in costs:
             return costs[number]
         _, start, end = bodies[number]

@@ -60,7 +60,11 @@ class _DivisionGuard:
         """By where a chain of products begins: whether one of its factors so far is a float."""
 
     def rewrite(self, first: int, last: int) -> str:
-        """The text of some tokens, guarded."""
+        """The text of some tokens, guarded.
+
+        `a / b` becomes `halation_quotient(a , b)`: the call is inserted before the first token of `a`, a comma replaces
+        the operator, and a bracket follows the last token of `b`. Nothing moves, so that messages keep their lines.
+        """
         inserted: dict[int, list[str]] = {}
         appended: dict[int, list[str]] = {}
         replaced: dict[int, str] = {}

@@ -86,7 +86,12 @@ def guard_loops(source: str, most: int = MOST_ROUNDS) -> str:
 
 
 def _loops(code: str, constants: Mapping[str, float], start: int, end: int, outer: float) -> Iterator[_Loop]:
-    """The loops between two places, those inside of others after them. `outer` rounds are made around them."""
+    """The loops between two places, those inside of others after them. `outer` rounds are made around them.
+
+    A loop is read without its grammar: a header in brackets, then a block or a statement. Its stated number of rounds
+    only counts if it is small, by itself and with the loops around it: a loop of 2000 rounds in another of 2000 is
+    counted.
+    """
     at = start
     while match := _LOOP.search(code, at, end):
         header = ""

@@ -140,7 +140,12 @@ def _are_floats(types: frozenset[str] | None) -> bool:
 
 
 def collect_names(tokens: Sequence[GlslToken], partners: Mapping[int, int], outside_types: Mapping[str, str]) -> Names:
-    """The names that tokens declare; `outside_types` are those of names from elsewhere, such as `a` or `f()`."""
+    """The names that tokens declare; `outside_types` are those of names from elsewhere, such as `a` or `f()`.
+
+    A type and a name, then a bracket: a function. A type, then names with commas between them: variables; a list ends
+    where the next word is a type, for then it was one of parameters. A constant has a number only if its name is
+    declared once, because names are not followed into their scopes.
+    """
     types = {name: {glsl} for name, glsl in outside_types.items() if not name.endswith("()")}
     returns = {name[:-2]: {glsl} for name, glsl in outside_types.items() if name.endswith("()")}
     structs = {tokens[at + 1].text for at, token in enumerate(tokens[:-1]) if token.text == "struct"}

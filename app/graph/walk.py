@@ -49,7 +49,12 @@ def find_loops(steps: Steps, max_count: int = 8) -> tuple[tuple[str, ...], ...]:
 
 
 def find_cyclic(steps: Mapping[N, Collection[N]]) -> frozenset[N]:
-    """Every name that leads to itself. In linear time, by strongly connected components (Tarjan 1972)."""
+    """Every name that leads to itself. In linear time, by strongly connected components (Tarjan 1972).
+
+    A list of iterators stands in place of recursion, because chains may be longer than Python's stack. Names of a
+    component stay in `component` until its first one is left; one name alone is cyclic only if it leads to itself
+    directly.
+    """
     cyclic, number, lowest = set[N](), dict[N, int](), dict[N, int]()
     component: dict[N, None] = {}
     for root in steps:

@@ -100,7 +100,11 @@ def check_depth(graph: Graph) -> None:
 
 
 def _put_group_body(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
-    """`outer` with another body in group `id`."""
+    """`outer` with another body in group `id`.
+
+    `moves` are renamed ends of the body. Links, controls, animation and layout of the outer graph follow them; those of
+    ends that the new body lacks are removed.
+    """
     item = Group(replace(body, folder=outer.folder))
     old, new = signature(outer.nodes[id]), signature(item)
     removed_sockets = {name for name in (*old.inputs, *old.values) if name not in new.inputs and name not in new.values}

@@ -156,7 +156,11 @@ def _count_crossings(layering: BoxLayers) -> int:
 
 
 def _find_tops(layering: BoxLayers, heights: Mapping[str, float], gap: float) -> dict[str, float]:
-    """The upper edge of every box. Those of one line move together, as near to what they are linked to as they can."""
+    """The upper edge of every box. Those of one line move together, as near to what they are linked to as they can.
+
+    First all lines lie as high as the gaps above them allow. Then sweeps, upward and downward in turn, move each line
+    to the median of its neighbors, within the gaps that it must keep to the lines above and below.
+    """
     line = _find_straight_lines(layering)
     above: dict[str, dict[str, float]] = {root: {} for root in line.values()}
     below: dict[str, dict[str, float]] = {root: {} for root in line.values()}
@@ -187,7 +191,8 @@ def _find_tops(layering: BoxLayers, heights: Mapping[str, float], gap: float) ->
 def _find_straight_lines(layering: BoxLayers) -> dict[str, str]:
     """Boxes that lie on one straight line, by the first of them: each box joins its median source if it can.
 
-    Lines never cross; long links come first.
+    Lines never cross; long links come first. This is the alignment of Brandes and Koepf (2002); a
+    link across several layers is a chain of virtual boxes, and stays straight even if a short link gives way.
     """
     line = {name: name for layer in layering.layers for name in layer}
     for upper, lower in pairwise(layering.layers):

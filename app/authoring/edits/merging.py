@@ -32,7 +32,8 @@ class MergedPart:
 def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
     """`graph` with the nodes and decor of `part` at `places`, and the links among those nodes.
 
-    Paths of `part` must start where those of `graph` do. Ends, controls and links from elsewhere are left out.
+    Paths of `part` must start where those of `graph` do. Ends, controls and links from elsewhere are left out. Names
+    that are taken get a number, and everything that names a node follows: links, expressions, layout, dots on links.
     """
     taken_names = {*graph.nodes, INPUTS, OUTPUTS}
     names: dict[str, str] = {}

@@ -25,7 +25,11 @@ saves on them. Chosen by judgement."""
 
 
 def write_accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
-    """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture."""
+    """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture.
+
+    Places are limited to 2^24, up to which floats count single pixels: GLSL leaves open what a larger float is as an
+    int.
+    """
     name, glsl = item.name, item.glsl
     if isinstance(item.operand, Ref):
         size = names.shape(item.operand).size

@@ -154,7 +154,11 @@ def _find_inlined(context: PassContext) -> Iterator[InlinedGather]:
 
 
 def _write_calls(context: PassContext) -> tuple[list[str], dict[Ref, str]]:
-    """Statements that evaluate the members of a pass at one pixel, and the names of all they computed."""
+    """Statements that evaluate the members of a pass at one pixel, and the names of all they computed.
+
+    Between two functions lies a seam, `settled`: without it a driver could round across both, and a fused pass would
+    differ from single ones in the last bit.
+    """
     names, group = context.names, context.group
     lines: list[str] = []
     values: dict[Ref, str] = {}

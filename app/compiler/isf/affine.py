@@ -114,7 +114,12 @@ class LinearModel:
         return numbers
 
     def write_formula(self, place: int) -> str:
-        """A number as GLSL."""
+        """A number as GLSL.
+
+        A product of two knobs is measured as `slope (a - a0) (b - b0)`. It is written as `slope a b`; what that adds
+        goes to the factors of a and b and to the constant. Parts that are below the tolerance of all others are
+        rounding and are left out.
+        """
         constant = self.base.numbers[place]
         factors: dict[str, float] = {name: slopes[place] for name, slopes in self.slopes.items()}
         magnitude = max(abs(constant), 1e-30)

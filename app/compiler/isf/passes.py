@@ -98,7 +98,12 @@ def _find_obstacle(op: Op) -> str:
 def write_function(
     program: LoweredProgram, fused: PassGroup, output: int, prefix: str, names: IsfNames, library: Library
 ) -> tuple[list[str], str]:
-    """The functions of a pass, and the name of the one that makes its pixel: a vec4."""
+    """The functions of a pass, and the name of the one that makes its pixel: a vec4.
+
+    What differs from a pass of our own: uniforms are globals that the function sets first, because their numbers are
+    formulas of controls; weights are a function, because the format has no uniform blocks; and all names get a prefix,
+    because all passes share one text.
+    """
     context = PassContext(program, fused, names, library)
     parts = write_parts(context)
     functions = list(parts.functions)

@@ -115,7 +115,10 @@ def expand(graph: Graph) -> FlatGraph:
 
 
 def find_changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
-    """The nodes whose values differ, by path, if two graphs differ in nothing else that changes pixels; else None."""
+    """The nodes whose values differ, by path, if two graphs differ in nothing else that changes pixels; else None.
+
+    Graphs are immutable and an edit keeps the parts that it does not change, so that comparing identities is enough.
+    """
     parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
     is_same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
     is_animated = before.animation is not after.animation and (before.animation or after.animation)

@@ -76,6 +76,10 @@ class GraphAtFrames:
     def find_order(self, starts: Iterable[Port], frame: int) -> list[NodeAtFrame]:
         """Every node that `starts` need at `frame`, at the frames at which it is needed, after what it reads.
 
+        A search in depth, with a list in place of recursion, because graphs may be deeper than Python's stack. Every
+        node is on the list twice: to be entered, and to be left after all that it reads. One that is entered again
+        before it is left feeds itself.
+
         Raises GraphError for a node of unknown type, and for one that feeds itself.
         """
         order: list[NodeAtFrame] = []

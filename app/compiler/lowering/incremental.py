@@ -124,7 +124,11 @@ class _IncrementalLowering:
         """Ports that stand for another constant than before."""
 
     def run(self) -> LoweringRecord:
-        """Replay the steps that may come out differently, in order: each one may affect those after it."""
+        """Replay the steps that may come out differently, in order: each one may affect those after it.
+
+        A step is replayed if it reads files, reads a frame that changed, has a changed node, or looked at an operation
+        or a constant that changed. All other steps keep their operations.
+        """
         before, lowering = self.before, self.lowering
         if before.canvas is not None and lowering.pictures.canvas != before.canvas:
             raise StructureChanged

@@ -221,7 +221,11 @@ def _assign_slots(
     first: Mapping[Ref, int],
     last: Mapping[Ref, int],
 ) -> tuple[dict[Ref, int], tuple[int, ...]]:
-    """Give each surface a texture; one is free for another of its size and format after its last reader."""
+    """Give each surface a texture; one is free for another of its size and format after its last reader.
+
+    As registers are given to variables by a linear scan (Poletto and Sarkar 1999): surfaces are visited by their first
+    use, and those that have ended before give their textures back.
+    """
     slots: dict[Ref, int] = {}
     bytes_: list[int] = []
     free: dict[tuple[Size, str], list[int]] = {}

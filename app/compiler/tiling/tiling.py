@@ -235,7 +235,12 @@ class _StagePlanner:
         return [self.program.ops[index] for index in fused.members]
 
     def _plan_stage(self, outputs: dict[str, Ref], own: PassGroup | None) -> TileStage:
-        """A stage with the fewest tiles that fit."""
+        """A stage with the fewest tiles that fit.
+
+        Tiles are halved until they fit. Without a limit of memory, `usual` is what they may take: more than usual where
+        even the smallest tile needs it, because then smaller tiles would only read the same large surroundings more
+        often.
+        """
         passes = self._find_passes(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
         whole = any(op.is_indivisible for fused in passes for op in self._find_ops(fused))

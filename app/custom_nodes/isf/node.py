@@ -120,7 +120,10 @@ class _ShaderDrawing:
         self.lengths = lengths | {"WIDTH": float(draw.size[0]), "HEIGHT": float(draw.size[1])}
 
     def draw_passes(self) -> Drawn:
-        """Draw every pass, remember what is persistent; the last pass is the picture."""
+        """Draw every pass, remember what is persistent; the last pass is the picture.
+
+        A pass reads a buffer as it is at that moment: from the previous frame until its own pass has drawn it.
+        """
         sizes = {name: self._find_buffer_size(buffer) for name, buffer in self.header.buffers.items()}
         pictures = self._make_samplers(sizes)
         picture, drawn_buffers = None, set[str]()

@@ -71,7 +71,8 @@ def align_two(before: Graph, after: Graph, group: tuple[str, ...] = ()) -> tuple
 def align_three(base: Graph, ours: Graph, theirs: Graph) -> tuple[Graph, Graph, Graph]:
     """Three versions with the same ids: a new id that one side gave to a node of the base is used in all of them.
 
-    Where both sides renamed the same node differently, or two nodes to the same id, the old ids stay.
+    Without this, a renamed node would look removed and added, and each change of the other side to it would be a
+    conflict. Where both sides renamed the same node differently, or two nodes to the same id, the old ids stay.
     """
     our_renames, their_renames = find_renames(base, ours), find_renames(base, theirs)
     only_ours = {old: new for old, new in our_renames.items() if old not in their_renames and new not in theirs.nodes}

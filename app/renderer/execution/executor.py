@@ -139,6 +139,9 @@ class Executor:
             self.device.finish()
 
     def _execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
+        """Run a pass for those of its pictures that are not stored yet. If it fails, none of them stays under its key,
+        for a picture that is drawn in part must not be taken for a whole one.
+        """
         surfaces = [plan.surfaces[number] for number in render_pass.targets]
         missing = [surface for surface in surfaces if surface.key not in self.textures]
         for surface in surfaces:

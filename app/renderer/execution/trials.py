@@ -128,7 +128,11 @@ class TrialProcess:
             outcome.cancel()
 
     def _try(self, program: Mapping[str, Any], nodes: str, may_yield: bool) -> DeviceError | None:
-        """Try a program and wait for the answer. Raises CancelledError where it makes way for others."""
+        """Try a program and wait for the answer. Raises CancelledError where it makes way for others.
+
+        A thread reads the answer, since reading blocks: time and memory are watched meanwhile. The memory that counts
+        is what the process takes beyond that of a process without work.
+        """
         try:
             process = self._find_process()
         except OSError:

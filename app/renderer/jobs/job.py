@@ -166,6 +166,9 @@ class _Job:
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
     def run(self) -> list[FrameReport]:
+        """Render all frames. While the device renders one, the pictures of the next one are decoded and the frame after
+        that is planned; writing lags behind, in threads of its own.
+        """
         if self._resume and self._settings.videos:
             raise UsageError(
                 f"{self._settings.videos[0]}: a video is written anew as a whole: leave out --resume, or render "
@@ -302,6 +305,7 @@ class _Job:
         return metadata
 
     def _write_frame(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
+        """Hand the outputs of a frame to the write queue: `write` runs in its thread, later."""
         files_by_rows = self._row_writers.finish() if self._row_writers else frozenset[Path]()
 
         def write(outputs: Mapping[str, Array]) -> FrameReport:
@@ -309,10 +313,10 @@ class _Job:
             for file in task.files:
                 if file.path in files_by_rows:
                     continue
-                said = self._make_header(task, file)
+                header = self._make_header(task, file)
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 if file.path in self._settings.videos:
-                    self._video_writers.add_frame(file, layers, task.frame, said)
+                    self._video_writers.add_frame(file, layers, task.frame, header)
                     continue
                 media.write_picture(
                     file.path,
@@ -320,7 +324,7 @@ class _Job:
                     kinds=file.kinds,
                     precision=self._settings.precision,
                     compression=self._settings.compression,
-                    metadata=said,
+                    metadata=header,
                     encoding=file.encoding,
                     frame=task.frame,
                     sandbox=self._renderer.sandbox,

@@ -45,7 +45,10 @@ def serve(context: moderngl.Context) -> None:
 
 
 def try_program(context: moderngl.Context, program: dict[str, Any]) -> None:
-    """Compile a program and run it once. Raises moderngl.Error for one that the driver refuses."""
+    """Compile a program and run it once. Raises moderngl.Error for one that the driver refuses.
+
+    One work group or one triangle is enough: drivers finish compiling at the first use, whatever its size.
+    """
     handle = compile_program(context, program)
     resources: list[Any] = [handle]
     for name, value in (*program["tables"], *program["uniforms"]):
