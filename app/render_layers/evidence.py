@@ -112,7 +112,8 @@ def judge_depth_by_planes(depth: Array) -> Convention | None:
     """The kind of a depth [h, w] without positions: by its sign, or by the reading that makes planes flat.
 
     On a plane, 1 / planar depth is linear over the picture. So is inverse depth unchanged, and radial depth converted
-    with the right focal length. The flattest three tenths of the picture decide.
+    with the right focal length. Each sample is a cross of five pixels, whose second difference is 0 on a plane. The
+    flattest three tenths of the picture decide, because the rest may be bent.
     """
     height, width = depth.shape[:2]
     depth = depth.reshape(height, width)
@@ -184,7 +185,12 @@ def find_position_space(camera: CameraModel, position: Array) -> Convention:
 def match_normals_with_positions(
     normal: Array, position: Array, camera: CameraModel, home: VectorSpace = VectorSpace.WORLD
 ) -> Convention | None:
-    """The axes of normals, by the surfaces that neighboring positions span; `home` are the axes of positions."""
+    """The axes of normals, by the surfaces that neighboring positions span; `home` are the axes of positions.
+
+    The cross product of the differences of positions is the true normal, turned to the camera. Each candidate of axes
+    is compared with it by the median angle, which bent surfaces and edges do not disturb. Where two fit alike, as for a
+    camera that looks along an axis of the world, `home` is taken.
+    """
     height, width = normal.shape[:2]
     if min(width, height) < 3:
         return None
@@ -253,7 +259,11 @@ def match_velocity_with_cameras(
     velocity: Array, position: Array, here: CameraModel, before: CameraModel
 ) -> Convention | None:
     """The direction and unit of motion [h, w, 2], by where two cameras see the same positions; most of them must stand
-    still in the world. None if the camera hardly moves or no direction fits."""
+    still in the world. None if the camera hardly moves or no direction fits.
+
+    Each axis gives the median ratio of the stored motion to that of the cameras: its sign is the direction, its size
+    the unit. The medians ignore what moves by itself.
+    """
     height, width = velocity.shape[:2]
     rows, columns = sample_pixels((width, height), SAMPLES)
     places, stored = position[rows, columns, :3].astype(np.float64), velocity[rows, columns, :2].astype(np.float64)

@@ -58,7 +58,11 @@ class Node:
     """Why a proxy of half the size does not look like the full picture made smaller."""
 
     def __init_subclass__(cls, abstract: bool = False, **kwargs: Any) -> None:
-        """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses."""
+        """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses.
+
+        Values come in the order of the class body, with inherited ones after them: that is the order of the parameters
+        of its GLSL function.
+        """
         super().__init_subclass__(**kwargs)
         if abstract:
             return

@@ -60,7 +60,11 @@ class BoxBlur(Filter):
         return blurred
 
     def _box(self, draw: Draw, image: Pixels, axis: int, radius: float, before: int, apron: int) -> Drawn:
-        """One box along an axis of a picture that starts `before` pixels early; the result starts `apron` early."""
+        """One box along an axis of a picture that starts `before` pixels early; the result starts `apron` early.
+
+        The picture is reduced to means of blocks once. A wide box is then the sum of `count` blocks, with the pixels at
+        both ends that stand out or are missing subtracted or added one by one.
+        """
         whole = floor(radius)
         stride, count = _blocks(2 * whole + 1)
         shift, lead = before - apron, stride * (whole // stride + 2)

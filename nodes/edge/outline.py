@@ -32,6 +32,9 @@ class Outline(Filter):
     line = OutputSocket(Field(doc="How much of each pixel the line covers."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Find for each pixel the nearest edge of the mask in its column, with steps that halve, then the nearest of
+        those in its row: the exact distance, at a cost that grows with the logarithm of the width.
+        """
         mask: Pixels = (
             self.mask if draw.is_linked(self.mask) else draw.point("outline_alpha", self.image, result=Field())
         )

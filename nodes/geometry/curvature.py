@@ -45,6 +45,9 @@ class Curvature(Filter):
     mean = OutputSocket(Field(doc="Mean curvature per unit of length: above 0 on ridges, below 0 in cavities."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Use positions, linked or computed from depth. Without them only normals are compared, as seen by a camera
+        that is infinitely far away.
+        """
         camera, reach, field = draw.camera(self.camera), max(round(self.reach), 1), Field()
         places = self.position if draw.is_linked(self.position) else None
         if places is None and camera and draw.is_linked(self.depth):

@@ -102,6 +102,9 @@ class Scene(Source):
     camera_before = OutputSocket(CameraSocket(doc="The camera of the previous frame."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | CameraModel]:
+        """Shift all three cameras by the same jitter, so that it is no motion. The cameras that come out are without
+        it.
+        """
         scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)
         width, height = draw.size
         times = (draw.frame, draw.frame - 1, draw.frame + 1)

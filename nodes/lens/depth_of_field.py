@@ -146,6 +146,9 @@ class DepthOfField(Filter):
         return "image" if self.max_blur == 0.0 else None
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Compute the radius of every pixel's disc, repair antialiased edges, find the largest disc near each tile,
+        then gather: only as far as that disc reaches, and large discs at smaller sizes.
+        """
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
         sharp, clean = draw.several(
@@ -330,7 +333,7 @@ class DepthOfField(Filter):
         return light, cover
 
     def _rest(self, draw: Draw, image: Drawn, radius: Drawn, levels: int, finest: float) -> Drawn:
-        """What may lie behind what is near and blurred: all the rest, drawn in from where it is seen."""
+        """What may lie behind near and blurred surfaces: all other light, spread into the places that they hide."""
         block = 2**levels
         size, reach = _blocks(draw.size, block), math.ceil(finest) + 1
         light, weight = draw.several(

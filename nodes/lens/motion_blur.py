@@ -66,6 +66,9 @@ class MotionBlur(Filter):
         return "image" if self.shutter == 0.0 or self.max_length == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        """Repair antialiased edges, find the path of every pixel and the fastest one near each tile, then gather along
+        both.
+        """
         frames = self.shutter / (2.0 * math.pi)
         opens = {"centered": -0.5, "start": 0.0, "end": -1.0}[self.phase] * frames
         times, vector = (opens, opens + frames), Vector(width=4)

@@ -94,6 +94,9 @@ class AmbientOcclusion(Filter):
     )
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Measure at some pixels with a pattern of noise, average it away over pixels of the same surface, then
+        enlarge.
+        """
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         normal = draw(

@@ -82,6 +82,8 @@ class ImageBasedLight(Filter):
     reflection = OutputSocket(Image(doc="The reflected part."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Blur the surroundings once for each of a few roughnesses, so that a pixel needs few reads; the share that a
+        surface reflects at an angle comes from a small table (split sum, Karis 2013)."""
         camera = draw.camera(self.camera)
         rays = camera.inverse if camera else (0.0,) * 12
         mirror = shrunk(draw, "image_based_light", self.environment, _MIRROR)

@@ -82,6 +82,7 @@ class LightShafts(Filter):
     shafts = OutputSocket(Image(doc="The light of the haze alone; it covers nothing."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """March along the ray of every pixel with a pattern of noise, then average it away over neighbors."""
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         all_surfaces = surfaces(draw, self.depth, "light_shafts")

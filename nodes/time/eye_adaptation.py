@@ -56,6 +56,9 @@ class EyeAdaptation(Temporal):
     adapted = OutputSocket(Number(doc="The luminance to which the eye is adapted."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        """Follow the average of the picture: the one number that is remembered is the light to which the eye is
+        adapted.
+        """
         number, natural = Number(), self.model == "natural"
         if draw.is_linked(self.luminance):
             average = draw.point("eye_adaptation_given", self.luminance, result=number)

@@ -96,6 +96,9 @@ class LocalToneMap(Filter):
     clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps the light of strong colors beyond that.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
+        """Let the area around each pixel grow while its center and its surround are alike: each scale is blurred once,
+        and the surround of one is the center of the next.
+        """
         scene = draw.point(
             "local_tone_map_scene",
             result=Vector(width=3),

@@ -67,6 +67,9 @@ class ScotopicVision(Filter):
         return "image" if self.amount == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        """Mix the blur of each pixel from a ladder of blurs of the whole picture, because its sigma depends on its
+        light.
+        """
         light = draw.point(
             "scotopic_vision_light",
             self.image,

@@ -139,6 +139,7 @@ class LiveFields:
             self.context.session.seal()
 
     def _draw_popups(self, fields: Fields) -> None:
+        """Draw the popup of a field, at the place where it was opened: the node may move meanwhile, or be removed."""
         if self.open is None:
             return
         (port, value), opening, self._opening = self.open, self._opening, ""

@@ -293,6 +293,9 @@ class CanvasMouse:
         context.log.attempt(lambda: context.session.select(keys, band.mode))
 
     def _finish_link(self, frame: CanvasFrame, link: LinkGesture) -> None:
+        """Connect what the link was dropped on. On its own start it was a click, which shows the output in the viewer;
+        on nothing, a link that was picked up is removed, and a new one opens the search for nodes that fit.
+        """
         context, session = frame.context, frame.context.session
         snap = find_snap_pin(frame.scene, link, frame.pointer, _SNAP_REACH * frame.scale / frame.to.scale)
         if snap:

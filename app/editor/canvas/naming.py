@@ -42,7 +42,11 @@ class NameField:
         self.key, self._starting = key, True
 
     def draw(self, brush: DrawContext, scene: CanvasScene) -> None:
-        """Draw the field, and apply the text when the user leaves it."""
+        """Draw the field, and apply the text when the user leaves it.
+
+        imgui gives a field the focus in the frame after it was asked to. So a field without focus is one that was left
+        only after it has had the focus once.
+        """
         self.rect = None
         if not self.key:
             return

@@ -50,6 +50,7 @@ def _find_wire_rect(wire: Wire, to: CanvasTransform) -> tuple[str, Rect]:
 
 
 def _find_box_rects(box: ElementBox, brush: DrawContext) -> NamedRects:
+    """Where the parts of a box are on the screen, by names: tests and hints find them there."""
     if not overlaps(box.rect, brush.visible):
         return {}
     to, s, key = brush.to, brush.to.scale, box.key

@@ -169,7 +169,8 @@ def has_aligned_handles(keys: Keys, frame: float) -> bool:
 def pull_handle(keys: Keys, frame: float, channel: int, side: Side, to: tuple[float, float], both: bool) -> Keys:
     """Move the end of a handle to `to`: frames and value, relative to its key.
 
-    The other channels keep their slope. With `both` the other handle turns with it and stays as long in frames.
+    All channels of a key share the frames of its handles, so the other channels get longer or shorter in proportion and
+    keep their slope. With `both` the other handle turns with it and stays as long in frames.
     """
     old_handle, old_opposite = keys.handles(frame) if side == "left" else keys.handles(frame)[::-1]
     if not old_handle:

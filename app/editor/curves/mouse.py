@@ -195,6 +195,9 @@ class CurvesMouse:
     # --- going on ----------------------------------------------------------------------------------------------------
 
     def _continue(self, frame: CurvesFrame, io: imgui.IO) -> None:
+        """Go on with the gesture: each frame applies the change from where it began, and all of its changes are one
+        step of the history (`merge`).
+        """
         context, state, gesture = frame.context, frame.state, self.gesture
         if imgui.is_key_pressed(imgui.Key.escape):
             self._cancel(frame)

@@ -132,7 +132,11 @@ class Plot:
     # --- painting ----------------------------------------------------------------------------------------------------
 
     def paint(self, frame: CurvesFrame, rows: tuple[CurveRow, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
-        """Draw the grid of values, the curves, and on top of them keys and handles."""
+        """Draw the grid of values, the curves, and on top of them keys and handles.
+
+        Keys that are selected are drawn last. With very many keys all have one shape, which draws them much faster:
+        shapes could not be told apart then.
+        """
         draw, scale = imgui.get_window_draw_list(), frame.scale
         inks = self._choose_inks(frame, rows)
         for ways in self._paths:

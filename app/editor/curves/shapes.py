@@ -49,7 +49,11 @@ def make_pieces(keys: Keys, channel: int) -> Pieces:
 
 
 def make_all_pieces(keys: Keys) -> list[Pieces]:
-    """Every channel between the first and the last key."""
+    """Every channel between the first and the last key, as cubic Bezier curves.
+
+    Steps and straight lines are cubics with two equal points at each end, so that everything after this knows one kind
+    of piece.
+    """
     count = max((len(key.channels) for key in keys.keys), default=0) or 1
     cubics: list[tuple[tuple[float, ...], ...]] = []
     key_points = [(key.frame, *(read_key_channel(key, channel) for channel in range(count))) for key in keys.keys]
@@ -122,7 +126,11 @@ def project_pieces(
 
 
 def flatten_curves(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
-    """Every curve as points on the screen, as far as it is seen: none where nothing of it is."""
+    """Every curve as points on the screen, as far as it is seen: none where nothing of it is.
+
+    The number of lines of a piece follows from how far it bends: `sqrt(3/4 bend / tolerance)` keeps the lines within
+    the tolerance (Wang's formula for cubics). All pieces of all curves are computed in one go by numpy.
+    """
     view = plane.view
     visible_curves = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
     screen, bent = project_pieces(np.concatenate([np.empty((0, 4, 2)), *visible_curves]), plane)
@@ -220,7 +228,10 @@ def _make_straight(start: tuple[float, float], end: tuple[float, float]) -> Piec
 
 
 def _repeat_pieces(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
-    """The pieces between the ends, repeated forwards or to and fro over the visible frames."""
+    """The pieces between the ends, repeated forwards or to and fro over the visible frames.
+
+    A loop jumps from its last value to its first one: `jump` is the upright line between them.
+    """
     start, end = keys.frames[0], keys.frames[-1]
     span = end - start
     back = inner[::-1, ::-1].copy()

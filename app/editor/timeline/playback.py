@@ -97,7 +97,9 @@ class Playback:
     def tick(self, time_now: float, busy: bool, under_way: int | None = None) -> int | None:
         """The frame to show now, None if playback has ended.
 
-        A frame that is being computed is waited for: for now if `busy`, else `under_way` for later.
+        A frame that is being computed is waited for: for now if `busy`, else `under_way` for later. If every frame is
+        shown, a late one moves the start of the clock, so that the next ones are not hurried; else frames that are late
+        are dropped and counted.
         """
         course = self.course
         if course is None:

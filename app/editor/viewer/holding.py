@@ -71,7 +71,10 @@ def aim(
     alt: bool = False,
     shift: bool = False,
 ) -> HandleTarget:
-    """The handle under the mouse. `scale` is the UI scale."""
+    """The handle under the mouse. `scale` is the UI scale.
+
+    Modes come first, then the smallest things, then what fills the picture: a handle on top of a wipe can be taken.
+    """
     viewer, reach = context.viewer, REACH * scale
     if viewer.picking:
         return HandleTarget("pick")

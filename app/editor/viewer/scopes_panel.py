@@ -101,7 +101,8 @@ class ScopesPanel:
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
     def _refresh(self, image: DisplayedImage, names: list[str]) -> None:
-        """Measure again if the picture, or how it is shown, has changed, but not too often."""
+        """Measure again if the picture, or how it is shown, has changed, but not too often. The mark holds all that a
+        scope depends on."""
         viewer = self._context.viewer
         mark = (
             image.key,
