@@ -4,6 +4,6 @@ from __future__ import annotations
 
 from .migrations import FORMAT, MIGRATIONS
 from .reading import load, loads
-from .writing import dumps, save
+from .writing import dumps, find_first_difference, save
 
-__all__ = ["FORMAT", "MIGRATIONS", "dumps", "load", "loads", "save"]
+__all__ = ["FORMAT", "MIGRATIONS", "dumps", "find_first_difference", "load", "loads", "save"]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from json.encoder import encode_basestring
 from types import MappingProxyType
 from typing import Any, cast
@@ -22,6 +22,8 @@ _TEXT = frozenset({str})
 _SCALARS = frozenset({str, int, float, bool, type(None)})
 """Types that hold no others. Most parts of a file have one, which is known sooner than by `isinstance`."""
 
+_MAPPINGS = (dict, MappingProxyType, Mapping)
+"""The first two are known sooner than by the questions that the third one asks."""
 
 _PLAIN: Mapping[type, Callable[[Any], str]] = MappingProxyType(
     {str: encode_basestring, int: int.__repr__, bool: lambda item: "true" if item else "false"}
@@ -31,12 +33,31 @@ _PLAIN: Mapping[type, Callable[[Any], str]] = MappingProxyType(
 
 def pretty(document: Mapping[str, Any]) -> str:
     """Sorted keys, two spaces, one line for all that fits but code. Raises GraphError for what JSON cannot hold."""
-    return _text(document, 0, 0, None, 1) + "\n"
+    return "".join(write_parts(document))
 
 
-def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) -> str:
+def write_parts(document: Mapping[str, Any]) -> Iterator[str]:
+    """The text of `pretty` in parts: a comparison with another text needs only those up to the first difference."""
+    before = "{\n  "
+    for key in _sort_keys(document, None):
+        section, trail = document[key], Trail(None, key)
+        if key in _SPREAD and section and isinstance(section, _MAPPINGS):
+            entries = cast("Mapping[str, Any]", section)
+            yield f"{before}{encode_basestring(key)}: "
+            inner_before = "{\n    "
+            for name in _sort_keys(entries, trail):
+                yield inner_before + _entry(name, entries[name], 4, trail, 2)
+                inner_before = ",\n    "
+            yield "\n  }"
+        else:
+            yield before + _entry(key, section, 2, None, 1)
+        before = ",\n  "
+    yield "\n}\n" if document else "{}\n"
+
+
+def _text(item: Any, indent: int, column: int, trail: Trail, depth: int) -> str:
     """`item` as text that starts at `column` of a line with this `indent`."""
-    if type(item) in _SCALARS or not isinstance(item, (dict, MappingProxyType, list, tuple, Mapping)):
+    if type(item) in _SCALARS or not isinstance(item, (*_MAPPINGS, list, tuple)):
         return _scalar(item, trail)
     if not item:
         return "[]" if isinstance(item, list | tuple) else "{}"
@@ -45,35 +66,37 @@ def _text(item: Any, indent: int, column: int, trail: Trail | None, depth: int) 
         raise GraphError(
             f"{where}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files"
         )
-    inner, texts = indent + 2, list[str]()
-    if not isinstance(item, list | tuple):
-        mapping = cast("Mapping[str, Any]", item)
-        if not _TEXT.issuperset(map(type, mapping)):
-            odd = next(key for key in mapping if type(key) is not str)
-            raise GraphError(f"{spell_path(trail)}: the key {odd!r} cannot be saved; JSON has only text as keys")
-        opening, closing = "{", "}"
-        for key in sorted(mapping):
-            start, part = f"{encode_basestring(key)}: ", mapping[key]
-            plain = _PLAIN.get(type(cast("object", part)))  # most parts are such, and need no trail
-            texts.append(
-                start + (plain(part) if plain else _text(part, inner, inner + len(start), Trail(trail, key), depth + 1))
-            )
-    else:
+    inner, is_code = indent + 2, False
+    if isinstance(item, list | tuple):
         opening, closing = "[", "]"
-        texts += [
-            _text(part, inner, inner, Trail(trail, place), depth + 1)
-            for place, part in enumerate(cast("list[Any]", item))
-        ]
+        parts = enumerate(cast("list[Any]", item))
+        texts = [_text(part, inner, inner, Trail(trail, place), depth + 1) for place, part in parts]
+        is_code = trail.outer is not None and trail.key == "code" and len(texts) > 1
+    else:
+        opening, closing = "{", "}"
+        mapping = cast("Mapping[str, Any]", item)
+        texts = [_entry(key, mapping[key], inner, trail, depth) for key in _sort_keys(mapping, trail)]
     # The first test is for speed: most long items need not be written to see that they do not fit.
-    length = sum(map(len, texts)) + 2 * len(texts)
-    section = trail is not None and trail.outer is None and trail.key in _SPREAD
-    is_code = opening == "[" and trail is not None and trail.outer and trail.key == "code" and len(texts) > 1
-    if column + length < WIDTH and trail is not None and not section and not is_code:
+    if column + sum(map(len, texts)) + 2 * len(texts) < WIDTH and not is_code:
         flat = f"{opening}{', '.join(texts)}{closing}"
         if "\n" not in flat:
             return flat
     lines = ",\n".join(" " * inner + text for text in texts)
     return f"{opening}\n{lines}\n{' ' * indent}{closing}"
+
+
+def _entry(key: str, part: Any, indent: int, trail: Trail | None, depth: int) -> str:
+    """A key and what it stands for, within an object at this depth."""
+    start = f"{encode_basestring(key)}: "
+    plain = _PLAIN.get(type(part))  # most parts are such, and need no trail
+    return start + (plain(part) if plain else _text(part, indent, indent + len(start), Trail(trail, key), depth + 1))
+
+
+def _sort_keys(mapping: Mapping[str, Any], trail: Trail | None) -> list[str]:
+    if not _TEXT.issuperset(map(type, mapping)):
+        odd = next(key for key in mapping if type(key) is not str)
+        raise GraphError(f"{spell_path(trail)}: the key {odd!r} cannot be saved; JSON has only text as keys")
+    return sorted(mapping)
 
 
 def _scalar(item: Any, trail: Trail | None) -> str:

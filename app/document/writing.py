@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from os.path import commonprefix
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import Sandbox
 from .animation import describe_animation
-from .canonical import pretty
+from .canonical import pretty, write_parts
 from .code import describe_code
 from .limits import size_fault
 from .migrations import FORMAT
@@ -33,12 +34,31 @@ Section = dict[str, Any]
 
 def dumps(graph: Graph) -> str:
     """The canonical text of a graph. Raises GraphError for a value that JSON cannot hold."""
-    text = pretty({"halation": FORMAT, **_graph(graph)})
+    text = pretty(_document(graph))
     try:
         text.encode()
     except UnicodeEncodeError as error:
         raise GraphError(f"the graph holds {error.object[error.start]!r}, which is not valid Unicode") from None
     return text
+
+
+def find_first_difference(graph: Graph, text: str) -> int | None:
+    """The first line in which a text differs from the canonical one of a graph, from 1 on; None if they are equal.
+
+    No more of the canonical text is written than that. Raises GraphError for names and values that cannot be saved.
+    """
+    place = 0
+    for part in write_parts(_document(graph)):
+        if not text.startswith(part, place):
+            shared = len(commonprefix((text[place : place + len(part)], part)))
+            place += shared
+            # Where one of them ends, the other has a line more.
+            ends = place == len(text) and part[shared] == "\n"
+            return text.count("\n", 0, place) + 1 + ends
+        place += len(part)
+    if place == len(text):
+        return None
+    return text.count("\n", 0, place) + 1 + (text[place] == "\n")
 
 
 def save(graph: Graph, path: str | Path, sandbox: Sandbox) -> None:
@@ -50,6 +70,10 @@ def save(graph: Graph, path: str | Path, sandbox: Sandbox) -> None:
     if fault := size_fault(len(text.encode())):
         raise OutputError(f"{path}: it is not saved, because it could not be read again: {fault}")
     write_text_atomically(Path(path), text, sandbox=sandbox)
+
+
+def _document(graph: Graph) -> Section:
+    return {"halation": FORMAT, **_graph(graph)}
 
 
 def _graph(graph: Graph) -> Section:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from itertools import zip_longest
 from typing import Any, cast
 
 from halation.nodes import Node
@@ -73,17 +72,14 @@ def explain_fault(fault: DocumentError, text: str) -> tuple[Problem, int]:
 def find_text_problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterator[tuple[Problem, int]]:
     """Problems of the text of a graph, with their lines; 0 if the JSON path gives the line."""
     try:
-        canonical = document.dumps(graph)
+        # A checkout on Windows may have other line ends; git is responsible for these.
+        line = document.find_first_difference(graph, text.replace("\r\n", "\n"))
     except GraphError:
         return
-    # A checkout on Windows may have other line ends; git is responsible for these.
-    lines = text.replace("\r\n", "\n")
-    if lines == canonical:
+    if line is None:
         return
     if _grown(graph):
         yield from ((problem, 0) for problem in _old(parse(text, ""), types, ""))
-    pairs = enumerate(zip_longest(lines.split("\n"), canonical.split("\n")), 1)
-    line = next((number for number, (here, there) in pairs if here != there), 1)
     words = "the layout is not the canonical one from here on: halation fmt rewrites it"
     yield Problem("", "", words, NOT_CANONICAL), line
 

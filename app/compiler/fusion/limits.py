@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..ir import LoweredProgram, Op, Ref
+from ..ir import LoweredProgram, Op, PictureShape, Ref
 from ..target import Target
 from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables
 
@@ -21,6 +21,20 @@ def fits(program: LoweredProgram, group: PassGroup, target: Target) -> bool:
         and len(group.members) <= MAX_MEMBERS
         and sum(program.ops[index].uniform_floats for index in group.members) <= MAX_UNIFORMS
     )
+
+
+def operations_fit(program: LoweredProgram, target: Target) -> bool:
+    """True if no pass can be too large for a device, whatever is fused: no picture of any operation is, and the device
+    has all the memory that it needs. A pass writes no more at once than its last operation, or is checked by `fits`.
+    """
+    if target.memory:
+        return False
+    most = min(target.max_images, target.max_targets)
+    return all(len(op.shapes) <= most and _is_storable(op.shapes, target) for op in program.ops)
+
+
+def _is_storable(shapes: tuple[PictureShape, ...], target: Target) -> bool:
+    return all(max(shape.size) <= target.max_size for shape in shapes)
 
 
 def order_members(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
