@@ -8,15 +8,14 @@ the nodes that changed (`lowering.incremental`), and scheduling rewrites only th
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Container, Generator, Mapping
-from contextlib import contextmanager
+from collections.abc import Container, Mapping
 
 from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import replace
 
 from ..graph import Graph, Port, color_settings
+from ..resources.collection import pause_collection
 from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .areas import Region
@@ -66,18 +65,6 @@ class PlanRecord(Struct, frozen=True):
     region: ScheduleRecord | None
 
 
-@contextmanager
-def _pause_collection() -> Generator[None]:
-    """Stop the garbage collector: most objects of a plan live on, and each collection would visit all plans."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
-
-
 class Planner:
     """Compiles graphs one after the other and reuses results of earlier plans.
 
@@ -87,7 +74,7 @@ class Planner:
     def __init__(self) -> None:
         self._records: list[PlanRecord] = []
 
-    @_pause_collection()
+    @pause_collection()
     def plan(
         self,
         graph: Graph,
@@ -203,7 +190,6 @@ def compile_graph(
     return Planner().plan(graph, request, provider, target=target, precision=precision, library=library, fusion=fusion)
 
 
-@_pause_collection()
 def examine(graph: Graph, request: Request, provider: ResourceProvider, target: Target = NULL) -> None:
     """Raise the errors of `compile_graph` in a third of its time: no program is written.
 

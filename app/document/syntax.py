@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from functools import reduce
+from functools import partial, reduce
 from itertools import accumulate
 from typing import Any, NamedTuple, cast
 
@@ -49,7 +49,7 @@ def parse(text: str, file: str) -> dict[str, Any]:
         raise DocumentError(file, "", fault)
     odd_objects: list[_Twice] = []
     try:
-        tree: Any = json.loads(text, object_pairs_hook=lambda pairs: _make_object(pairs, odd_objects))
+        tree: Any = json.loads(text, object_pairs_hook=partial(_make_object, odd_objects))
     except json.JSONDecodeError as error:
         clause, offset = explain_syntax(text, error)
         line, column = text.count("\n", 0, offset) + 1, offset - text.rfind("\n", 0, offset)
@@ -118,7 +118,7 @@ def _shape_fault(outline: str) -> str | None:
     return None
 
 
-def _make_object(pairs: list[tuple[str, Any]], odd_objects: list[_Twice]) -> dict[str, Any]:
+def _make_object(odd_objects: list[_Twice], pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     """An object of the text; one with a key that is there twice or too long goes to `odd_objects` as well."""
     plain = dict(pairs)
     if len(plain) == len(pairs) and max(map(len, plain), default=0) <= MAX_KEY:

@@ -20,7 +20,7 @@ from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault,
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
 from .values import coerce_numbers, sequence_fault, value_fault
-from .walk import describe_loop, find_loops
+from .walk import describe_loop, find_loops, has_loops
 
 _REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
 """A package and its version, as pip takes them. Anything else in a file is not repeated as a command to type."""
@@ -108,12 +108,17 @@ def _inside(graph: Graph, node_types: Mapping[str, type[Node]], depth: int) -> I
         yield from _check_inputs(graph, id, item, id in needed)
         if isinstance(item, Group):
             yield from _group(id, item, node_types, depth)
-    for loop in find_loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
+    for loop in find_loops(_sort_feeding(graph)) if has_loops(graph.feeding) else ():
         yield Problem(loop[0], "", describe_loop(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
     for node, socket, sentence, at in find_unmerged(graph.extra):
         yield Problem(node, socket, sentence, rules.UNMERGED, at)
+
+
+def _sort_feeding(graph: Graph) -> dict[str, list[str]]:
+    """The nodes that feed each node, in an order that does not change, so that the same loop is always named."""
+    return {id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}
 
 
 def _unknown(id: str, item: Unknown, node_types: Mapping[str, type[Node]]) -> Problem:

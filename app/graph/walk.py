@@ -34,6 +34,23 @@ def sort_topologically(steps: Steps) -> tuple[str, ...]:
     return tuple(TopologicalSorter(steps).static_order())
 
 
+def has_loops(steps: Mapping[N, Collection[N]]) -> bool:
+    """True if a name leads to itself. Names that lead nowhere are removed until none is left (Kahn 1962)."""
+    befores: dict[N, list[N]] = {name: [] for name in steps}
+    for name, afters in steps.items():
+        for after in afters:
+            if after in befores:
+                befores[after].append(name)
+    counts = {name: sum(map(befores.__contains__, afters)) for name, afters in steps.items()}
+    removed = [name for name, count in counts.items() if not count]
+    for name in removed:
+        for before in befores[name]:
+            counts[before] -= 1
+            if not counts[before]:
+                removed.append(before)
+    return len(removed) < len(steps)
+
+
 def find_loops(steps: Steps, max_count: int = 8) -> tuple[tuple[str, ...], ...]:
     """Up to `max_count` loops that share no name, each as `a, b, a`."""
     remaining, loops_found = {name: set(after) for name, after in steps.items()}, list[tuple[str, ...]]()
@@ -126,11 +143,23 @@ class Wired(Generic[T]):
         """Why a link from `source` cannot feed `target`, loops aside, or None."""
         raise NotImplementedError
 
+    def _classify_link(self, source: Port, target: Port) -> Hashable:
+        """What decides about a link: if one can be, so can all of the same class."""
+        raise NotImplementedError
+
     @cached_property
     def link_faults(self) -> Mapping[Port, str]:
         """Why links cannot be, by target, loops aside."""
-        faults = ((target, self.link_fault(source, target)) for target, source in self.links.items())
-        return MappingProxyType({target: fault for target, fault in faults if fault})
+        faults, valid_classes = dict[Port, str](), set[Hashable]()
+        for target, source in self.links.items():
+            link_class = self._classify_link(source, target)
+            if link_class in valid_classes:
+                continue
+            if fault := self.link_fault(source, target):
+                faults[target] = fault
+            else:
+                valid_classes.add(link_class)
+        return MappingProxyType(faults)
 
     def order(self) -> tuple[str, ...]:
         """All nodes, each after those that feed it; the same for equal graphs. Raises GraphError that names a loop."""

@@ -19,6 +19,7 @@ from ..graph import Graph, Group, Problem
 from ..graph.names import limit_suggestions
 from ..graph.rules import RULES as GRAPH_RULES
 from ..graph.rules import Rule
+from ..resources.collection import pause_collection
 from ..resources.sandbox import Sandbox
 from . import allowing, compiled, surroundings, texts
 from .rules import CHECKS
@@ -100,7 +101,7 @@ class GraphChecker(Struct, dict=True, eq=False):
 
     def check_text(self, text: str, file: str, folder: str) -> CheckReport:
         """Check the text of a graph. Relative paths in it start at `folder`."""
-        with limit_suggestions():
+        with limit_suggestions(), pause_collection():
             try:
                 whole_graph = document.loads(text, file, folder, self.types, sandbox=self.sandbox)
             except DocumentError as fault:

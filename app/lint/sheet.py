@@ -47,6 +47,15 @@ class GraphFacts(Struct, frozen=True, dict=True, eq=False):
         """The node with an id; None if it does not exist or passes its picture through."""
         return self._working.get(id)
 
+    def list_having(self, *traits: Trait) -> list[tuple[str, Node]]:
+        """The nodes with one of these traits that do not pass their picture through."""
+        kinds = {kind for kind in self._kinds if any(trait in kind.traits for trait in traits)}
+        return [(id, item) for id, item in self._working.items() if type(item) in kinds and isinstance(item, Node)]
+
+    @cached_property
+    def _kinds(self) -> frozenset[type[Node]]:
+        return frozenset(type(item) for item in self.graph.nodes.values() if isinstance(item, Node))
+
     @cached_property
     def _working(self) -> dict[str, Item]:
         return {

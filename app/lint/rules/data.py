@@ -9,7 +9,7 @@ from halation.nodes import Kind, Trait
 
 from ...graph import INPUTS, Graph, Port, Problem
 from ...graph.rules import Rule
-from ..sheet import Check, GraphFacts, has_trait, layer_read
+from ..sheet import Check, GraphFacts, layer_read
 
 DATA_AS_COLOR = Rule(
     "data-as-color",
@@ -28,9 +28,8 @@ _DATA = re.compile(
 
 def find(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that need color, but are linked to a data layer."""
-    for id in sheet.graph.nodes:
-        item = sheet.works(id)
-        if has_trait(item, Trait.NEEDS_COLOR) and (source := sheet.first(id)) and (layer := _data(sheet, source)):
+    for id, item in sheet.list_having(Trait.NEEDS_COLOR):
+        if (source := sheet.first(id)) and (layer := _data(sheet, source)):
             name = next(iter(item.inputs))
             sentence = f"'{id}' is about color, and '{source}' is data ({layer}): link a picture to '{id}.{name}'"
             yield Problem(id, name, sentence, DATA_AS_COLOR, f"links.{id}.{name}")

@@ -30,13 +30,11 @@ _PLACES = frozenset({"pixel", "extent"})
 
 def find_double_filtering(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that resample a picture directly after another node that resamples it."""
-    for id in sheet.graph.nodes:
-        item = sheet.works(id)
-        if has_trait(item, Trait.RESAMPLES):
-            before, between = _find_earlier_filter(sheet, id)
-            if before and (remedy := _remedy(sheet, before, between, id)):
-                sentence = f"'{before}' and '{id}' filter the picture twice: {remedy}"
-                yield Problem(id, next(iter(item.inputs)), sentence, FILTERING_TWICE, f"nodes.{id}")
+    for id, item in sheet.list_having(Trait.RESAMPLES):
+        before, between = _find_earlier_filter(sheet, id)
+        if before and (remedy := _remedy(sheet, before, between, id)):
+            sentence = f"'{before}' and '{id}' filter the picture twice: {remedy}"
+            yield Problem(id, next(iter(item.inputs)), sentence, FILTERING_TWICE, f"nodes.{id}")
 
 
 def _find_earlier_filter(sheet: GraphFacts, id: str) -> tuple[str, list[str]]:

@@ -55,9 +55,8 @@ def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
 
 def find_clipped_light(sheet: GraphFacts) -> Iterator[Problem]:
     """Nodes that need light above white, directly after a file that cannot hold any."""
-    for id in sheet.graph.nodes:
-        item = sheet.works(id)
-        if has_trait(item, Trait.NEEDS_HIGHLIGHTS) and (source := sheet.first(id)):
+    for id, item in sheet.list_having(Trait.NEEDS_HIGHLIGHTS):
+        if source := sheet.first(id):
             file = _find_file(sheet, source)
             if PurePath(file).suffix.lower() in _BYTES:
                 sentence = f"'{id}' needs light brighter than white, and '{file}' cannot hold any: read an EXR"
