@@ -43,6 +43,8 @@ Types = Mapping[str, type[Node]]
 Migrations = Mapping[int, Migration]
 Extra = dict[str, Mapping[str, Any]]
 
+_LANGUAGES = frozenset(get_args(Language))
+
 _DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
 """Exceptions that a migration may raise if the old file is damaged."""
 
@@ -130,9 +132,9 @@ class _BodyReader(Struct):
         reader.keep_unknown("settings", record.settings, records.SettingsRecord)
         color = convert(settings.color, records.ColorRecord, self.file, member(at, "settings.color"))
         reader.keep_unknown("settings.color", settings.color, records.ColorRecord)
-        nodes, muted, count = dict[str, Item](), set[str](), 0
+        nodes, muted, count, section = dict[str, Item](), set[str](), 0, member(at, "nodes")
         for id, node in record.nodes.items():
-            where = reader.entry_path(at, "nodes", id, "node")
+            where = reader.entry_path(section, id, "node")
             common = convert(node, records.TypeRecord, self.file, where)
             nodes[id], number = reader.read_item(id, node, common.type, where, depth)
             count += number
@@ -167,11 +169,11 @@ class _BodyReader(Struct):
         if keys := unknown_keys(raw, kind):
             self.extra[path] = keys
 
-    def entry_path(self, at: str, section: str, name: str, kind: str) -> str:
-        """The JSON path of an entry. Raises DocumentError for an invalid name."""
+    def entry_path(self, section: str, name: str, kind: str) -> str:
+        """The JSON path of an entry of the section at this path. Raises DocumentError for an invalid name."""
         if fault := name_fault(name, kind):
-            raise DocumentError(self.file, member(at, section), fault)
-        return member(member(at, section), name)
+            raise DocumentError(self.file, section, fault)
+        return member(section, name)
 
     def parse_port(self, text: Any, path: str) -> Port:
         """The port that a link or control at `path` names."""
@@ -192,7 +194,7 @@ class _BodyReader(Struct):
 
     def read_input(self, name: str, raw: Any, at: str) -> Input:
         """An entry of `inputs`."""
-        where = self.entry_path(at, "inputs", name, "input")
+        where = self.entry_path(member(at, "inputs"), name, "input")
         record = convert(raw, records.InputRecord, self.file, where)
         self.keep_unknown(f"inputs.{name}", raw, records.InputRecord)
         kind, width = read_type(record.type, self.file, where)
@@ -202,14 +204,14 @@ class _BodyReader(Struct):
 
     def read_output(self, name: str, raw: Any, at: str) -> Output:
         """An entry of `outputs`."""
-        where = self.entry_path(at, "outputs", name, "output")
+        where = self.entry_path(member(at, "outputs"), name, "output")
         record = convert(raw, records.OutputRecord, self.file, where)
         self.keep_unknown(f"outputs.{name}", raw, records.OutputRecord)
         return Output(*read_type(record.type, self.file, where), record.layer, record.view)
 
     def read_control(self, name: str, raw: Any, at: str) -> Control:
         """An entry of `controls`."""
-        where = self.entry_path(at, "controls", name, "control")
+        where = self.entry_path(member(at, "controls"), name, "control")
         record = convert(raw, records.ControlRecord, self.file, where)
         self.keep_unknown(f"controls.{name}", raw, records.ControlRecord)
         return Control(self.parse_port(record.target, member(where, "target")), record.label, record.doc)
@@ -230,7 +232,7 @@ class _BodyReader(Struct):
         reads_files = self.loading.sandbox is not None
         if type == "group" and (reads_files or not raw.get("path")):
             return self.read_group(id, raw, at, depth)
-        if type in get_args(Language) and (reads_files or not raw.get("file")):
+        if type in _LANGUAGES and (reads_files or not raw.get("file")):
             return self.read_code_node(id, raw, cast("Language", type), at), 1
         if type not in self.loading.types:
             return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1

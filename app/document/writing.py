@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
-from os.path import commonprefix
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +49,8 @@ def find_first_difference(graph: Graph, text: str) -> int | None:
     place = 0
     for part in write_parts(_document(graph)):
         if not text.startswith(part, place):
-            shared = len(commonprefix((text[place : place + len(part)], part)))
+            pairs = enumerate(zip(text[place : place + len(part)], part, strict=False))
+            shared = next((count for count, (here, there) in pairs if here != there), len(text) - place)
             place += shared
             # Where one of them ends, the other has a line more.
             ends = place == len(text) and part[shared] == "\n"

@@ -104,7 +104,8 @@ class Unknown(Struct, frozen=True):
     fault: str = ""
 
     def __post_init__(self) -> None:
-        force_setattr(self, "raw", freeze(self.raw))
+        if self.raw:
+            force_setattr(self, "raw", freeze(self.raw))
 
 
 @dataclass(frozen=True)

@@ -133,6 +133,8 @@ def _unknown(id: str, item: Unknown, node_types: Mapping[str, type[Node]]) -> Pr
 def _plugin_fault(item: Unknown) -> str:
     """Why the plug-in that a node comes from does not give it, and what to install; "" for a node of none."""
     package = item.raw.get("package")
+    if package is None and "." not in item.type:
+        return ""
     requirement = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
     namespace = item.type.partition(".")[0]
     name = _normalize(requirement.partition("==")[0])

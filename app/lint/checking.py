@@ -138,18 +138,19 @@ class GraphChecker(Struct, dict=True, eq=False):
         self, file: str, text: str, whole_graph: Graph | None, problems: Iterator[tuple[Problem, int, int]]
     ) -> CheckReport:
         reported, used = list[tuple[Problem, int, int]](), set[str]()
+        allowing_graph = whole_graph if whole_graph is not None and whole_graph.settings.allow else None
         for item in problems:
             if item[0].rule.name in self.off:
                 continue
-            if whole_graph is not None and (entry := allowing.find_allowance(whole_graph, item[0])):
+            if allowing_graph is not None and (entry := allowing.find_allowance(allowing_graph, item[0])):
                 used.add(entry)
             else:
                 reported.append(item)
-        if whole_graph is not None and whole_graph.settings.allow and allowing.STALE_ALLOW.name not in self.off:
+        if allowing_graph is not None and allowing.STALE_ALLOW.name not in self.off:
             whole = not any(problem.severity == "error" for problem, _, _ in reported)
             unsure = {*_OUTER, *self.off} if whole else RULES
             reported += [
-                (problem, 0, 0) for problem in allowing.find_stale_allowances(whole_graph, used, RULES, unsure)
+                (problem, 0, 0) for problem in allowing.find_stale_allowances(allowing_graph, used, RULES, unsure)
             ]
         if not reported:
             return CheckReport(file, ())

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import json
+from itertools import zip_longest
 from random import Random
 from typing import Any
 
 import pytest
-from halation.document import FORMAT, dumps, loads
+from halation.document import FORMAT, dumps, find_first_difference, loads
 from halation.document.canonical import WIDTH, pretty
 from halation.errors import GraphError
 from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown, problems
@@ -244,3 +245,23 @@ def test_unknown_controls_of_groups_are_kept() -> None:
     graph = read(json.dumps(raw))
     assert graph.extra["nodes.g.values"] == {"gone": 1}
     assert dumps(graph) == pretty({**raw, "nodes": {"g": raw["nodes"]["g"]}})
+
+
+@settings(max_examples=200)
+@given(st.integers(0, 2**32), st.randoms(use_true_random=False), st.sampled_from(["cut", "insert", "replace", "add"]))
+def test_the_first_line_that_differs_from_the_canonical_text(seed: int, rng: Random, change: str) -> None:
+    graph = random_graph(Random(seed))
+    text = canonical = dumps(graph)
+    assert find_first_difference(graph, canonical) is None
+    at, letters = rng.randrange(len(text)), rng.choice(("\n", "x", "\n\n", '"', "}\n"))
+    match change:
+        case "cut":
+            text = text[:at]
+        case "insert":
+            text = text[:at] + letters + text[at:]
+        case "replace":
+            text = text[:at] + letters + text[at + 1 :]
+        case _:
+            text += letters
+    pairs = enumerate(zip_longest(text.split("\n"), canonical.split("\n")), 1)
+    assert find_first_difference(graph, text) == next((line for line, (here, there) in pairs if here != there), None)

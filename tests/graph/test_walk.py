@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 import numpy as np
-from halation.graph.walk import find_cyclic, find_reachable
+from halation.graph.walk import find_cyclic, find_reachable, has_loops
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.sparse import csr_matrix
@@ -24,6 +24,7 @@ def test_what_leads_to_itself_is_in_a_strong_component(seed: int, count: int) ->
     _, labels = connected_components(csr_matrix(matrix), connection="strong")
     sizes = np.bincount(labels)
     assert find_cyclic(steps) == {name for name in range(count) if sizes[labels[name]] > 1 or matrix[name, name]}
+    assert has_loops(steps) == any(sizes[labels[name]] > 1 or matrix[name, name] for name in range(count))
     away = shortest_path(csr_matrix(matrix), unweighted=True)
     start = rng.randrange(count)
     reachable = find_reachable([start], steps)

@@ -45,6 +45,14 @@ def test_four_times_the_graph_is_four_times_the_work(name: str) -> None:
     assert ratio < 5.0, f"{ratio:.1f} times the calls"
 
 
+@pytest.mark.parametrize(("name", "most"), [("chain", 340), ("fan", 380), ("mistyped", 200)])
+def test_a_node_is_checked_with_few_calls(name: str, most: int) -> None:
+    """A file may hold 100,000 nodes, and a million calls take a second at most."""
+    check(json.dumps(GRAPHS[name](5)))
+    small, large = (count_calls(lambda text=json.dumps(GRAPHS[name](count)): check(text)) for count in (2000, 4000))
+    assert (large - small) / 2000 < most
+
+
 @pytest.mark.parametrize("name", sorted(TEXTS))
 def test_memory_stays_in_proportion_to_the_text(name: str) -> None:
     """Paths of parts were spelled in full: gigabytes for 40,000 brackets."""
