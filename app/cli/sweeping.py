@@ -62,7 +62,7 @@ def parse_axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tupl
 def _find_value(graph: Graph, name: str) -> Value | None:
     """The value that a name stands for, or None; setting an unknown name raises an error later."""
     from ..errors import GraphError
-    from ..graph import Group, find_value
+    from ..graph import Group, Port
     from ..graph.graph import control_value
 
     head, dot, rest = name.partition(".")
@@ -72,7 +72,7 @@ def _find_value(graph: Graph, name: str) -> Value | None:
         item = graph.node(head)
         if "." in rest:
             return _find_value(item.body(), rest) if isinstance(item, Group) else None
-        return find_value(item, rest, head)
+        return graph.declaration(Port(head, rest))
     except GraphError:
         return None
 

@@ -78,10 +78,13 @@ class CustomNode(Node, abstract=True):
         raise FrozenInstanceError(f"cannot assign to field {name!r}")
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and self._settings == cast("CustomNode", other)._settings
+        if type(self) is not type(other):
+            return False
+        node = cast("CustomNode", other)
+        return self._settings == node._settings and self.length_units == node.length_units
 
     def __hash__(self) -> int:
-        return hash((type(self), tuple(self._settings.items())))
+        return hash((type(self), tuple(self._settings.items()), self.length_units))
 
     def __repr__(self) -> str:
         settings = ", ".join(f"{name}={setting!r}" for name, setting in self._settings.items())

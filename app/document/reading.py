@@ -21,7 +21,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast, get_args
 
-from halation.nodes import ColorSettings, Node, Plain, Value, catalogue
+from halation.nodes import ColorSettings, LengthUnits, Node, Plain, Value, catalogue, length_unit_fault
 from msgspec import Struct, field
 
 from ..custom_nodes import Code, CodeFault, Language, node_type
@@ -156,6 +156,7 @@ class _BodyReader(Struct):
                 settings.preroll,
                 ColorSettings(color.config, color.working),
                 settings.allow,
+                settings.reference_height,
             ),
             muted=frozenset(muted),
             ui=record.ui,
@@ -253,7 +254,8 @@ class _BodyReader(Struct):
             raise DocumentError(self.file, member(at, "values"), fault) from None
         if record.package and (record.version == kind.version or not kind.required_package):
             self.keep_package(id, record.package, kind)
-        return kind(**self.read_values(f"nodes.{id}", values, kind.values, at))
+        units = self.read_units(record.units, kind.values, at)
+        return _make_node(kind, self.read_values(f"nodes.{id}", values, kind.values, at), units)
 
     def keep_package(self, id: str, package: str, kind: type[Node]) -> None:
         """Note which plug-in a file asks for: it stays as it is until a newer version of the node type is saved."""
@@ -272,7 +274,20 @@ class _BodyReader(Struct):
             reason = f"{record.file or 'its code'}, {fault}" if fault.line else str(fault)
             return Unknown(language, unknown_keys(raw, records.TypeRecord), reason)
         self.keep_unknown(f"nodes.{id}", raw, records.CodeRecord)
-        return kind(**self.read_values(f"nodes.{id}", record.values, kind.values, at))
+        units = self.read_units(record.units, kind.values, at)
+        return _make_node(kind, self.read_values(f"nodes.{id}", record.values, kind.values, at), units)
+
+    def read_units(self, raw: Mapping[str, str], declared: Mapping[str, Value], at: str) -> LengthUnits:
+        """The units of lengths. Raises DocumentError for a value that is no length, and for an unknown unit."""
+        for name, unit in raw.items():
+            fault = (
+                length_unit_fault(declared[name], unit)
+                if name in declared
+                else f"there is no value '{name}'{did_you_mean(name, declared)}"
+            )
+            if fault:
+                raise DocumentError(self.file, member(member(at, "units"), name), fault)
+        return tuple(sorted(raw.items()))
 
     def find_code(self, record: records.CodeRecord, language: Language) -> Code:
         """The code in a record, or in the file that it names. Raises CodeFault."""
@@ -334,6 +349,14 @@ def _resolve(path: Path) -> Path | None:
         return real if real.is_file() else None
     except (OSError, ValueError, RuntimeError):
         return None
+
+
+def _make_node(kind: type[Node], values: Mapping[str, Plain], units: LengthUnits) -> Node:
+    """A node. A length without a number has its default, converted to the unit that is chosen for it."""
+    if not units:
+        return kind(**values)
+    plain = kind().with_length_units(units)
+    return plain.with_values(**{name: plain.declaration(name).default for name, _ in units}).with_values(**values)
 
 
 def _newer(subject: str, newest_known: int) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, TypeVar
 
 import msgspec
-from halation.nodes import Kind, Missing
+from halation.nodes import MAX_REFERENCE_HEIGHT, Kind, Missing
 
 from ..errors import DocumentError
 from ..graph import Extrapolation, Interpolation
@@ -64,6 +64,7 @@ class SettingsRecord(msgspec.Struct):
     frames: tuple[int, int] | None = None
     rate: Annotated[float, msgspec.Meta(gt=0)] = 24.0
     preroll: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    reference_height: Annotated[int, msgspec.Meta(ge=1, le=MAX_REFERENCE_HEIGHT)] | None = None
     color: Section = {}
     allow: dict[str, str] = {}
 
@@ -127,6 +128,7 @@ class NodeRecord(TypeRecord):
     version: Count = 1
     package: str = ""
     values: Section = {}
+    units: dict[str, str] = {}
 
 
 class CodeRecord(TypeRecord):
@@ -135,6 +137,7 @@ class CodeRecord(TypeRecord):
     code: list[str] | None = None
     file: str | None = None
     values: Section = {}
+    units: dict[str, str] = {}
 
 
 class GroupRecord(TypeRecord):

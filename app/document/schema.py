@@ -41,6 +41,7 @@ _DOCS = {
     "SettingsRecord.frames": "The first and the last frame.",
     "SettingsRecord.rate": "Frames per second.",
     "SettingsRecord.preroll": "How many frames before the one that is wanted nodes with a memory look back.",
+    "SettingsRecord.reference_height": "Numbers of lengths in pixels are pixels of a picture of this height.",
     "SettingsRecord.color": "How colors are managed.",
     "SettingsRecord.allow": "Why what halation check warns of is meant: reasons by rule, or by rule:node.",
     "InputRecord.type": "What travels on the links from here.",
@@ -62,6 +63,7 @@ _DOCS = {
     "NodeRecord.version": "The version of the node type that saved the values.",
     "NodeRecord.package": "The plug-in that brings the node type, as pip installs it: acme-glow==1.2.0.",
     "NodeRecord.values": "What differs from the default.",
+    "NodeRecord.units": "Units of single lengths: px, height, or px at a height, such as px@1080.",
 }
 
 

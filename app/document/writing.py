@@ -153,12 +153,14 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
         values = {**unknown_values, **item.values, **converted}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
     set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
-    changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
+    units = dict(item.length_units)
+    changed = {name: plain for name, plain in set_values.items() if name in units or plain != item.values[name].default}
     values = {**unknown_values, **changed}
     type_facts = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.required_package:
         type_facts["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
-    return {"type": item.id} | type_facts | muted | ({"values": values} if values else {})
+    unit_facts = {"units": units} if units else {}
+    return {"type": item.id} | type_facts | muted | ({"values": values} if values else {}) | unit_facts
 
 
 def _value(id: str, value: Value, setting: object) -> Plain:

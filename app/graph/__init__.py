@@ -7,7 +7,7 @@ from .color import color_settings
 from .conversion import conversion, make_socket
 from .evaluate_at_frame import animation_fault, evaluate_at_frame, find_key_range, is_animated, value_at
 from .expressions import Expression
-from .graph import Graph, Group, Item, find_value, signature
+from .graph import Graph, Group, Item, signature
 from .keys import Extrapolation, Interpolation, Key, Keys
 from .lookup import find_node_output
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown
@@ -42,7 +42,6 @@ __all__ = [
     "evaluate_at_frame",
     "find_key_range",
     "find_node_output",
-    "find_value",
     "is_animated",
     "make_socket",
     "problems",

@@ -11,7 +11,7 @@ from halation.nodes import Plain, Value
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, animation_type_fault
 from .expressions import Expression
-from .graph import Graph, Group, find_value
+from .graph import Graph, Group
 from .keys import Keys, round_keys
 from .model import Port, Settings
 from .names import did_you_mean
@@ -53,7 +53,7 @@ def find_key_range(graph: Graph) -> tuple[int, int]:
 def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | None:
     """Why a value cannot be animated in this way, or None. Checks the names in expressions too."""
     try:
-        value = find_value(graph.node(port.node), port.socket, port.node)
+        value = graph.declaration(port)
         if fault := animation_type_fault(port, value, animation):
             return fault
         if isinstance(animation, Keys):
@@ -94,7 +94,7 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     else:
         names = [*graph.controls, *(f"{node}." for node in graph.nodes)]
         raise GraphError(f"there is no control '{head}'{did_you_mean(head, names)}")
-    value = find_value(graph.node(port.node), port.socket, port.node)
+    value = graph.declaration(port)
     if value.type not in ANIMATED:
         raise GraphError(f"'{port}' is a {value.type}, not a number")
     if not rest:
@@ -175,7 +175,7 @@ class _ValueEvaluation:
         return [read_port for read_port in ports if read_port in self._graph.animation]
 
     def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
-        value = find_value(self._graph.node(port.node), port.socket, port.node)
+        value = self._graph.declaration(port)
         if isinstance(animation, Keys):
             return fit_to_value(port, value, animation.evaluate(self._frame), self._frame)
         first, rate = (self._settings.frames or (1, 1))[0], self._settings.rate

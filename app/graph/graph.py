@@ -13,15 +13,16 @@ from halation.nodes import Node, Plain, Pointwise, Socket, Value
 from msgspec import structs
 
 from ..errors import GraphError
-from .animation import ANIMATED, Animation, adapt_animation, animation_type_fault, move_animation
+from .animation import Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
 from .ends import EndSection, move_end
 from .followed_types import find_field_outputs, find_type_fault
+from .length_units import choose_length_unit, resolve_unit
 from .method_arguments import check_method_arguments
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, class_signature, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, make_printable, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
-from .relink import move_links, relink
+from .relink import keep_animation, keep_controls, move_links, relink
 from .values import coerce, value_fault
 from .walk import Wired, describe_loop, find_route
 
@@ -209,18 +210,10 @@ class Graph(Wired[Item]):
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
         links = relink(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
-        controls = {
-            name: control
-            for name, control in self.controls.items()
-            if control.target.node != id or face.anything or control.target.socket in face.values
-        }
+        controls = keep_controls(self.controls, id, face)
         extra = self.extra if type(before) is type(item) else move_keys(self.extra, f"nodes.{id}")
-        remaining_animation = {
-            port: animation
-            for port, animation in self.animation.items()
-            if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
-        }
-        return after._with(links=links, controls=controls, animation=remaining_animation, extra=extra)
+        animation = keep_animation(self.animation, id, face)
+        return after._with(links=links, controls=controls, animation=animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
         """A graph where a node is muted, so that it passes its first input through; or, with `on` False, is not."""
@@ -244,7 +237,12 @@ class Graph(Wired[Item]):
 
     def value(self, port: Port) -> Plain:
         """The setting of a value of a node, or of a control of a group."""
-        return find_value(self.node(port.node), port.socket, port.node).default
+        return self.declaration(port).default
+
+    def declaration(self, port: Port) -> Value:
+        """The value at `port` in the unit of its number, with the setting as default. Raises GraphError."""
+        item = self.node(port.node)
+        return resolve_unit(_find_value(item, port.socket, port.node), item, self.settings)
 
     def set(self, port: Port, value: object) -> Self:
         """A graph where a value of a node, or a control of a group, is set or animated; type and range are checked."""
@@ -252,7 +250,7 @@ class Graph(Wired[Item]):
 
     def fit(self, port: Port, value: object) -> Plain:
         """Convert a setting to the type of a value. Raises GraphError if the value cannot be set to it."""
-        declaration = find_value(self.node(port.node), port.socket, port.node)
+        declaration = self.declaration(port)
         plain = coerce(declaration, value)
         if (fault := value_fault(declaration, value)) or plain is None:
             raise GraphError(f"{port}: {fault}")
@@ -279,8 +277,7 @@ class Graph(Wired[Item]):
         """A graph where a value is animated; with None it is not, and has its setting again."""
         if animation is None:
             return self._with(animation=without(self.animation, port))
-        value = find_value(self.node(port.node), port.socket, port.node)
-        if fault := animation_type_fault(port, value, animation):
+        if fault := animation_type_fault(port, value := self.declaration(port), animation):
             raise GraphError(fault)
         return self._with(animation={**self.animation, port: adapt_animation(value, animation)})
 
@@ -289,11 +286,14 @@ class Graph(Wired[Item]):
         return self.set(pick(self.controls, name, "the graph has no control").target, value)
 
     def override(self, path: str, value: object) -> Self:
-        """A graph where the value at `path` is set: `glow` (a control), `bloom.intensity`, `group.node.value`."""
+        """A graph where what `path` names is set: `glow` (a control), `a.sigma` or `a.sigma.unit`, `group.a.sigma`."""
         head, dot, rest = path.partition(".")
         if "." not in rest:
             return self.set(Port(head, rest), value) if dot else self.set_control(path, value)
         item = self.node(head)
+        if isinstance(item, Node) and rest.endswith(".unit"):
+            item = choose_length_unit(Port(head, rest[:-5]), item, str(value), self.settings)
+            return self._with(nodes={**self.nodes, head: item})
         if not isinstance(item, Group):
             raise GraphError(f"'{path}' looks inside '{head}', which is not a group: write {head}.value")
         return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
@@ -311,7 +311,7 @@ class Graph(Wired[Item]):
     def add_control(self, name: str, control: Control) -> Self:
         """A graph with one more control."""
         check_name(name, "control", self.controls)
-        find_value(self.node(control.target.node), control.target.socket, control.target.node)
+        self.declaration(control.target)
         return self._with(controls={**self.controls, name: control})
 
     def remove_input(self, name: str) -> Self:
@@ -377,11 +377,13 @@ def control_value(graph: Graph, name: str) -> Value | None:
     """The value that a control points at, with the name of the control and the setting as default; else None."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
-    value = None if item is None else _find_setting(item, control.target.socket)
-    return value and structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
+    if item is None or not (value := _find_setting(item, control.target.socket)):
+        return None
+    value = resolve_unit(value, item, graph.settings)
+    return structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
 
 
-def find_value(item: Item, name: str, id: str) -> Value:
+def _find_value(item: Item, name: str, id: str) -> Value:
     """A value of a node, or a control of a group, with its setting as default. Raises GraphError."""
     if value := _find_setting(item, name):
         return value
@@ -395,7 +397,7 @@ def find_value(item: Item, name: str, id: str) -> Value:
 
 def _find_setting(item: Item, name: str) -> Value | None:
     if isinstance(item, Node) and name in item.values:
-        return structs.replace(item.values[name], default=item.setting(name))
+        return structs.replace(item.declaration(name), default=item.setting(name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
         return structs.replace(value, default=item.values.get(name, value.default))
     return None

@@ -208,6 +208,7 @@ def _values(id: str, item: Item) -> Iterator[Problem]:
     for name, value in values.items():
         if isinstance(item, Node):
             setting = item.setting(name)
+            value = item.declaration(name) if item.length_units else value
         else:
             setting = item.values.get(name, value.default) if isinstance(item, Group) else value.default
         if setting is not value.default and (fault := value_fault(value, setting)):

@@ -1,10 +1,11 @@
-"""Moves links when a node is replaced by one with other sockets."""
+"""Moves links, controls and animation when a node is replaced by one with other sockets."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from .model import Port, Signature
+from .animation import ANIMATED, Animation
+from .model import Control, Port, Signature
 
 Fits = Callable[[Port, Port], bool]
 """True if a link from the first port to the second is valid."""
@@ -40,3 +41,21 @@ def relink(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, 
             if start := next((start for start in starts if fits(start, target)), None):
                 other_links[target] = start
     return other_links
+
+
+def keep_controls(controls: Mapping[str, Control], id: str, face: Signature) -> dict[str, Control]:
+    """All controls, without those of values that node `id` does not have."""
+    return {
+        name: control
+        for name, control in controls.items()
+        if control.target.node != id or face.anything or control.target.socket in face.values
+    }
+
+
+def keep_animation(animation: Mapping[Port, Animation], id: str, face: Signature) -> dict[Port, Animation]:
+    """All animation, without that of values that node `id` does not have or that cannot be animated."""
+    return {
+        port: item
+        for port, item in animation.items()
+        if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
+    }

@@ -24,6 +24,17 @@ from .camera import CameraModel, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderStage, ShaderText
 from .kinds import KINDS, Kind, KindFacts
+from .lengths import (
+    MAX_REFERENCE_HEIGHT,
+    REFERENCE_HEIGHT,
+    LengthUnits,
+    convert_length,
+    is_length,
+    length_unit_fault,
+    name_reference,
+    resolve_length_unit,
+    unit_factor,
+)
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
@@ -61,7 +72,6 @@ from .values import (
     Uniform,
     Unit,
     Value,
-    unit_factor,
 )
 
 __all__ = [
@@ -69,6 +79,8 @@ __all__ = [
     "LIGHT_NUMBERS",
     "MAX_LIGHTS",
     "MAX_POINTS",
+    "MAX_REFERENCE_HEIGHT",
+    "REFERENCE_HEIGHT",
     "RGBA",
     "WORKING_SPACE",
     "Affine",
@@ -97,6 +109,7 @@ __all__ = [
     "Kernel3x3",
     "Kind",
     "KindFacts",
+    "LengthUnits",
     "Light",
     "LightKind",
     "LightList",
@@ -143,21 +156,26 @@ __all__ = [
     "Unit",
     "Value",
     "Vector",
+    "convert_length",
     "curve_at",
     "curve_knots",
     "float_bits",
     "format_names",
     "glsl_type",
+    "is_length",
+    "length_unit_fault",
     "lights_of",
     "look_at",
     "matte_of",
     "murmur3",
+    "name_reference",
     "numbers_of",
     "orbit_camera",
     "pick_ids",
     "pick_names",
     "ramp_at",
     "ramp_knots",
+    "resolve_length_unit",
     "toggle_name",
     "unit_factor",
 ]

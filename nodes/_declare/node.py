@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import re
 from collections.abc import Mapping
@@ -9,9 +10,10 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 
 from .camera import CameraModel
 from .draw import Draw, Drawn
+from .lengths import LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
-from .values import Doc, Missing, Value, read_value, unit_factor
+from .values import Doc, Missing, Value, read_value
 
 
 def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
@@ -28,6 +30,7 @@ def _namespace(module: str) -> str:
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True)
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Node:
     """One effect. The class body is the declaration; an instance is one set of values."""
 
@@ -56,6 +59,9 @@ class Node:
     """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
     """Why a proxy of half the size does not look like the full picture made smaller."""
+
+    length_units: LengthUnits = dataclasses.field(default=(), repr=False)
+    """The units of lengths, by name, where they differ from what the graph says: `(("sigma", "height"),)`."""
 
     def __init_subclass__(cls, abstract: bool = False, **kwargs: Any) -> None:
         """Read the declaration; that of an `abstract` class, which has no instances, is left to its subclasses.
@@ -89,6 +95,7 @@ class Node:
         cls.values = {
             field.name: read_value(field.name, hints[field.name], field.default)
             for field in sorted(_fields(cls), key=lambda field: field.name not in body)
+            if field.name != "length_units"
         }
         cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
 
@@ -116,11 +123,24 @@ class Node:
         """Values saved by an older `version` of this node, as the next version would have saved them."""
         return values
 
-    def to_working_units(self, scale: float, height: int) -> Self:
+    def declaration(self, name: str, reference_height: int | None = None) -> Value:
+        """A value as it is declared, in the unit of its number. Its default is that of the class."""
+        value = self.values[name]
+        if not is_length(value):
+            return value
+        chosen_unit = dict(self.length_units).get(name)
+        unit = chosen_unit or resolve_length_unit(value.unit, reference_height)
+        return declare_in_unit(value, unit) if unit else value
+
+    def to_working_units(self, scale: float, height: float, reference_height: int | None = None) -> Self:
         """The same values in working units, as `passes` and GLSL see them: see `Unit`."""
         converted: dict[str, Any] = {}
+        chosen_units = dict(self.length_units)
         for name, value in self.values.items():
-            factor = unit_factor(value.unit, scale, height)
+            if value.unit is None:
+                continue
+            unit = chosen_units.get(name) or resolve_length_unit(value.unit, reference_height)
+            factor = unit_factor(unit, scale, height)
             if factor != 1.0:
                 stored: float | tuple[float, ...] = self.setting(name)
                 converted[name] = (
@@ -130,7 +150,16 @@ class Node:
 
     def with_values(self, /, **values: Any) -> Self:
         """The same node with other values."""
-        return type(self)(**({name: self.setting(name) for name in self.values} | values))
+        settings = {name: self.setting(name) for name in self.values} | values
+        return type(self)(**settings).with_length_units(self.length_units)
+
+    def with_length_units(self, length_units: LengthUnits) -> Self:
+        """The same numbers of lengths in other units."""
+        if length_units == self.length_units:
+            return self
+        node = copy.copy(self)
+        object.__setattr__(node, "length_units", tuple(sorted(length_units)))
+        return node
 
 
 class Pointwise(Node, abstract=True):

@@ -26,6 +26,8 @@ class Trait(StrEnum):
     """It converts color. Its values decide whether scene light or display light comes out."""
     RESAMPLES = "resamples"
     """It filters the picture: two such nodes in a row cost sharpness and time."""
+    CUTS_OUT = "cuts out"
+    """Its result is a part of the picture, in pixels of the same size. Lengths after it follow the whole picture."""
     KEEPS_NON_FINITE = "keeps non-finite"
     """It passes NaN and infinity on. All other nodes make every pixel finite, with `lib/finite.glsl`."""
     USES_ALPHA = "uses alpha"

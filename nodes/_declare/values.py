@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from msgspec import Struct
@@ -15,18 +14,10 @@ Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
 """The unit of a number.
 
 `px`: pixels at full size, scaled with a proxy. `height`: fraction of the picture's height, which GLSL gets in pixels.
+A graph may give numbers of either in another unit, such as pixels at a height of 1080.
 `deg`: degrees, which GLSL gets in radians. `EV`: photographic stops. `ratio`: a plain factor. `count`: a number of
 things. `s`: seconds. `scene`: the scene's own units (radiance, depth).
 """
-
-
-def unit_factor(unit: Unit | None, scale: float, height: float) -> float:
-    """The factor from a unit to working units, for a proxy of `scale` and a picture `height` pixels high."""
-    if unit == "px":
-        return scale
-    if unit == "height":
-        return height
-    return math.pi / 180.0 if unit == "deg" else 1.0
 
 
 class Slider(Struct, frozen=True):
@@ -143,7 +134,8 @@ class Value(Struct, frozen=True):
     high: float = float("inf")
     minimum: float = float("-inf")
     maximum: float = float("inf")
-    unit: Unit | None = None
+    unit: str | None = None
+    """Its `Unit`; of a length in a graph also pixels at a height, such as `px@1080`."""
     doc: str = ""
     label: str = ""
     """What an interface calls it, if not by its name."""

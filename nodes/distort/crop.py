@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Position, Size, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Position, Size, Slider, Trait
 
 
 class Crop(Filter):
@@ -14,6 +14,7 @@ class Crop(Filter):
         "trim", "letterbox", "cut", "region of interest", "adjust bbox", "black outside", "rectangle", "matte bars",
         "adjust bounding box", "border", "aspect bars",
     )  # fmt: skip
+    traits = (Trait.CUTS_OUT,)
 
     image = Image()
     out = OutputSocket(follows="image")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ...document import dumps, loads
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Graph, Port
+from ...graph import INPUTS, OUTPUTS, Graph, Port, Settings
 from ...graph.names import fresh_name
 from ...graph.notes import keys_of_nodes
 from ...resources.sandbox import Sandbox
@@ -41,6 +41,7 @@ def cut_part(graph: Graph, chosen: Collection[ElementId]) -> Graph:
         outputs={name: end for name, end in graph.outputs.items() if ElementId.of("output", name) in chosen},
         muted=graph.muted.intersection(chosen),
         animation=timing.animation_of(graph, chosen),
+        settings=Settings(reference_height=graph.settings.reference_height),
         folder=graph.folder,
         extra=keys_of_nodes(graph.extra, chosen),
     )

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from halation.nodes import Kind, Socket, Value
 
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
+from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port, Settings
 from ...graph.names import check_name, fresh_name
 from ...graph.notes import keys_of_nodes
 from . import timing
@@ -151,6 +151,7 @@ def _body(graph: Graph, ids: list[str], chosen: Collection[ElementId], crossing:
             if item.target.node in ids
         },
         muted=graph.muted & set(ids),
+        settings=Settings(reference_height=graph.settings.reference_height),
         extra=_extra(graph, ids, inside=True),
         folder=graph.folder,
     )

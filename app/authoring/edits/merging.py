@@ -9,6 +9,7 @@ from halation.nodes import Node
 
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.notes import keys_of_nodes
+from ...graph.unit_conversion import pin_length_units
 from . import timing
 from .element_id import DECOR, ElementId
 from .elements import Places, entry, list_decor, with_entries, with_places
@@ -34,7 +35,9 @@ def merge_part(graph: Graph, part: Graph, places: Places) -> MergedPart:
 
     Paths of `part` must start where those of `graph` do. Ends, controls and links from elsewhere are left out. Names
     that are taken get a number, and everything that names a node follows: links, expressions, layout, dots on links.
+    Lengths keep their meaning.
     """
+    part = pin_length_units(part, graph.settings.reference_height)
     taken_names = {*graph.nodes, INPUTS, OUTPUTS}
     names: dict[str, str] = {}
     for id, item in part.nodes.items():

@@ -8,7 +8,6 @@ from halation.nodes import Node
 
 from ...errors import GraphError
 from ...graph import ANIMATED, Expression, Graph, Group, Port, animation_fault, signature
-from ...graph.graph import find_value
 
 
 def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
@@ -21,7 +20,7 @@ def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
 def can_animate(graph: Graph, port: Port) -> bool:
     """True if a value can change over time."""
     try:
-        return find_value(graph.node(port.node), port.socket, port.node).type in ANIMATED
+        return graph.declaration(port).type in ANIMATED
     except GraphError:
         return False
 
@@ -57,4 +56,4 @@ def reset_value(graph: Graph, port: Port) -> Graph:
     if isinstance(item, Group):
         values = {name: plain for name, plain in item.values.items() if name != port.socket}
         return replace(graph, nodes={**graph.nodes, port.node: replace(item, values=values)})
-    return graph.put(port, item.values[port.socket].default) if isinstance(item, Node) else graph
+    return graph.put(port, item.declaration(port.socket).default) if isinstance(item, Node) else graph

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
-from halation.nodes import Kind, Node, Pointwise, Socket, Value
+from halation.nodes import Kind, Node, Pointwise, Socket, Value, is_length
 
 from ...errors import GraphError
 from ...graph import Graph, Item, Port, conversion, make_socket, signature
@@ -198,14 +198,18 @@ def swap_inputs(graph: Graph, id: str) -> Graph:
 
 def replace_node(graph: Graph, id: str, kind: type[Node]) -> Graph:
     """A graph where a node has another type; links stay where they fit, values where name and type agree."""
-    before = signature(graph.node(id)).values
-    values = {}
+    item = graph.node(id)
+    before = signature(item).values
+    units = dict(item.length_units) if isinstance(item, Node) else {}
+    kept_units = tuple((name, units[name]) for name in units if name in kind.values and is_length(kind.values[name]))
+    blank = kind().with_length_units(kept_units)
+    values = {name: blank.declaration(name).default for name, _ in kept_units}
     for name, value in kind.values.items():
         if name in before and before[name].type == value.type:
             fitted_value = coerce(value, graph.value(Port(id, name)))
-            if fitted_value is not None and value_fault(value, fitted_value) is None:
+            if fitted_value is not None and value_fault(blank.declaration(name), fitted_value) is None:
                 values[name] = fitted_value
-    return graph.replace(id, kind(**values))
+    return graph.replace(id, blank.with_values(**values))
 
 
 def _wireable_ends(kind: type[Node]) -> list[Socket | Value]:

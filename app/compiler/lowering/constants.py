@@ -17,6 +17,8 @@ def check_values(path: str, node: Node) -> None:
     """Raise GraphError for an invalid value."""
     for name, value in node.values.items():
         setting = node.setting(name)
+        if node.length_units:
+            value = node.declaration(name)
         if setting is not value.default and (fault := value_fault(value, setting)):
             raise GraphError(f"{path}.{name}: {fault}")
 

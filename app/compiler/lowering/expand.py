@@ -31,8 +31,14 @@ class FlatGraph(Struct):
     faults: dict[Port, str] = field(default_factory=dict[Port, str])
     """Why links are invalid, by target: an error when something follows such a link."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
+    reference_heights: dict[str, int] = field(default_factory=dict[str, int])
+    """The reference height of bodies that have one, by the prefix of their nodes, such as `glow/`."""
     _sources: dict[Port, Port] = field(default_factory=dict[Port, Port])
     """What has been followed already: thousands of links may share a way through many groups."""
+
+    def find_reference_height(self, path: str) -> int | None:
+        """The reference height that holds for a node."""
+        return self.reference_heights.get(path[: path.rfind("/") + 1]) if self.reference_heights else None
 
     def find_source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
@@ -90,6 +96,8 @@ def expand(graph: Graph) -> FlatGraph:
             raise GraphError(fault, node=group)
         body = _set_controls(body, values)
         flat.folders[prefix] = body.folder
+        if body.settings.reference_height:
+            flat.reference_heights[prefix] = body.settings.reference_height
         for name, socket in body.inputs.items():
             flat.inputs[Port(prefix + INPUTS, name)] = socket
         for name, item in body.nodes.items():

@@ -120,6 +120,9 @@ class _IncrementalLowering:
         self.builder = ReplayBuilder(before.builder)
         self.lowering = Lowering(graph, request, before.library, provider, frames, self.builder)
         self.lowering.results = dict(before.results)
+        self.lowering.whole_heights |= {
+            key: step.whole_height for key, step in before.steps.items() if step.whole_height
+        }
         self.changed_constants: set[PortAtOffset] = set()
         """Ports that stand for another constant than before."""
 
@@ -188,6 +191,8 @@ class _IncrementalLowering:
         step = lowering.run_step(key)
         step.first = before.first
         if len(step.added) != len(before.added) or step.memories != before.memories:
+            raise StructureChanged
+        if step.whole_height != before.whole_height:
             raise StructureChanged
         if step.results.keys() != before.results.keys() or step.cameras.keys() != before.cameras.keys():
             raise StructureChanged

@@ -51,6 +51,7 @@ class Lowering:
         self.frames, self.builder = frames, builder
         self.flat = self.frames.flat_at(self.frame)
         self.pictures = PictureBuilder(graph, self.flat, request, self.provider, self.builder)
+        self.whole_heights: dict[StepKey, float] = {}
         self.nodes = NodeLowering(
             LoweringContext(
                 graph,
@@ -61,6 +62,7 @@ class Lowering:
                 builder,
                 self.flat,
                 self.pictures,
+                self.whole_heights,
             )
         )
         self.results: dict[PortAtOffset, Operand] = {}
@@ -107,6 +109,8 @@ class Lowering:
             except HalationError as error:
                 error.node = error.node or path
                 raise
+        if self.step.whole_height:
+            self.whole_heights[key] = self.step.whole_height
         self.step.reads_resources |= self.provider.is_read
         self.results |= self.step.results
         self.memories |= self.step.memories

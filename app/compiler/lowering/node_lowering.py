@@ -16,6 +16,7 @@ from halation.nodes import (
     Size,
     Socket,
     Temporal,
+    Trait,
     Value,
     curve_knots,
     ramp_knots,
@@ -35,7 +36,7 @@ from .expand import FlatGraph, find_stand_in
 from .graph_at_frames import GraphAtFrames
 from .node_inputs import DrawnPicture, NodeInputs
 from .pictures import PictureBuilder
-from .steps import LoweringStep, field_port
+from .steps import LoweringStep, StepKey, field_port
 
 OperandFinder = Callable[[Port, int, bool], Operand | None]
 """What a source port stands for at a frame; None for a graph input without a picture. With True its Field, if the port
@@ -56,6 +57,8 @@ class LoweringContext(Struct, frozen=True):
     builder: Builder
     flat: FlatGraph
     pictures: PictureBuilder
+    whole_heights: Mapping[StepKey, float]
+    """Heights of the pictures that results were cut out of."""
 
 
 class PointwiseForm(Struct, frozen=True):
@@ -113,6 +116,7 @@ class NodeLowering:
         """The operands of a node's outputs by name."""
         node, path = inputs.node, inputs.path
         size = self._find_size(inputs)
+        step.whole_height = self._find_whole_height(inputs, size)
         passed_through = self._pass_through(inputs)
         if passed_through is not None:
             return {
@@ -120,11 +124,13 @@ class NodeLowering:
                 for name, operand in passed_through.items()
             }
         self._fit_all(inputs, size)
-        scaled_node = node.to_working_units(self._context.request.scale, size[1])
+        reference = self._context.flat.find_reference_height(path)
+        height = self._choose_height(node, reference, size, step)
+        scaled_node = node.to_working_units(self._context.request.scale, height, reference)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
-            return self._lower_pointwise(inputs, scaled_node, size)
+            return self._lower_pointwise(inputs, scaled_node, size, step)
         assert isinstance(scaled_node, Filter)
         return self._lower_filter(inputs, scaled_node, size, step)
 
@@ -220,18 +226,45 @@ class NodeLowering:
             return (1, 1)
         return node.output_size(pictures, self._pictures.canvas)
 
+    def _find_whole_height(self, inputs: NodeInputs, size: Size) -> float:
+        """The height of the picture that the result is a part of, in pixels of the result; 0 if it is whole.
+
+        It follows the first input that has the size of the result, else the first picture. Resizing a part resizes the
+        whole as well.
+        """
+        cuts_out = Trait.CUTS_OUT in inputs.node.traits
+        if not cuts_out and not self._context.whole_heights:
+            return 0.0  # the usual case
+        feeds, offset = self._context.frames.find_feeds((inputs.path, inputs.frame)), inputs.frame - self._context.frame
+        candidates: list[tuple[bool, float]] = []
+        for name in inputs.linked:
+            operand = inputs.inputs[name]
+            if isinstance(operand, Ref) and (input_size := self._builder.shape(operand).size) != (1, 1):
+                whole = self._context.whole_heights.get((feeds[name][0].node, offset), float(input_size[1]))
+                candidates.append((input_size == size, whole if cuts_out else whole * size[1] / input_size[1]))
+        height = max(candidates, key=lambda candidate: candidate[0])[1] if candidates else 0.0
+        return 0.0 if height == size[1] else height
+
+    def _choose_height(self, node: Node, reference_height: int | None, size: Size, step: LoweringStep) -> float:
+        """The height that lengths of a node are fractions of: that of the whole picture where units are stated, so
+        that a cut-out part looks the same. Graphs that state nothing keep to the picture that the node works on."""
+        says_units = reference_height is not None or node.length_units
+        return step.whole_height if says_units and step.whole_height else size[1]
+
     def _is_pattern(self, path: str, node: Node) -> bool:
         """True for a node whose pixels differ although all its inputs are constant."""
         return not node.inputs or self._context.library.uses(node.shader, READS_PLACE, path)
 
     # --- pointwise nodes -------------------------------------------------------------------------------------------
 
-    def _lower_pointwise(self, inputs: NodeInputs, node: Pointwise, size: Size) -> dict[str, Operand]:
+    def _lower_pointwise(
+        self, inputs: NodeInputs, node: Pointwise, size: Size, step: LoweringStep
+    ) -> dict[str, Operand]:
         form = self._find_form(inputs.path, node, size)
         parameters = tuple(
             Parameter(glsl, inputs.inputs[name])
             if value is None
-            else self._make_value_parameter(node, value, glsl, inputs.wires.get(name), size)
+            else self._make_value_parameter(inputs, node, value, glsl, size, step)
             for name, glsl, value in form.arguments
         )
         shapes = tuple(replace(shape, data=True) for shape in form.shapes) if inputs.narrow else form.shapes
@@ -269,9 +302,15 @@ class NodeLowering:
             fault = f"'{node.function}' takes {actual}, but the node declares {declared}"
             raise ShaderError(path, library.file_name(node.shader), function.line, fault)
 
-    def _make_value_parameter(self, node: Node, value: Value, glsl: str, wire: Operand | None, size: Size) -> Parameter:
+    def _make_value_parameter(
+        self, inputs: NodeInputs, node: Node, value: Value, glsl: str, size: Size, step: LoweringStep
+    ) -> Parameter:
+        wire = inputs.wires.get(value.name)
         if wire is not None:
-            factor = unit_factor(value.unit, self._context.request.scale, size[1])
+            reference_height = self._context.flat.find_reference_height(inputs.path)
+            value = node.declaration(value.name, reference_height)
+            height = self._choose_height(node, reference_height, size, step)
+            factor = unit_factor(value.unit, self._context.request.scale, height)
             if isinstance(wire, UniformConstant):
                 return Parameter(glsl, constants.limit_wire(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)

@@ -8,7 +8,6 @@ from msgspec import structs
 
 from ...authoring.edits.values import can_animate
 from ...graph import Keys, Port
-from ...graph.graph import find_value
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import row_of_numbers
 from ..theme.palette import DARK
@@ -80,7 +79,7 @@ class KeyFields:
         port, keys, at = single_key
         index = keys.frames.index(at)
         key = keys.keys[index]
-        declaration = find_value(frame.graph.node(port.node), port.socket, port.node)
+        declaration = frame.graph.declaration(port)
         first, last = frame.context.session.time.frames
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
         rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from ...authoring.edits.naming import value_label
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
-from ...graph.graph import find_value
 
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""
@@ -67,7 +66,7 @@ def make_rows(
 def name_channels(graph: Graph, port: Port) -> str:
     """The letters of the channels that a value has; none for one number."""
     try:
-        value = find_value(graph.node(port.node), port.socket, port.node)
+        value = graph.declaration(port)
     except GraphError:
         return ""
     if not isinstance(value.default, tuple):
@@ -92,7 +91,7 @@ def list_spots(port: Port, keys: Keys, frames: Iterable[float] | None = None) ->
 def find_limits(graph: Graph, port: Port) -> tuple[float, float]:
     """The smallest and the largest number that a value may have."""
     try:
-        value = find_value(graph.node(port.node), port.socket, port.node)
+        value = graph.declaration(port)
     except GraphError:
         return float("-inf"), float("inf")
     return value.minimum, value.maximum
