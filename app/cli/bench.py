@@ -19,6 +19,7 @@ from .options import (
     GraphFile,
     Inputs,
     Node,
+    PassPrecision,
     Scale,
     Sets,
     SizeText,
@@ -31,7 +32,7 @@ from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
     from ..renderer.baseline import BaselineComparison, Ratio
-    from ..renderer.bench import Benchmark, NodeShare
+    from ..renderer.bench import Benchmark, NodeShare, PassTiming
 
 _BAR = 24
 """Columns of a bar. Chosen by judgement: a line fits into 120 columns."""
@@ -64,9 +65,7 @@ def bench(
             help="Exit with 1 if a pass or the whole takes more than this many times as long as in --compare.",
         ),
     ] = None,
-    precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes.")
-    ] = None,
+    precision: PassPrecision = None,
     form: Form = None,
     timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
@@ -87,8 +86,8 @@ def bench(
     highest_ratio = _parse_ratio(fail_over)
     if highest_ratio is not None and compare is None:
         raise UsageError("--fail-over: name the file to compare with: --compare baseline.json")
-    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
-    pass_form = parsing.parse_form(form) if form is not None else None
+    parsed_precision = parsing.parse_precision(precision)
+    pass_form = parsing.parse_form(form)
     canvas, proxy, named_frames = (
         parsing.parse_size(size),
         parsing.parse_scale(scale),
@@ -241,29 +240,10 @@ def _benchmark_facts(
         "loading": benchmark.loading,
         "peak_bytes": benchmark.peak_bytes,
         "lead": benchmark.lead_frames,
-        "nodes": [
-            {
-                "nodes": list(share.nodes),
-                "passes": share.count,
-                "median": share.median,
-                "fastest": share.fastest,
-                "share": share.median / benchmark.median,
-                "read_bytes": share.bytes_read,
-                "written_bytes": share.bytes_written,
-            }
-            for share in group_by_nodes(benchmark.passes)
-        ],
+        "nodes": [_share_facts(share, benchmark.median) for share in group_by_nodes(benchmark.passes)],
         "passes": [
-            {
-                "nodes": list(measured.nodes),
-                "functions": list(measured.functions),
-                "number": name[2],
-                "median": measured.median,
-                "fastest": measured.fastest,
-                "read_bytes": measured.bytes_read,
-                "written_bytes": measured.bytes_written,
-            }
-            for name, measured in zip(identify_passes(benchmark.passes), benchmark.passes, strict=True)
+            _pass_facts(timing, name[2])
+            for name, timing in zip(identify_passes(benchmark.passes), benchmark.passes, strict=True)
         ],
     }
     if comparison:
@@ -275,6 +255,30 @@ def _benchmark_facts(
             "slower": [_ratio_facts(ratio) for ratio in slower],
         }
     return report
+
+
+def _share_facts(share: NodeShare, whole: float) -> dict[str, Any]:
+    return {
+        "nodes": list(share.nodes),
+        "passes": share.count,
+        "median": share.median,
+        "fastest": share.fastest,
+        "share": share.median / whole,
+        "read_bytes": share.bytes_read,
+        "written_bytes": share.bytes_written,
+    }
+
+
+def _pass_facts(timing: PassTiming, number: int) -> dict[str, Any]:
+    return {
+        "nodes": list(timing.nodes),
+        "functions": list(timing.functions),
+        "number": number,
+        "median": timing.median,
+        "fastest": timing.fastest,
+        "read_bytes": timing.bytes_read,
+        "written_bytes": timing.bytes_written,
+    }
 
 
 def _ratio_facts(ratio: Ratio) -> dict[str, Any]:

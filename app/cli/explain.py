@@ -14,6 +14,7 @@ from .options import (
     Inputs,
     Memory,
     Node,
+    PassPrecision,
     Scale,
     Sets,
     SizeText,
@@ -44,9 +45,7 @@ def explain(
             help="Plan passes as fragment or as compute shaders, or as the device of this machine needs them.",
         ),
     ] = "compute",
-    precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes.")
-    ] = None,
+    precision: PassPrecision = None,
     memory: Memory = None,
     dot: Annotated[bool, typer.Option("--dot", help="Print the passes as a Graphviz graph.")] = False,
     as_json: AsJson = False,
@@ -67,7 +66,7 @@ def explain(
     if dot and as_json:
         raise UsageError("--dot and --json: choose one")
     form_or_device, memory_limit = parsing.parse_form_or_device(form), parsing.parse_memory(memory)
-    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    parsed_precision = parsing.parse_precision(precision)
     opened_graph = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
     report_problems(graph, opened_graph)
     provider = LazyResourceProvider(sandbox)

@@ -46,9 +46,7 @@ def fmt(
 
     if any(str(path) == "-" for path in graphs):
         if len(graphs) > 1 or as_json:
-            raise UsageError(
-                "- cannot be combined with files or --json: standard input is formatted to standard output"
-            )
+            raise UsageError("- cannot be combined with files or --json: it is formatted to standard output")
         return _format_input(name, check, sandbox=sandbox)
     # All files are read before the first is written: an invalid file leaves all of them as they are.
     formatted = {

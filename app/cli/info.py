@@ -15,6 +15,7 @@ from .outcome import print_json
 if TYPE_CHECKING:
     from halation.nodes import CameraModel
 
+    from ..media.header import PartHeader
     from ..media.layers import Layer
     from ..media.sequences import FrameSequence
     from ..render_layers.analysis import RenderAnalysis
@@ -108,20 +109,7 @@ def _analysis_facts(analysis: RenderAnalysis, sandbox: Sandbox) -> dict[str, Any
         "size": list(header.info.size),
         "renderer": analysis.maker.renderer,
         "renderer_reason": analysis.maker.reason,
-        "parts": [
-            {
-                "index": part.index,
-                "name": part.name,
-                "view": part.view,
-                "storage": part.storage,
-                "compression": part.compression,
-                "data_window": part.data,
-                "display_window": part.display,
-                "channels": dict(zip(part.channels, part.formats, strict=True)),
-                "color_space": part.tag,
-            }
-            for part in header.parts
-        ],
+        "parts": [_part_facts(part) for part in header.parts],
         "layers": [
             {
                 **_layer_facts(item.layer),
@@ -147,6 +135,20 @@ def _analysis_facts(analysis: RenderAnalysis, sandbox: Sandbox) -> dict[str, Any
         },
         "camera": _camera_facts(analysis.camera.camera, analysis.camera.reason, analysis.camera.solution),
         "metadata": {name: _make_json_safe(value) for name, value in header.attributes.items()},
+    }
+
+
+def _part_facts(part: PartHeader) -> dict[str, Any]:
+    return {
+        "index": part.index,
+        "name": part.name,
+        "view": part.view,
+        "storage": part.storage,
+        "compression": part.compression,
+        "data_window": part.data,
+        "display_window": part.display,
+        "channels": dict(zip(part.channels, part.formats, strict=True)),
+        "color_space": part.tag,
     }
 
 

@@ -57,6 +57,9 @@ Frames = Annotated[
 Precision = Annotated[
     str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes and in EXR files.")
 ]
+PassPrecision = Annotated[
+    str | None, typer.Option(metavar="half|float", help="Precision of the pixels between passes.")
+]
 Form = Annotated[
     str | None,
     typer.Option(

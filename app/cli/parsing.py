@@ -153,9 +153,9 @@ def parse_scale(number: float) -> float:
     return number
 
 
-def parse_form(text: str) -> Form:
-    """The form of passes that --form names."""
-    return _parse_choice(text, ("fragment", "compute"), "--form")
+def parse_form(text: str | None) -> Form | None:
+    """The form of passes that --form names; None if it is not given."""
+    return None if text is None else _parse_choice(text, ("fragment", "compute"), "--form")
 
 
 def parse_form_or_device(text: str) -> Form | Literal["device"]:
@@ -163,9 +163,9 @@ def parse_form_or_device(text: str) -> Form | Literal["device"]:
     return _parse_choice(text, ("fragment", "compute", "device"), "--form")
 
 
-def parse_precision(text: str) -> Precision:
-    """The precision that --precision names."""
-    return _parse_choice(text, ("half", "float"), "--precision")
+def parse_precision(text: str | None) -> Precision | None:
+    """The precision that --precision names; None if it is not given."""
+    return None if text is None else _parse_choice(text, ("half", "float"), "--precision")
 
 
 def parse_dither(text: str) -> Dither:

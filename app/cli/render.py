@@ -105,7 +105,7 @@ def render(
     A file name with a place for the frame number (shot.####.png, shot.%04d.png) renders all frames of the graph, unless
     --frame or --frames chooses some.
     """
-    form_of_passes = parsing.parse_form(form) if form is not None else None
+    form_of_passes = parsing.parse_form(form)
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     from ..renderer.jobs.render_job import RenderJob
@@ -119,7 +119,7 @@ def render(
         size=parsing.parse_size(size),
         scale=parsing.parse_scale(scale),
         frames=parsing.parse_frame_options(frame, frames) or (),
-        precision=parsing.parse_precision(precision) if precision is not None else None,
+        precision=parsing.parse_precision(precision),
         form=form_of_passes,
         memory=parsing.parse_memory(memory),
         deterministic=deterministic,

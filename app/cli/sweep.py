@@ -91,7 +91,7 @@ def sweep(
     from ..renderer.jobs.job import OutputSettings
 
     started = time.perf_counter()
-    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    parsed_precision = parsing.parse_precision(precision)
     named_frames = parsing.parse_frame_options(frame, frames) or ()
     canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
     opened_graph, sweep_axes = parse_axes(open_graph(graph, sandbox=sandbox), sets or (), named_frames)

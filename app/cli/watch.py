@@ -68,7 +68,7 @@ def watch(
 
     if str(graph) == "-":
         raise UsageError("-: standard input cannot be watched: name a graph file")
-    parsed_precision = parsing.parse_precision(precision) if precision is not None else None
+    parsed_precision = parsing.parse_precision(precision)
     canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
     destinations, named_frames = parsing.parse_destinations(output), parsing.parse_frame_options(frame, frames)
     renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)

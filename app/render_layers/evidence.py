@@ -15,6 +15,7 @@ Medians and not means decide, as edges, moving objects and antialiased pixels ar
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 
 import numpy as np
 from halation.nodes import CameraModel
@@ -182,6 +183,15 @@ def find_position_space(camera: CameraModel, position: Array) -> Convention:
     return Convention(VectorSpace.WORLD, f"the camera that sees them stands at {eye}", True)
 
 
+_AXES_WORDS = MappingProxyType(
+    {
+        VectorSpace.WORLD: "the world",
+        VectorSpace.CAMERA: "the camera",
+        VectorSpace.CAMERA_AHEAD: "the camera, z ahead",
+    }
+)
+
+
 def match_normals_with_positions(
     normal: Array, position: Array, camera: CameraModel, home: VectorSpace = VectorSpace.WORLD
 ) -> Convention | None:
@@ -226,13 +236,8 @@ def match_normals_with_positions(
         space = home
     if angles[space] > _WORST_ANGLE:
         return None
-    whose = {
-        VectorSpace.WORLD: "the world",
-        VectorSpace.CAMERA: "the camera",
-        VectorSpace.CAMERA_AHEAD: "the camera, z ahead",
-    }[space]
     coded = ", once 2 n - 1 decodes them" if offset else ""
-    reason = f"{angles[space]:.2g} degrees off the surfaces of the positions in the axes of {whose}{coded}"
+    reason = f"{angles[space]:.2g} degrees off the surfaces of the positions in the axes of {_AXES_WORDS[space]}{coded}"
     return Convention(space, reason, True, (scale,) * 3, (offset,) * 3)
 
 

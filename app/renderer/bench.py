@@ -99,15 +99,11 @@ def measure_graph(
     `renderer` must have a budget of 0, because results that are kept would take no time. Raises the errors of
     `app.errors`.
     """
-    compiled = renderer.runner.programs.compiled
-    started = time.perf_counter()
+    compiled, started = renderer.runner.programs.compiled, time.perf_counter()
     frame_renderers = {frame: FrameRenderer(renderer, graph, request) for frame in frames}
     plans = {frame: frame_renderer.plan_frame(frame) for frame, frame_renderer in frame_renderers.items()}
     planning, started = time.perf_counter() - started, time.perf_counter()
-    with renderer.device.make_current():
-        for plan in plans.values():
-            for render_pass in plan.passes:
-                renderer.runner.compile(render_pass)
+    _compile_plans(renderer, plans.values())
     compiling = time.perf_counter() - started
     timings: dict[int, list[PassTimings]] = {}
     loading = 0.0
@@ -138,6 +134,14 @@ def measure_graph(
         renderer.runner.textures.peak,
         lead,
     )
+
+
+def _compile_plans(renderer: Renderer, plans: Iterable[Plan]) -> None:
+    """Compile the programs of all passes, so that none is compiled while frames are measured."""
+    with renderer.device.make_current():
+        for plan in plans:
+            for render_pass in plan.passes:
+                renderer.runner.compile(render_pass)
 
 
 def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:

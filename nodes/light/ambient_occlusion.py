@@ -1,5 +1,5 @@
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from .._declare import (
     CameraSocket,
@@ -103,19 +103,21 @@ class AmbientOcclusion(Filter):
             "ambient_occlusion_normal", self.depth, self.normal, edge="black", result=Vector(width=3), rows=rows
         )
         factor = FACTORS[self.resolution]
-        size = measure_size(draw.size, factor)
         slices, steps = SAMPLES[self.quality]
+        settings: dict[str, Any] = {
+            "depth": self.depth,
+            "normal": normal,
+            "size": measure_size(draw.size, factor),
+            "result": DATA,
+            "mode": self.mode,
+            "rows": rows,
+            "rays": rays,
+            "factor": factor,
+        }
         if self.mode in ("gtao", "hbao", "bitmask"):
             open_ = draw(
                 "ambient_occlusion_horizons",
-                depth=self.depth,
-                normal=normal,
-                size=size,
-                result=DATA,
-                mode=self.mode,
-                rows=rows,
-                rays=rays,
-                factor=factor,
+                **settings,
                 slices=slices,
                 steps=steps,
                 radius=self.radius,
@@ -126,14 +128,7 @@ class AmbientOcclusion(Filter):
         else:
             open_ = draw(
                 "ambient_occlusion_points",
-                depth=self.depth,
-                normal=normal,
-                size=size,
-                result=DATA,
-                mode=self.mode,
-                rows=rows,
-                rays=rays,
-                factor=factor,
+                **settings,
                 points=2 * slices * steps,
                 radius=self.radius,
                 thickness=self.thickness,

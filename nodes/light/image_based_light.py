@@ -86,21 +86,9 @@ class ImageBasedLight(Filter):
         surface reflects at an angle comes from a small table (split sum, Karis 2013)."""
         camera = draw.camera(self.camera)
         rays = camera.inverse if camera else (0.0,) * 12
-        mirror = shrunk(draw, "image_based_light", self.environment, _MIRROR)
-        skies = [mirror]
-        for size in _LEVELS:
-            skies.append(shrunk(draw, "image_based_light", skies[-1], size))
-        smaller: dict[str, Any] = {f"level{number}": sky for number, sky in enumerate(skies[1:])}
-        lobes = [
-            draw("image_based_light_lobe", **smaller, size=size, result=DATA, roughness=roughness)
-            for roughness, size in _LOBES
-        ]
+        mirror, sky, lobes = self._blur_surroundings(draw)
         near = draw.point(
-            "image_based_light_nearness",
-            self.normal,
-            self.depth,
-            result=Field(),
-            linked=draw.is_linked(self.depth),
+            "image_based_light_nearness", self.normal, self.depth, result=Field(), linked=draw.is_linked(self.depth)
         )
         coverage = draw(
             "image_based_light_coverage", self.normal, near=near, overlap=COVERAGE_REACH, result=Vector(width=3)
@@ -114,7 +102,7 @@ class ImageBasedLight(Filter):
             near=near,
             coverage=coverage,
             overlap=_HERE,
-            sky=irradiance(draw, "image_based_light", skies[3]),
+            sky=irradiance(draw, "image_based_light", sky),
             intensity=self.intensity,
             rotation=self.rotation,
             up=self.up,
@@ -143,3 +131,15 @@ class ImageBasedLight(Filter):
         )
         out = draw.point("image_based_light", diffuse=diffuse, reflection=reflection)
         return {"out": out, "diffuse": diffuse, "reflection": reflection}
+
+    def _blur_surroundings(self, draw: Draw) -> tuple[Drawn, Drawn, list[Drawn]]:
+        """The surroundings that a mirror sees, a small picture of them for matte light, and one for each lobe."""
+        skies = [shrunk(draw, "image_based_light", self.environment, _MIRROR)]
+        for size in _LEVELS:
+            skies.append(shrunk(draw, "image_based_light", skies[-1], size))
+        smaller: dict[str, Any] = {f"level{number}": sky for number, sky in enumerate(skies[1:])}
+        lobes = [
+            draw("image_based_light_lobe", **smaller, size=size, result=DATA, roughness=roughness)
+            for roughness, size in _LOBES
+        ]
+        return skies[0], skies[3], lobes

@@ -46,8 +46,7 @@ def fuse(
     Operations are visited from the last to the first, so that the pass of every reader is known before its producer is
     considered: one visit decides. The other direction would have to merge whole passes.
     """
-    ops = program.ops
-    live = _find_live(program)
+    ops, live = program.ops, _find_live(program)
     readers = _find_readers(ops, live)
     kept_refs = set(program.kept_refs)
     roots_by_op: dict[int, int] = {}
@@ -62,9 +61,8 @@ def fuse(
         outputs = [Ref(index, number) for number in range(op.outputs)]
         roots = {roots_by_op[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
-        joins = op.is_pointwise or (gathers and op.is_inlinable)
         joins = (
-            joins
+            (op.is_pointwise or (gathers and op.is_inlinable))
             and root != index
             and not kept_refs.intersection(outputs)
             and _are_read_at_own_pixel(ops, outputs, readers)

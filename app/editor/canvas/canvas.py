@@ -91,11 +91,8 @@ class Canvas:
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
     def draw(self) -> None:
-        """Draw the graph at the session's place into the current window.
-
-        One invisible button takes the mouse over the whole canvas, and fields of nodes lie on top of it: gestures may
-        begin anywhere and go on outside of the canvas.
-        """
+        """Draw the graph at the session's place into the current window. One invisible button takes the mouse over all
+        of it, so that gestures may begin anywhere and go on outside; fields of nodes lie on top of that button."""
         fonts, view, scale = self._context.fonts, self._context.canvas, ui_scale()
         panel = _find_window_rect()
         area = panel[2] - panel[0], panel[3] - panel[1]
