@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -120,6 +121,7 @@ def through(config: Any, rgb: np.ndarray, *steps: Any) -> np.ndarray:
     return colors.reshape(rgb.shape)
 
 
+@cache
 def studio() -> Any:
-    """OpenColorIO's own studio config."""
+    """OpenColorIO's own studio config, which nobody changes."""
     return OCIO.Config.CreateFromBuiltinConfig("ocio://studio-config-latest")

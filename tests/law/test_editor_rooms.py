@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -26,14 +27,16 @@ def room_of(module: str) -> str:
     return room if rest else "__init__"
 
 
-LINKS = [
-    (room_of(module), room_of(target), f"{module} imports {target}")
-    for module, target in links()
-    if module.startswith("halation.editor.")
-    and target.startswith("halation.editor.")
-    and room_of(module) != room_of(target)
-]
-"""(room, room that it imports, the import in words); what only type checkers see counts too."""
+@cache
+def list_links() -> list[tuple[str, str, str]]:
+    """(room, room that it imports, the import in words); what only type checkers see counts too."""
+    return [
+        (room_of(module), room_of(target), f"{module} imports {target}")
+        for module, target in links()
+        if module.startswith("halation.editor.")
+        and target.startswith("halation.editor.")
+        and room_of(module) != room_of(target)
+    ]
 
 
 def level(room: str) -> int:
@@ -43,16 +46,16 @@ def level(room: str) -> int:
 
 def test_every_folder_has_a_level() -> None:
     assert {path.parent.name for path in ROOT.glob("*/__init__.py")} >= set(LEVELS) - {"__init__"} and PANELS
-    assert len(LINKS) > 100
+    assert len(list_links()) > 100
 
 
 def test_rooms_import_only_lower_ones() -> None:
-    assert not [words for here, there, words in LINKS if level(there) >= level(here)]
+    assert not [words for here, there, words in list_links() if level(there) >= level(here)]
 
 
 def test_no_room_is_part_of_a_cycle() -> None:
     below: dict[str, set[str]] = {}
-    for here, there, _ in LINKS:
+    for here, there, _ in list_links():
         below.setdefault(here, set()).add(there)
     try:
         TopologicalSorter(below).prepare()
