@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import pytest
-from devices import open_renderer
+from devices import RendererKeeper
 from halation.compiler import Precision
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import CameraModel, Kind, Node
@@ -30,11 +30,17 @@ _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
 
 
 @pytest.fixture(scope="session")
-def renderer() -> Iterator[Renderer]:
-    """One renderer for all tests, so that they share its programs."""
-    renderer = open_renderer(BUDGET)
-    yield renderer
-    renderer.close()
+def renderer_keeper() -> Iterator[RendererKeeper]:
+    """Who keeps the renderer of all tests."""
+    keeper = RendererKeeper(BUDGET)
+    yield keeper
+    keeper.close()
+
+
+@pytest.fixture(scope="module")
+def renderer(renderer_keeper: RendererKeeper) -> Renderer:
+    """One renderer for the tests of many files, so that they share its programs."""
+    return renderer_keeper.find_renderer()
 
 
 def graph_of(node: Node, inputs: Mapping[str, Array | CameraModel]) -> Graph:

@@ -20,6 +20,9 @@ from selection import LIST, list_slow
 SHOWN = 20
 """The most rows that are printed."""
 
+GROWN = 8
+"""The most tests that are printed because a worker's peak of memory grew in them."""
+
 _START = pytest.StashKey[float]()
 
 
@@ -30,6 +33,7 @@ class CostTable:
         self._path = path
         self._seconds: dict[str, float] = {}
         self._memory = defaultdict[str, int](int)
+        self._growth: dict[str, int] = {}
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Add the costs of a test that has ended."""
@@ -38,7 +42,10 @@ class CostTable:
             self._seconds[report.nodeid] = round(float(str(costs.get("processor seconds", 0.0))), 3)
             worker = getattr(getattr(report, "node", None), "gateway", None)
             name = worker.id if worker else "this process"
-            self._memory[name] = max(self._memory[name], int(str(costs.get("peak bytes", 0))))
+            peak = int(str(costs.get("peak bytes", 0)))
+            if self._memory[name]:
+                self._growth[report.nodeid] = peak - self._memory[name]
+            self._memory[name] = max(self._memory[name], peak)
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print the costs and write them to the file."""
@@ -48,7 +55,13 @@ class CostTable:
             terminalreporter.write_line(f"{seconds:8.1f} s  {name}")
         peaks = ", ".join(f"{name} {peak / 2**20:.0f} MiB" for name, peak in sorted(self._memory.items()))
         terminalreporter.write_line(f"together {sum(self._seconds.values()):.0f} s; peak memory: {peaks}")
-        table = {"seconds": dict(sorted(self._seconds.items())), "peak_bytes": dict(self._memory)}
+        for name, growth in sorted(self._growth.items(), key=lambda entry: -entry[1])[:GROWN]:
+            terminalreporter.write_line(f"{growth / 2**20:8.0f} MiB more in  {name}")
+        table = {
+            "seconds": dict(sorted(self._seconds.items())),
+            "peak_bytes": dict(self._memory),
+            "growth_bytes": {name: growth for name, growth in sorted(self._growth.items()) if growth > 0},
+        }
         self._path.write_text(json.dumps(table, indent=1) + "\n", "utf-8")
         if os.environ.get("HALATION_RENEW"):
             LIST.write_text("".join(f"{name}\n" for name in list_slow(self._seconds)), "utf-8")
