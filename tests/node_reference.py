@@ -35,7 +35,20 @@ BASES = (
 )
 OVERRIDES = ("identity", "output_size", "times", "upgrade")
 NODE_ATTRIBUTES = ("traits", "proxy_notes", "aliases", "version")
-NOTES = ("Slider", "Doc", "Swatch", "Handle", "File", "OfLayer", "OfSpace", "Picks", "Curve", "ColorRamp", "Lights")
+NOTES = (
+    "Slider",
+    "Doc",
+    "Swatch",
+    "Handle",
+    "Dial",
+    "File",
+    "OfLayer",
+    "OfSpace",
+    "Picks",
+    "Curve",
+    "ColorRamp",
+    "Lights",
+)
 
 TYPES = MappingProxyType(
     {

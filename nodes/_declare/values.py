@@ -37,6 +37,9 @@ class Doc(Struct, frozen=True):
     text: str
 
 
+Turns = Literal["clockwise", "counterclockwise"]
+"""Which way an angle grows."""
+
 Missing = Literal["error", "hold", "nearest", "black"]
 """What a frame of a sequence shows if it has no file."""
 
@@ -77,6 +80,12 @@ class Swatch(Struct, frozen=True):
 
 class Handle(Struct, frozen=True):
     """The value is a position in fractions of the picture, 0,0 at the top left, dragged in the viewer."""
+
+
+class Dial(Struct, frozen=True):
+    """The value is an angle in the plane of the picture, 0 to the right, turned by a dial in the viewer."""
+
+    turns: Turns
 
 
 class Curve(Struct, frozen=True):
@@ -145,6 +154,8 @@ class Value(Struct, frozen=True):
     """What a file is expected to be."""
     handle: bool = False
     """True for a position that is dragged in the viewer."""
+    turns: Turns | Literal[""] = ""
+    """Which way it turns, for an angle in the plane of the picture."""
     file: str = ""
     """The value with the path of the render that it is about."""
     role: str = ""
@@ -207,6 +218,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):
             facts |= {"handle": True, "low": 0.0, "high": 1.0}
+        elif isinstance(note, Dial):
+            facts["turns"] = note.turns
         elif isinstance(note, Curve):
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
     return Value(**facts)

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Slider
 
 
 class DirectionalBlur(Filter):
@@ -15,7 +15,11 @@ class DirectionalBlur(Filter):
 
     image = Image()
     out = OutputSocket(follows="image")
-    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up.")] = 0.0
+    angle: Annotated[
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up."),
+        Dial("counterclockwise"),
+    ] = 0.0
     length: Annotated[
         float, Slider(0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="From one end of the line to the other.")
     ] = 40.0

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class RadialBlur(Filter):
@@ -32,6 +32,7 @@ class RadialBlur(Filter):
         Slider(
             0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: the whole angle that a pixel turns by."
         ),
+        Dial("clockwise"),
     ] = 10.0
     center: Annotated[Position, Doc("The point that stays sharp.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"

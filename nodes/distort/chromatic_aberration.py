@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
 
 
 class ChromaticAberration(Filter):
@@ -36,7 +36,9 @@ class ChromaticAberration(Filter):
         ),
     ] = 0.006
     angle: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction in which red moves; 0 is right.")
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction in which red moves; 0 is right."),
+        Dial("clockwise"),
     ] = 0.0
     samples: Annotated[
         int,

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Kaleidoscope(Filter):
@@ -16,10 +16,13 @@ class Kaleidoscope(Filter):
             2, 24, unit="count", minimum=1, maximum=360, doc="How many pairs of a slice and its mirror image there are."
         ),
     ] = 6
-    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the figure, clockwise.")] = 0.0
+    rotation: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the figure, clockwise."), Dial("clockwise")
+    ] = 0.0
     slice: Annotated[
         float,
         Slider(-180.0, 180.0, unit="deg", doc="The direction of the slice from the center of the picture; 0 is right."),
+        Dial("clockwise"),
     ] = 0.0
     zoom: Annotated[float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the slice.")] = 1.0
     center: Annotated[Position, Doc("Where the mirrors meet.")] = (0.5, 0.5)

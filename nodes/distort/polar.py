@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Polar(Filter):
@@ -27,6 +27,7 @@ class Polar(Filter):
             unit="deg",
             doc="The direction from the center in which the left side of the picture lies; 0 is right.",
         ),
+        Dial("clockwise"),
     ] = -90.0
     center: Annotated[Position, Doc("The middle of the disc.")] = (0.5, 0.5)
     edge: Annotated[

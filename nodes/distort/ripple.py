@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Ripple(Filter):
@@ -32,7 +32,9 @@ class Ripple(Filter):
         float, Slider(-4.0, 4.0, unit="ratio", doc="How many waves have passed; animate it to make the waves move.")
     ] = 0.0
     angle: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction of the waves; 0 is right.")
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="For straight: the direction of the waves; 0 is right."),
+        Dial("clockwise"),
     ] = 0.0
     reach: Annotated[
         float,

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Slider
 
 
 class Swirl(Filter):
@@ -15,7 +15,9 @@ class Swirl(Filter):
 
     image = Image()
     out = OutputSocket(follows="image")
-    angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
+    angle: Annotated[
+        float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise."), Dial("clockwise")
+    ] = 180.0
     radius: Annotated[
         float,
         Slider(

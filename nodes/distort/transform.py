@@ -8,11 +8,12 @@ _SMALLEST = 1e-3
 
 
 class Transform(Filter):
-    """Move, rotate and scale the picture within its frame.
+    """Move, rotate, scale and skew the picture within its frame.
 
-    The picture is scaled, then rotated around the pivot, then moved. Where the picture shrinks, the filter is wider, so
-    that nothing aliases. Several transforms in a row with the same edge work as one, as in Nuke: pixels are filtered
-    only once, by the filter of the last one, and what left the frame in between comes back. Catmull-Rom and Mitchell:
+    The picture is scaled, then skewed, then rotated around the pivot, then moved. Where the picture shrinks, the filter
+    is wider, so that nothing aliases. Several transforms in a row with the same edge work as one, as in Nuke: pixels
+    are filtered only once, by the filter of the last one, and what left the frame in between comes back. Catmull-Rom
+    and Mitchell:
     Mitchell and Netravali 1988.
     """
 
@@ -33,6 +34,17 @@ class Transform(Filter):
         tuple[float, float],
         Slider(0.1, 4.0, unit="ratio", doc="Factor on the width and on the height; below 0 mirrors."),
     ] = (1.0, 1.0)
+    skew: Annotated[
+        tuple[float, float],
+        Slider(
+            -60.0,
+            60.0,
+            unit="deg",
+            minimum=-89.0,
+            maximum=89.0,
+            doc="How far upright edges lean: below the pivot to the right; how far level ones fall to the right.",
+        ),
+    ] = (0.0, 0.0)
     pivot: Annotated[Position, Doc("The point around which the picture is rotated and scaled.")] = (0.5, 0.5)
     direction: Annotated[Literal["forward", "inverse"], Doc("Inverse undoes what forward did.")] = "forward"
     kernel: Annotated[
@@ -45,7 +57,8 @@ class Transform(Filter):
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:
-        still = (self.position, self.rotation, self.scale) == ((0.0, 0.0), 0.0, (1.0, 1.0))
+        values = (self.position, self.rotation, self.scale, self.skew)
+        still = values == ((0.0, 0.0), 0.0, (1.0, 1.0), (0.0, 0.0))
         return "image" if still else None
 
     def passes(self, draw: Draw) -> Drawn:
@@ -57,10 +70,19 @@ class Transform(Filter):
         """Where a result pixel lies in the image."""
         wide, high = (math.copysign(max(abs(part), _SMALLEST), part) for part in self.scale)
         cos, sin = math.cos(self.rotation), math.sin(self.rotation)
-        a, b, c, d = cos * wide, -sin * high, sin * wide, cos * high
+        lean, fall = (math.tan(part) for part in self.skew)
         moved = (pivot[0] + self.position[0], pivot[1] + self.position[1])
         if self.direction == "inverse":
             pivot, moved = moved, pivot
+            a, b = (cos - sin * fall) * wide, (cos * lean - sin) * high
+            c, d = (sin + cos * fall) * wide, (sin * lean + cos) * high
         else:
-            a, b, c, d = cos / wide, sin / wide, -sin / high, cos / high
+            whole = 1.0 - lean * fall
+            wide, high = (part * math.copysign(max(abs(whole), _SMALLEST), whole) for part in (wide, high))
+            a, b, c, d = (
+                (cos + lean * sin) / wide,
+                (sin - lean * cos) / wide,
+                (-sin - fall * cos) / high,
+                (cos - fall * sin) / high,
+            )
         return (a, b, pivot[0] - a * moved[0] - b * moved[1], c, d, pivot[1] - c * moved[0] - d * moved[1])

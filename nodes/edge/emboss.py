@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, Slider
 
 
 class Emboss(Filter):
@@ -21,7 +21,9 @@ class Emboss(Filter):
         Literal["relief", "bump"], Doc("Relief is gray, 0.18 where it is flat. Bump shades the picture's own colors.")
     ] = "relief"
     direction: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="Where the light stands: 0 is right, 90 is up.")
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where the light stands: 0 is right, 90 is up."),
+        Dial("counterclockwise"),
     ] = 135.0
     elevation: Annotated[
         float,

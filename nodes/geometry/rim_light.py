@@ -5,6 +5,7 @@ from typing import Annotated
 from .._declare import (
     RGBA,
     CameraSocket,
+    Dial,
     Doc,
     Draw,
     Drawn,
@@ -45,7 +46,9 @@ class RimLight(Filter):
     ] = 3.0
     focus: Annotated[Fraction, Doc("0: light from all around; 1: light from one side only.")] = 0.0
     angle: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="The side that the light comes from: 0 is right, 90 is above.")
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="The side that the light comes from: 0 is right, 90 is above."),
+        Dial("counterclockwise"),
     ] = 45.0
 
     out = OutputSocket()

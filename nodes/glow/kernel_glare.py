@@ -3,6 +3,7 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from .._declare import (
+    Dial,
     Doc,
     Draw,
     Drawn,
@@ -55,7 +56,9 @@ class KernelGlare(Filter):
         0.8
     )
     blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=32, doc="Number of blades of the iris.")] = 6
-    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the iris counterclockwise.")] = 15.0
+    rotation: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the iris counterclockwise."), Dial("counterclockwise")
+    ] = 15.0
     falloff: Annotated[
         float,
         Slider(

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from .._declare import (
     RGBA,
+    Dial,
     Doc,
     Draw,
     Drawn,
@@ -46,7 +47,11 @@ class Star(Filter):
     length: Annotated[
         float, Slider(0.0, 0.3, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation along an arm.")
     ] = 0.08
-    angle: Annotated[float, Slider(-45.0, 45.0, unit="deg", doc="How far the star is turned, counterclockwise.")] = 45.0
+    angle: Annotated[
+        float,
+        Slider(-45.0, 45.0, unit="deg", doc="How far the star is turned, counterclockwise."),
+        Dial("counterclockwise"),
+    ] = 45.0
     intensity: Annotated[
         float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the star.")
     ] = 0.4

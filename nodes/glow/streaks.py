@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait
+from .._declare import RGBA, Dial, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, ProxyNote, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -53,7 +53,9 @@ class Streaks(Filter):
         ),
     ] = 0.4
     angle: Annotated[
-        float, Slider(-180.0, 180.0, unit="deg", doc="Where the first arm points: 0 is right, 90 is up.")
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where the first arm points: 0 is right, 90 is up."),
+        Dial("counterclockwise"),
     ] = 15.0
     dispersion: Annotated[
         float,

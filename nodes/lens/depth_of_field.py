@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from .._declare import (
     Argument,
+    Dial,
     Doc,
     Draw,
     Drawn,
@@ -113,7 +114,9 @@ class DepthOfField(Filter):
         ),
     ] = 6
     roundness: Annotated[Fraction, Doc("How round the blades are: 1 makes a circle.")] = 0.0
-    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="The rotation of the blades.")] = 0.0
+    rotation: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="The rotation of the blades."), Dial("counterclockwise")
+    ] = 0.0
     ratio: Annotated[
         float,
         Slider(

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Fraction, Image, Pointwise, ProxyNote, Slider
+from .._declare import RGBA, Dial, Doc, Fraction, Image, Pointwise, ProxyNote, Slider
 
 
 class Crosshatch(Pointwise):
@@ -23,7 +23,9 @@ class Crosshatch(Pointwise):
         int, Slider(1, 6, unit="count", minimum=1, maximum=16, doc="The number of layers of strokes.")
     ] = 4
     angle: Annotated[
-        float, Slider(-90.0, 90.0, unit="deg", doc="Direction of the first layer: 0 is level, 45 rises to the right.")
+        float,
+        Slider(-90.0, 90.0, unit="deg", doc="Direction of the first layer: 0 is level, 45 rises to the right."),
+        Dial("counterclockwise"),
     ] = 45.0
     ink: Annotated[RGBA, Doc("Color of the strokes.")] = (0.01, 0.01, 0.015, 1.0)
     paper: Annotated[RGBA, Doc("Color between the strokes.")] = (0.9, 0.88, 0.82, 1.0)

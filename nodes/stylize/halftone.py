@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, ProxyNote, Slider
+from .._declare import Dial, Doc, Image, Pointwise, ProxyNote, Slider
 
 
 class Halftone(Pointwise):
@@ -25,5 +25,7 @@ class Halftone(Pointwise):
         float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="The distance from one dot or line to the next.")
     ] = 6.0
     angle: Annotated[
-        float, Slider(-90.0, 90.0, unit="deg", doc="Rotates all screens, in addition to each ink's own angle.")
+        float,
+        Slider(-90.0, 90.0, unit="deg", doc="Rotates all screens, in addition to each ink's own angle."),
+        Dial("clockwise"),
     ] = 0.0

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Fraction, Image, Position, Slider, Temporal, Vector
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Fraction, Image, Position, Slider, Temporal, Vector
 
 _SMALLEST = 1e-3
 """No scale is nearer to 0."""
@@ -26,9 +26,9 @@ class Feedback(Temporal):
         tuple[float, float],
         Slider(-50.0, 50.0, unit="px", doc="How far the previous result moves in each frame, to the right and down."),
     ] = (0.0, 0.0)
-    rotation: Annotated[float, Slider(-15.0, 15.0, unit="deg", doc="How far it rotates in each frame, clockwise.")] = (
-        2.0
-    )
+    rotation: Annotated[
+        float, Slider(-15.0, 15.0, unit="deg", doc="How far it rotates in each frame, clockwise."), Dial("clockwise")
+    ] = 2.0
     scale: Annotated[
         float,
         Slider(

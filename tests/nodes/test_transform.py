@@ -20,6 +20,8 @@ MOVES = [
     {"rotation": 27.0},
     {"scale": (1.7, 1.2), "pivot": (0.2, 0.9)},
     {"rotation": -133.0, "scale": (1.5, -1.1), "position": (2.0, 4.5), "pivot": (0.7, 0.4)},
+    {"skew": (25.0, 0.0), "scale": (1.8, 1.8)},
+    {"skew": (-20.0, 35.0), "scale": (2.6, 2.4), "rotation": 15.0, "position": (1.0, -2.0), "pivot": (0.3, 0.8)},
 ]
 
 
@@ -30,8 +32,10 @@ def forward(node: Transform, size: tuple[int, int]) -> np.ndarray:
     to_pivot = np.array([[1, 0, -x], [0, 1, -y], [0, 0, 1.0]])
     scale = np.diag([*node.scale, 1.0])
     spin = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1.0]])
+    lean, fall = np.tan(np.radians(node.skew))
+    shear = np.array([[1, lean, 0], [fall, 1, 0], [0, 0, 1.0]])
     back = np.array([[1, 0, x + node.position[0]], [0, 1, y + node.position[1]], [0, 0, 1.0]])
-    return back @ spin @ scale @ to_pivot
+    return back @ spin @ shear @ scale @ to_pivot
 
 
 def sampled(picture: np.ndarray, matrix: np.ndarray, mode: str) -> np.ndarray:
@@ -98,7 +102,8 @@ def test_shrinking_does_not_alias(run, kernel):
 
 def test_inverse_is_the_inverse_matrix():
     pivot = (12.0, 9.0)
-    node = Transform(position=(5.0, -3.0), rotation=40.0, scale=(1.5, 0.7), pivot=(0.3, 0.3)).to_working_units(1.0, 30)
+    node = Transform(position=(5.0, -3.0), rotation=40.0, scale=(1.5, 0.7), pivot=(0.3, 0.3), skew=(20.0, -35.0))
+    node = node.to_working_units(1.0, 30)
     matrices = [
         np.array([*node.with_values(direction=direction).backward(pivot), 0, 0, 1]).reshape(3, 3)
         for direction in ("forward", "inverse")

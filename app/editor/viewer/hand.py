@@ -100,9 +100,11 @@ class ViewerInput:
             self.picked_point = at
         if self._hold.token and imgui.is_key_pressed(imgui.Key.escape, False):
             self._context.session.abandon(self._hold.token)
+            self._context.viewer.guides, self._context.viewer.deferred = (), None
             self._hold = None
             return
-        self._hold.drag(sight, at, (delta.x, delta.y))
+        io = imgui.get_io()
+        self._hold.drag(sight, at, (delta.x, delta.y), is_free=io.key_ctrl, is_constrained=io.key_shift)
         if not active:
             self._hold.release(sight, at)
             self._hold = None
@@ -143,7 +145,9 @@ class ViewerInput:
 
     def _show_cursor(self) -> None:
         target = self._hold.aim if self._hold else self.aim
-        if target.kind in ("handle", "track", "sun") or target.lamp:
+        if target.kind == "handle" and target.part in _CURSORS:
+            imgui.set_mouse_cursor(_CURSORS[target.part])
+        elif target.kind in ("handle", "track", "sun") or target.lamp:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
         elif target.kind == "matte" or (target.kind in ("pan", "orbit") and self._hold and self._hold.moved):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)

@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING, Literal
 
 from msgspec import structs
 
-from ...authoring.commands import SetValue
-from ...graph import Port
+from ...authoring.commands import SetValue, SetValues
 from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_grip, drag_box, order_box, wipe_angle, wipe_grip
+from .gizmos import Gizmo, GizmoDrag
 from .ground import FAR, SCENE, depth_at
-from .handles import handles
+from .handles import find_grip, list_gizmos
 from .lights import Lamp, change_light, drop_light, lamps, make_merge_token, place_light, suns, turn_spot
 from .mattes import click, picks
 from .orbit import Orbit, aspect_of, move_camera, scene_at
+from .snapping import Snapping
 
 if TYPE_CHECKING:
     from .context import ViewerContext
@@ -46,6 +47,8 @@ ARM = 56.0
 REACH = 6.0
 """The distance at which a handle is hit, in pixels at UI scale 1."""
 
+SNAP_REACH = 6.0
+"""The distance from which on a line attracts what is dragged, in pixels at UI scale 1: as that of the wipe."""
 
 DOUBLINGS = 3.0
 """How often the depth of a light doubles for a drag up across the whole panel."""
@@ -57,7 +60,9 @@ class HandleTarget:
 
     kind: HoldKind
     grip: Grip = ""
-    port: Port | None = None
+    gizmo: Gizmo | None = None
+    part: str = ""
+    """The grip of the gizmo."""
     lamp: Lamp | None = None
 
 
@@ -82,9 +87,8 @@ def aim(
         return HandleTarget("new region")
     if ctrl:
         return HandleTarget("measure")
-    for handle in handles(context):
-        if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
-            return HandleTarget("handle", port=handle.port)
+    if grip_target := find_grip(list_gizmos(context, sight, scale), sight, at, scale):
+        return HandleTarget("handle", gizmo=grip_target[0], part=grip_target[1].part)
     if light_target := _light(context, sight, at, scale, alt, shift):
         return light_target
     if viewer.compare == "wipe" and sight.under(at):
@@ -135,12 +139,17 @@ class MouseHold:
     """The camera at the start of the drag."""
     depth: float = 0.0
     """The depth at the point where the button was pressed."""
+    deferred: GizmoDrag | None = None
+    """What counts when the button is released."""
 
     @classmethod
     def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: HandleTarget, scale: float = 1.0) -> MouseHold:
         """Start the drag of a target."""
         hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
-        held_point = next((handle.at for handle in handles(context) if handle.port == aim.port), None)
+        held_point = None
+        if aim.gizmo is not None:
+            grip = next(grip.at for grip in aim.gizmo.grips if grip.part == aim.part)
+            held_point = grip[0] / sight.picture[0], grip[1] / sight.picture[1]
         if aim.lamp is not None:
             held_point, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
             if aim.kind in ("goal", "goal depth") and aim.lamp.aims:
@@ -160,8 +169,8 @@ class MouseHold:
             hold.box = context.viewer.region
         return hold
 
-    def drag(self, sight: Sight, at: Point, by: Point) -> None:
-        """Follow the mouse to `at`, `by` screen units from where it was a frame ago."""
+    def drag(self, sight: Sight, at: Point, by: Point, *, is_free: bool = False, is_constrained: bool = False) -> None:
+        """Follow the mouse to `at`, `by` screen units from where it was a frame ago; nothing snaps if it is free."""
         self.moved = self.moved or math.dist(at, self.start) > 3.0
         viewer, (x, y), begun = self.context.viewer, sight.fraction(at), sight.fraction(self.start)
         match self.aim.kind:
@@ -170,7 +179,7 @@ class MouseHold:
                     moved = sight.pan_by(*by)
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
-                self._move_handle((x + self.offset[0], y + self.offset[1]))
+                self._move_grip(sight, (x + self.offset[0], y + self.offset[1]), is_free, is_constrained)
             case "light" | "light depth" | "light drop" | "goal" | "goal depth" | "sun" if self.moved:
                 self._move_light(sight, at, (x + self.offset[0], y + self.offset[1]))
             case "orbit" | "track" if self.moved and self.orbit is not None:
@@ -192,6 +201,10 @@ class MouseHold:
     def release(self, sight: Sight, at: Point) -> None:
         """End the drag."""
         viewer = self.context.viewer
+        viewer.guides = ()
+        if self.deferred is not None:
+            self._apply(self.deferred)
+            viewer.deferred = None
         if self.token:
             self.context.session.seal()
         elif self.aim.kind == "matte" and not self.moved:
@@ -207,8 +220,8 @@ class MouseHold:
     @property
     def token(self) -> str:
         """The merge token of the drag's edits; "" if it does not edit the document."""
-        if self.aim.port is not None and self.aim.kind == "handle":
-            return f"handle {self.aim.port}"
+        if self.aim.gizmo is not None:
+            return f"handle {self.aim.gizmo.grips[0].port} {self.aim.part}"
         return make_merge_token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
 
     def _move_light(self, sight: Sight, at: Point, to: Point) -> None:
@@ -244,12 +257,29 @@ class MouseHold:
             orbit = orbit.shift_target(x - left, y - top, self.depth, aspect_of(self.context))
         move_camera(self.context, orbit, self.token)
 
-    def _move_handle(self, to: Point) -> None:
-        port = self.aim.port
-        assert port is not None
-        self.context.interface.dragging = True
-        position = tuple(round(min(max(part, -1.0), 2.0), 5) for part in to)
-        self.context.log.attempt(lambda: self.context.session.apply(SetValue(port, position, merge=self.token)))
+    def _move_grip(self, sight: Sight, to: Point, is_free: bool, is_constrained: bool) -> None:
+        gizmo, viewer = self.aim.gizmo, self.context.viewer
+        assert gizmo is not None
+        pixel = sight.density / sight.zoom
+        size = float(sight.picture[0]), float(sight.picture[1])
+        snapping = Snapping(size, 0.0 if is_free else SNAP_REACH * self.scale * pixel)
+        target = to[0] * size[0], to[1] * size[1]
+        drag = gizmo.drag(self.aim.part, target, snapping, is_constrained=is_constrained)
+        viewer.guides = drag.guides
+        if gizmo.is_deferred:
+            self.deferred = drag
+            viewer.deferred = drag.values
+        else:
+            self.context.interface.dragging = True
+            self._apply(drag)
+
+    def _apply(self, drag: GizmoDrag) -> None:
+        """Set the values of a drag as one step."""
+        (port, value), *others = drag.values.items()
+        command = SetValue(port, value, merge=self.token)
+        if others:
+            command = SetValues(drag.values, f"Set {port.node}", merge=self.token)
+        self.context.log.attempt(lambda: self.context.session.apply(command))
 
 
 def toggle_marker(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:

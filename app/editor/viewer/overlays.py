@@ -12,9 +12,8 @@ from ..theme.style import u32, ui_scale
 from .axes import draw_axes
 from .focus import distance_in_words, find_focus_port, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
-from .grips import draw_grip, is_near
+from .gizmo_lines import draw_gizmos
 from .ground import depth_at
-from .handles import handles
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
 from .mattes import draw_name
@@ -38,7 +37,7 @@ def draw_overlays(context: ViewerContext, sight: Sight) -> None:
         _marker(lines, sight.place(marker), str(number))
     if viewer.compare == "wipe" and context.session.views.find_port("B") is not None:
         _wipe(context, lines, sight)
-    _handles(context, lines, sight)
+    draw_gizmos(context, lines, sight)
     draw_lamps(context, lines, sight)
     draw_dome(context, lines, sight)
     if viewer.orbits or (viewer.scene and viewer.hovered and imgui.get_io().key_alt):
@@ -106,21 +105,6 @@ def _wipe(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None
         draw_label(lines, at, name)
     context.places["viewer wipe"] = around((x, y), 6.0 * scale)
     context.places["viewer wipe angle"] = around(end, 6.0 * scale)
-
-
-def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
-    mouse = imgui.get_mouse_pos()
-    scale = ui_scale()
-    for handle in handles(context):
-        x, y = sight.place(handle.at)
-        near = is_near((x, y), (mouse.x, mouse.y))
-        draw_grip(lines, (x, y), "place", is_lit=near)
-        port, words = handle.port, [str(handle.port)] if near else []
-        if port == find_focus_port(context.session):
-            words.append(distance_in_words(depth_at(context, handle.at)))
-        if words:
-            context.places[f"label {port}"] = draw_label(lines, (x, y + 20 * scale), "  ".join(words))
-        context.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
 
 
 def _draw_picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
@@ -10,7 +10,11 @@ from .pacing import Pace
 from .reading import ValueReader
 
 if TYPE_CHECKING:
+    from halation.nodes import Plain
+
     from ...color.transforms import Array
+    from ...graph import Port
+    from .snapping import SnapGuide
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
@@ -90,6 +94,10 @@ class ViewerState:
     """`node.value` that the next click on the picture sets: a color to that of the pixel, a position to its place."""
     has_gizmos: bool = True
     """False hides the handles on the picture, and lets the mouse reach what is below them."""
+    guides: tuple[SnapGuide, ...] = ()
+    """The lines to which what is dragged has snapped."""
+    deferred: Mapping[Port, Plain] | None = None
+    """Values of a drag that count when the button is released."""
     orbiting: bool = False
     """True lets the mouse move the camera of the viewed scene, not the picture."""
     scene: str = ""
