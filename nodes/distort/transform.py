@@ -13,8 +13,7 @@ class Transform(Filter):
     The picture is scaled, then skewed, then rotated around the pivot, then moved. Where the picture shrinks, the filter
     is wider, so that nothing aliases. Several transforms in a row with the same edge work as one, as in Nuke: pixels
     are filtered only once, by the filter of the last one, and what left the frame in between comes back. Catmull-Rom
-    and Mitchell:
-    Mitchell and Netravali 1988.
+    and Mitchell: Mitchell and Netravali 1988.
     """
 
     aliases = (

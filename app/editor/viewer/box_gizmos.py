@@ -111,6 +111,8 @@ class TransformGizmo:
     """How far above the frame the grip is that turns it."""
     names: frozenset[str]
     """The values that can be dragged."""
+    unit: float = 1.0
+    """The pixels of 1 of the position."""
     is_deferred: bool = False
 
     @property
@@ -133,6 +135,11 @@ class TransformGizmo:
         arm = GizmoOutline((self.map((self.size[0] / 2.0, 0.0)), self._find_arm_end()))
         return (frame, arm) if "rotation" in self.names else (frame,)
 
+    @property
+    def _center(self) -> Point:
+        """Where the pivot comes to lie."""
+        return self.pivot[0] + self.position[0] * self.unit, self.pivot[1] + self.position[1] * self.unit
+
     def map(self, point: Point) -> Point:
         """Where a pixel of the frame lies in the result."""
         x, y = (point[i] - self.pivot[i] for i in (0, 1))
@@ -141,7 +148,8 @@ class TransformGizmo:
         x, y = x + lean * y, y + fall * x
         turn = math.radians(self.rotation)
         x, y = x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
-        return self.pivot[0] + self.position[0] + x, self.pivot[1] + self.position[1] + y
+        center = self._center
+        return center[0] + x, center[1] + y
 
     def drag(self, part: str, to: Point, snapping: Snapping, *, is_constrained: bool = False) -> GizmoDrag:
         """Move, scale, turn or skew; constrained keeps the axis, the proportions, or whole steps of 15 degrees."""
@@ -174,7 +182,7 @@ class TransformGizmo:
 
     def _back(self, to: Point) -> Point:
         """A point of the result before it was moved and turned, from the pivot."""
-        x, y = (to[i] - self.pivot[i] - self.position[i] for i in (0, 1))
+        x, y = (to[i] - self._center[i] for i in (0, 1))
         turn = -math.radians(self.rotation)
         return x * math.cos(turn) - y * math.sin(turn), x * math.sin(turn) + y * math.cos(turn)
 
@@ -187,11 +195,11 @@ class TransformGizmo:
             *(self.map(self._corner(part)) for part in _CORNERS),
         ]
         more, guides = snapping.snap([(x + by[0], y + by[1]) for x, y in points])
-        x, y = (round(self.position[i] + by[i] + more[i], 3) for i in (0, 1))
+        x, y = (round(self.position[i] + (by[i] + more[i]) / self.unit, 3) for i in (0, 1))
         return GizmoDrag({Port(self.node, "position"): (x, y)}, guides)
 
     def _turn(self, to: Point, snapping: Snapping, is_constrained: bool) -> GizmoDrag:
-        center = self.pivot[0] + self.position[0], self.pivot[1] + self.position[1]
+        center = self._center
         arm = self._find_arm_end()
         before, after = (math.atan2(at[1] - center[1], at[0] - center[0]) for at in (arm, to))
         angle = self.rotation + math.remainder(math.degrees(after - before), 360.0)

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from halation.nodes import Plain, Value
+from halation.nodes import Plain, Value, is_length, unit_factor
 
 from ...graph import Port, Unknown, signature
 from .box_gizmos import RectangleGizmo, TransformGizmo
@@ -54,6 +54,7 @@ class _ActiveNode:
     values: dict[str, Value]
     """The values that can be dragged, those that a link drives aside."""
     numbers: dict[str, Plain]
+    units: dict[str, str | None]
     frame: PictureFrame
     crops_view: bool
     """Whether the picture is what the node left of its frame."""
@@ -119,17 +120,18 @@ def _find_active(context: ViewerContext, frame: PictureFrame) -> _ActiveNode | N
     item = session.graph.nodes.get(session.active)
     if not context.viewer.has_gizmos or item is None or isinstance(item, Unknown):
         return None
+    ports = [Port(session.active, name) for name in signature(item).values]
     values = {
-        name: value
-        for name, value in signature(item).values.items()
-        if session.graph.links.get(Port(session.active, name)) is None
-        and not is_idle(session, Port(session.active, name))
+        port.socket: session.graph.declaration(port)
+        for port in ports
+        if session.graph.links.get(port) is None and not is_idle(session, port)
     }
-    numbers = {name: session.time.evaluated_graph.value(Port(session.active, name)) for name in signature(item).values}
+    numbers = {port.socket: session.time.evaluated_graph.value(port) for port in ports}
     viewed = session.views.find_port("A")
     behind = viewed is not None and session.active in session.graph.upstream(viewed.node) | {viewed.node}
     crops = numbers.get("resize") is True and set(_RECTANGLE) <= numbers.keys()
-    return _ActiveNode(session.active, values, numbers, frame, crops and behind)
+    units = {name: value.unit for name, value in values.items()}
+    return _ActiveNode(session.active, values, numbers, units, frame, crops and behind)
 
 
 def _list_places(active: _ActiveNode) -> list[Gizmo]:
@@ -172,6 +174,7 @@ def _list_frames(active: _ActiveNode) -> list[Gizmo]:
             (pivot[0], pivot[1]),
             0.5 * _ARM * active.frame.pixel,
             frozenset(name for name in _FRAME if name in active.values),
+            unit_factor(active.units.get("position"), 1.0, active.frame.size[1]),
         )
     ]
 
@@ -202,9 +205,9 @@ def _list_lengths(active: _ActiveNode) -> list[Gizmo]:
     taken = _FRAME if _is_transform(active) else ()
     center, gizmos = _find_center(active), list[Gizmo]()
     for name, value in active.values.items():
-        if value.unit not in ("px", "height") or name in taken or value.type not in ("float", "vector"):
+        if not _is_length(value) or name in taken or value.type not in ("float", "vector"):
             continue
-        unit, numbers = 1.0 if value.unit == "px" else active.frame.size[1], active.numbers[name]
+        unit, numbers = unit_factor(value.unit, 1.0, active.frame.size[1]), active.numbers[name]
         if isinstance(numbers, tuple):
             if len(numbers) == 2:
                 place = (numbers[0], numbers[1])
@@ -215,6 +218,11 @@ def _list_lengths(active: _ActiveNode) -> list[Gizmo]:
         least, limits = _LEAST * active.frame.pixel, (value.minimum, value.maximum)
         gizmos.append(SizeGizmo(active.port(name), float(numbers), unit, center, direction, least, *limits))
     return gizmos
+
+
+def _is_length(value: Value) -> bool:
+    """True for a length, in whatever unit the graph gives it."""
+    return is_length(value) or (value.unit or "").startswith("px@")
 
 
 def _find_center(active: _ActiveNode) -> Point:
