@@ -95,7 +95,7 @@ def clip_span(span: Span, length: int, edge: Edge) -> Span:
     low, high = min(max(first, 0), length - 1), max(min(end, length), 1)
     if edge in ("clamp", "black"):
         return low, high
-    if edge == "wrap" or first < -length or end > 2 * length:
+    if edge in ("wrap", "panorama") or first < -length or end > 2 * length:
         return 0, length
     turn = 1 if edge == "mirror" else 0
     if first < 0:
@@ -103,6 +103,13 @@ def clip_span(span: Span, length: int, edge: Edge) -> Span:
     if end > length:
         low = min(low, max(2 * length - turn - end, 0))
     return low, high
+
+
+def clip_region(across: Span, down: Span, size: Size, edge: Edge) -> Region:
+    """The pixels of a picture that an edge mode reads for spans that go beyond its edges."""
+    if edge == "panorama" and (down[0] < 0 or down[1] > size[1]):  # across a pole lies the other half of the row
+        return Region.of((0, size[0]), clip_span(down, size[1], "reflect"))
+    return Region.of(clip_span(across, size[0], edge), clip_span(down, size[1], edge))
 
 
 def _find_span(places: list[float], radius: float) -> Span:

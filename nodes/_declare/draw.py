@@ -211,6 +211,13 @@ class Draw(Protocol):
         """Convert straight color exactly as OpenColorIO does; alpha stays. It can fuse, as `point` does."""
         ...
 
+    def pad(self, image: Pixels, margin: tuple[int, int], edge: Edge = "clamp") -> Drawn:
+        """Add `margin` pixels on the left and right, and above and below, as the edge mode says; below 0 cuts them off.
+
+        For effects in several sizes, whose edge modes would mean other pixels in each of them.
+        """
+        ...
+
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
         """Move, rotate and scale: `matrix` maps a pixel of the result to its place in `image`.
 

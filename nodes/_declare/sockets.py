@@ -11,8 +11,9 @@ from .kinds import Kind
 Size = tuple[int, int]
 """Width and height in pixels."""
 
-Edge = Literal["clamp", "mirror", "reflect", "wrap", "black"]
-"""What is read outside of a picture, by the names of scipy: clamp (nearest), mirror, reflect, wrap; black is
+Edge = Literal["clamp", "mirror", "reflect", "wrap", "panorama", "black"]
+"""What is read outside of a picture, by the names of scipy: clamp (nearest), mirror, reflect, wrap. Panorama is for
+pictures by longitude and latitude: it goes on around the world, and across a pole on its other side. Black is
 transparent."""
 
 

@@ -1,7 +1,8 @@
 import math
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Reach, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Reach, Slider
 
 _ENDLESS = 1e9
 
@@ -10,6 +11,10 @@ _STEPS = 512
 
 _MISSED = 1e-3
 """How far, in focal lengths, a point that is found may be from the one that is wanted."""
+
+
+_REACH: Mapping[Kernel, int] = {"nearest": 2, "triangle": 2, "catmull-rom": 3, "mitchell": 3, "lanczos": 4}
+"""Pixels that a kernel reads around a place, and one more for rounding."""
 
 
 class LensDistortion(Filter):
@@ -50,6 +55,13 @@ class LensDistortion(Filter):
         float, Slider(0.5, 2.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the result, to hide bent borders.")
     ] = 1.0
     center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
+    kernel: Annotated[
+        Kernel,
+        Doc(
+            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may "
+            "ring around lights, Mitchell is between."
+        ),
+    ] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:
@@ -62,7 +74,7 @@ class LensDistortion(Filter):
         far, moved = self._bounds(x / self.zoom, y / self.zoom)
         overlap = None
         if moved is not None:
-            part, reach = 1.0 / self.zoom, math.ceil(moved * self.focal + 1.0 / self.zoom) + 2
+            part, reach = 1.0 / self.zoom, math.ceil(moved * self.focal + 1.0 / self.zoom) + _REACH[self.kernel]
             matrix = (part, 0.0, center[0] * (1.0 - part), 0.0, part, center[1] * (1.0 - part))
             overlap = Reach(matrix, (reach, reach))
         return draw(
@@ -77,6 +89,7 @@ class LensDistortion(Filter):
             zoom=self.zoom,
             center=center,
             far=far,
+            kernel=self.kernel,
         )
 
     def _bounds(self, x: float, y: float) -> tuple[float, float | None]:

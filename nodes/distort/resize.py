@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Size, Slider, Trait
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Pixels, Size, Slider, Trait
 
 
 class Resize(Filter):
@@ -43,24 +43,22 @@ class Resize(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         before, after = draw.size_of(self.image), draw.size
-        across, down = (math.ceil(3.0 * max(a / b, 1.0)) + 2 for a, b in zip(before, after, strict=True))
-        wide = draw(
-            "resize",
-            self.image,
-            size=(after[0], before[1]),
-            edge=self.edge,
-            overlap=(across, 0),
-            axis=0,
-            shrink=before[0] / after[0],
-            kernel=self.kernel,
-        )
-        return draw(
-            "resize",
-            image=wide,
-            size=after,
-            edge=self.edge,
-            overlap=(0, down),
-            axis=1,
-            shrink=before[1] / after[1],
-            kernel=self.kernel,
-        )
+        # Across a pole of a panorama lies the pixel half a turn away: whole pixels only at the full width.
+        axes = (1, 0) if self.edge == "panorama" else (0, 1)
+        resized: Pixels = self.image
+        size = list(before)
+        for axis in axes:
+            size[axis] = after[axis]
+            shrink = before[axis] / after[axis]
+            reach = math.ceil(3.0 * max(shrink, 1.0)) + 2
+            resized = draw(
+                "resize",
+                image=resized,
+                size=(size[0], size[1]),
+                edge=self.edge,
+                overlap=(0, reach) if axis else (reach, 0),
+                axis=axis,
+                shrink=shrink,
+                kernel=self.kernel,
+            )
+        return resized

@@ -8,6 +8,7 @@ from .._declare import (
     Doc,
     Draw,
     Drawn,
+    Edge,
     Filter,
     Fraction,
     Image,
@@ -29,6 +30,11 @@ _OCTAVES = 4
 
 _FAINTEST = 1e-12
 """No level counts for less, so that levels that all count for nothing are all alike instead."""
+
+
+_LEVEL_REACH = 7
+"""How far light reaches, in pixels of the smallest level: less than 3 on the way down and 4 on the way up, where a level
+reads 3 pixels of the finer one and 2 of the coarser one."""
 
 
 class Bloom(Filter):
@@ -88,6 +94,10 @@ class Bloom(Filter):
             "Reduce the weight of single bright pixels, which would flicker (Karis 2013). Some of their light is lost."
         ),
     ] = False
+    edge: Annotated[
+        Literal["clamp", "reflect", "wrap", "panorama"],
+        Doc("What lies outside the picture. Wrap and panorama leave no seam in pictures that go on."),
+    ] = "clamp"
 
     out = OutputSocket()
     glow = OutputSocket()
@@ -96,21 +106,33 @@ class Bloom(Filter):
         light: Pixels = self.image
         if self.threshold > 0.0 or self.limit < _NO_LIMIT:
             light = draw.point("bloom_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
-        glow = self._spread(draw, light, draw.size, self._shares())
+        glow = self._spread(draw, light, draw.size, self._shares(), self.edge)
         if self.tint != _WHITE:
             glow = draw.point("bloom_tint", glow=glow, tint=self.tint)
         out = draw.point("bloom", self.image, glow=glow, intensity=self.intensity, mode=self.mode)
         return {"out": out, "glow": glow}
 
-    def _spread(self, draw: Draw, light: Pixels, size: Size, shares: list[float], first: bool = True) -> Drawn:
-        """The glow of a level's light: half the size, spread there by the levels below, and back."""
+    def _spread(
+        self, draw: Draw, light: Pixels, size: Size, shares: list[float], edge: Edge, first: bool = True
+    ) -> Drawn:
+        """The glow of a level's light: half the size, spread there by the levels below, and back.
+
+        A picture that goes on outside does so at half the size too, if its halves are whole. At the first level where
+        they are not, it is padded by all that the levels below can reach, and cut to its size again.
+        """
+        if edge != "clamp" and not _can_halve(size, edge):
+            margin = _LEVEL_REACH * 2 ** len(shares)
+            wide = (size[0] + 2 * margin, size[1] + 2 * margin)
+            spread = self._spread(draw, draw.pad(light, (margin, margin), edge), wide, shares, "clamp", first)
+            return draw.pad(spread, (-margin, -margin))
         half = ((size[0] + 1) // 2, (size[1] + 1) // 2)
         steady = self.firefly and first
-        below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half, overlap=3)
+        shrink = "bloom_shrink_steady" if steady else "bloom_shrink"
+        below = draw(shrink, image=light, size=half, edge=edge, overlap=3)
         if len(shares) > 1:
-            below = self._spread(draw, below, half, shares[1:], first=False)
+            below = self._spread(draw, below, half, shares[1:], edge, first=False)
         overlap = {"image": 3, "level": 0}
-        return draw("bloom_grow", image=below, level=light, size=size, overlap=overlap, share=shares[0])
+        return draw("bloom_grow", image=below, level=light, size=size, edge=edge, overlap=overlap, share=shares[0])
 
     def _shares(self) -> list[float]:
         """Of every level, the part of its glow that comes from the levels below it."""
@@ -126,6 +148,13 @@ class Bloom(Filter):
             rest -= here
         below = [sum(amounts[level:]) for level in range(last + 3)]
         return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(last + 1)]
+
+
+def _can_halve(size: Size, edge: Edge) -> bool:
+    """True if the picture at half the size goes on at the same places outside. Half a turn of a panorama must be whole
+    pixels there too.
+    """
+    return size[0] % (4 if edge == "panorama" else 2) == 0 and size[1] % 2 == 0
 
 
 def _levels(sigma: float) -> tuple[int, float]:

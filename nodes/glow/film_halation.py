@@ -1,7 +1,7 @@
 import math
 from collections.abc import Mapping
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Literal
 
 from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, OutputSocket, Slider, Trait
 
@@ -22,6 +22,10 @@ Fresnel reflection within it."""
 
 _SIGMAS = (0.22, 0.33, 0.5, 0.74, 1.11, 1.67, 2.5, 3.76)
 """The Gaussians that the halo is mixed from, in thicknesses of the light's way: twice that of the base."""
+
+
+_VISIBLE_SIGMAS = 4.0
+"""How far a Gaussian is seen, as blurs cut it off: 6e-5 of its light lies beyond."""
 
 
 class FilmHalation(Filter):
@@ -108,6 +112,10 @@ class FilmHalation(Filter):
             doc="The largest light in a channel that comes back, to limit suns and noise; 65504 is no limit.",
         ),
     ] = 200.0
+    edge: Annotated[
+        Literal["clamp", "reflect", "wrap", "panorama"],
+        Doc("What lies outside the picture. Wrap and panorama leave no seam in pictures that go on."),
+    ] = "clamp"
 
     out = OutputSocket()
     glow = OutputSocket()
@@ -120,10 +128,14 @@ class FilmHalation(Filter):
             for sigma, share in _mixture(min(max(reach, 0.5), 1.0)):
                 gaussians.setdefault(sigma, [0.0, 0.0, 0.0])[layer] += share
         factor = _factor(min(gaussians) * way)
-        size = (-(-draw.size[0] // factor), -(-draw.size[1] // factor))
         light = draw.point(
             "film_halation_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit
         )
+        margin = math.ceil(_VISIBLE_SIGMAS * max(gaussians) * way) if self.edge != "clamp" else 0
+        if margin:
+            light = draw.pad(light, (margin, margin), self.edge)
+        full = draw.size_of(light)
+        size = (-(-full[0] // factor), -(-full[1] // factor))
         if factor > 1:
             light = draw("film_halation_shrink", image=light, size=size, overlap=2 * factor, factor=factor)
         # What shrinking (a box) and enlarging (a tent) blur themselves.
@@ -133,7 +145,9 @@ class FilmHalation(Filter):
             soft = draw.blur(light, math.sqrt(max((sigma * way) ** 2 - resampling_variance, 0.0)) / factor)
             halo = draw.point("film_halation_add", halo=halo, soft=soft, share=tuple(share))
         if factor > 1:
-            halo = draw("film_halation_enlarge", image=halo, size=draw.size, overlap=3, factor=factor)
+            halo = draw("film_halation_enlarge", image=halo, size=full, overlap=3, factor=factor)
+        if margin:
+            halo = draw.pad(halo, (-margin, -margin))
         glow = draw.point("film_halation_glow", self.image, halo=halo, amount=self.amount, color=self.color)
         return {"out": draw.point("film_halation", self.image, glow=glow), "glow": glow}
 

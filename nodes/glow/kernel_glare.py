@@ -7,6 +7,7 @@ from .._declare import (
     Doc,
     Draw,
     Drawn,
+    Edge,
     Field,
     Filter,
     Fraction,
@@ -99,6 +100,9 @@ class KernelGlare(Filter):
             "small pictures are always spread in full."
         ),
     ] = "half"
+    edge: Annotated[
+        Edge, Doc("What lies outside the picture. Wrap and panorama leave no seam in pictures that go on.")
+    ] = "black"
 
     out = OutputSocket()
     glow = OutputSocket()
@@ -112,13 +116,18 @@ class KernelGlare(Filter):
             factor //= 2
         light = draw.point("kernel_glare_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
         kernel = self._kernel(draw, self.size / factor)
+        across, down = (factor * (length // 2 + 1) for length in draw.size_of(kernel))
+        around = draw.pad(light, (across, down), self.edge) if self.edge != "black" else light
         if factor == 1:
-            glare = draw.convolve_2d(light, kernel)
+            glare = draw.convolve_2d(around, kernel)
         else:
-            small = (math.ceil(draw.size[0] / factor) + 2, math.ceil(draw.size[1] / factor) + 2)
-            shrunk = draw("kernel_glare_shrink", image=light, size=small, edge="black", result=_DATA, factor=factor)
+            full = draw.size_of(around)
+            small = (math.ceil(full[0] / factor) + 2, math.ceil(full[1] / factor) + 2)
+            shrunk = draw("kernel_glare_shrink", image=around, size=small, edge="black", result=_DATA, factor=factor)
             spread = draw.convolve_2d(shrunk, kernel)
-            glare = draw("kernel_glare_grow", small=spread, result=_DATA, factor=factor)
+            glare = draw("kernel_glare_grow", small=spread, size=full, result=_DATA, factor=factor)
+        if self.edge != "black":
+            glare = draw.pad(glare, (-across, -down))
         glow = draw.point("kernel_glare_glow", self.image, glare=glare)
         out = draw.point("kernel_glare", self.image, light=light, glare=glare, intensity=self.intensity, mode=self.mode)
         return {"out": out, "glow": glow}

@@ -1,5 +1,6 @@
 #include "lib/finite.glsl"
 #include "lib/footprint.glsl"
+#include "lib/sampling.glsl"
 
 const float lens_distortion_nowhere = 1e6;  // in focal lengths: a place outside of every picture
 
@@ -47,7 +48,9 @@ vec2 lens_distortion_source(
     return center + p * focal;
 }
 
-vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center, float far) {
+vec4 lens_distortion(
+    int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center, float far, int kernel
+) {
     vec2 at = vec2(pixel) + 0.5;
     vec2 here = lens_distortion_source(at, direction, radial, tangential, focal, zoom, center, far);
     // The derivative gives the footprint of the pixel. Differences would need the costly inverse at more places.
@@ -55,11 +58,12 @@ vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, f
     mat2 slope = lens_distortion_slope(p, radial, tangential);
     if (direction == DIRECTION_DISTORT) slope = inverse(slope);
     int n = footprint_samples(slope[0] / zoom, slope[1] / zoom);
-    if (n == 1) return image_near(here);
+    if (n == 1) return finite(image_filtered(here, kernel));
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {
         vec2 from = at + footprint_at(i, n);
-        sum += image_near(lens_distortion_source(from, direction, radial, tangential, focal, zoom, center, far));
+        vec2 source = lens_distortion_source(from, direction, radial, tangential, focal, zoom, center, far);
+        sum += image_filtered(source, kernel);
     }
     return finite(sum / float(n * n));
 }

@@ -1,19 +1,11 @@
 #include "lib/finite.glsl"
-#include "lib/resampling.glsl"
-
-float resize_radius(int kernel) { return kernel == KERNEL_TRIANGLE ? 1.0 : kernel == KERNEL_LANCZOS ? 3.0 : 2.0; }
-
-float resize_weight(float x, int kernel) {
-    if (kernel == KERNEL_TRIANGLE) return triangle_weight(x);
-    if (kernel == KERNEL_LANCZOS) return lanczos_weight(x, 3.0);
-    return kernel == KERNEL_MITCHELL ? cubic_weight(x, 1.0 / 3.0, 1.0 / 3.0) : cubic_weight(x, 0.0, 0.5);
-}
+#include "lib/kernels.glsl"
 
 // Resamples along one axis. `shrink` is how many pixels of the image one pixel of the result spans.
 vec4 resize(int axis, float shrink, int kernel) {
     bool box = kernel == KERNEL_BOX;
     float center = (float(pixel[axis]) + 0.5) * shrink, width = max(shrink, 1.0);
-    float reach = box ? 0.5 * shrink : resize_radius(kernel) * width;
+    float reach = box ? 0.5 * shrink : kernel_radius(kernel) * width;
     float low = center - reach, high = center + reach;
     ivec2 at = pixel;
     vec4 sum = vec4(0.0);
@@ -22,7 +14,7 @@ vec4 resize(int axis, float shrink, int kernel) {
         at[axis] = i;
         // The box filter weighs each pixel by the part of it that lies inside.
         float weight = box ? min(float(i) + 1.0, high) - max(float(i), low)
-                           : resize_weight((float(i) + 0.5 - center) / width, kernel);
+                           : kernel_weight((float(i) + 0.5 - center) / width, kernel);
         sum += weight * image_at(at);
         total += weight;
     }

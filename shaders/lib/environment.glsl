@@ -26,12 +26,6 @@ float environment_angle(int row, ivec2 size) {
     return (cos(below) - cos(below + height)) * 2.0 * ENVIRONMENT_PI / float(size.x);
 }
 
-// The pixel that continues the picture beyond its edge: around the world, and across a pole to its other side.
-ivec2 environment_texel(ivec2 at, ivec2 size) {
-    if (at.y < 0 || at.y >= size.y) at = ivec2(at.x + size.x / 2, at.y < 0 ? -1 - at.y : 2 * size.y - 1 - at.y);
-    return ivec2(at.x - size.x * int(floor((float(at.x) + 0.5) / float(size.x))), clamp(at.y, 0, size.y - 1));
-}
-
 // The four pixels around a direction, with their weights.
 struct Corners { ivec2 at[4]; vec4 weight; };
 
@@ -41,8 +35,8 @@ Corners environment_corners(vec2 uv, ivec2 size) {
     ivec2 first = ivec2(floor(at));
     return Corners(
         ivec2[4](
-            environment_texel(first, size), environment_texel(first + ivec2(1, 0), size),
-            environment_texel(first + ivec2(0, 1), size), environment_texel(first + ivec2(1, 1), size)
+            edge_panorama(first, size), edge_panorama(first + ivec2(1, 0), size),
+            edge_panorama(first + ivec2(0, 1), size), edge_panorama(first + ivec2(1, 1), size)
         ),
         vec4(rest.x * rest.y, part.x * rest.y, rest.x * part.y, part.x * part.y)
     );

@@ -17,6 +17,13 @@ ivec2 edge_mirror(ivec2 p, ivec2 size) {
     return min(q, period - q);
 }
 
+// Continues a picture by longitude and latitude: around the world, and across a pole to its other side.
+ivec2 edge_panorama(ivec2 p, ivec2 size) {
+    int y = edge_wrap(p, 2 * size).y;
+    bool across_pole = y >= size.y;
+    return edge_wrap(ivec2(p.x + (across_pole ? size.x / 2 : 0), across_pole ? 2 * size.y - 1 - y : y), size);
+}
+
 bool inside(ivec2 p, ivec2 size) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, size)); }
 
 // True for NaN and infinity. Bits are tested, because drivers may assume that isnan() is always false.

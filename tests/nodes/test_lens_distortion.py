@@ -107,3 +107,40 @@ def test_what_is_shown_there_is_of_the_picture(run, hdr, edge):
 
 def test_a_straight_lens_vanishes():
     assert LensDistortion(k1=0.0).identity() == "image" and LensDistortion(k1=0.0, zoom=1.1).identity() is None
+
+
+def cubic(x: np.ndarray, b: float, c: float) -> np.ndarray:
+    """Mitchell and Netravali (1988), equation 8."""
+    x = np.abs(x)
+    near = (12 - 9 * b - 6 * c) * x**3 + (-18 + 12 * b + 6 * c) * x**2 + 6 - 2 * b
+    far = (-b - 6 * c) * x**3 + (6 * b + 30 * c) * x**2 + (-12 * b - 48 * c) * x + 8 * b + 24 * c
+    return np.where(x < 1, near, np.where(x < 2, far, 0.0)) / 6
+
+
+KERNELS = {
+    "nearest": lambda x: ((x >= -0.5) & (x < 0.5)) * 1.0,
+    "triangle": lambda x: np.maximum(1 - np.abs(x), 0),
+    "catmull-rom": lambda x: cubic(x, 0, 0.5),
+    "mitchell": lambda x: cubic(x, 1 / 3, 1 / 3),
+    "lanczos": lambda x: np.where(np.abs(x) < 3, np.sinc(x) * np.sinc(x / 3), 0),
+}
+
+
+@pytest.mark.parametrize("kernel", KERNELS)
+def test_each_filter_weighs_pixels_by_its_formula(run, hdr, kernel):
+    """At the places of OpenCV's camera, with the published weights in 64 bits. The lens only enlarges."""
+    picture, lens, matrix = hdr(*SIZE), {"k1": -0.15, "p1": 0.01}, camera((28.0, 22.0), 48.0)
+    y, x = np.mgrid[: SIZE[1], : SIZE[0]]
+    rays = np.linalg.solve(matrix, np.stack([x.ravel(), y.ravel(), np.ones(x.size)]).astype(np.float64)).T
+    places = cv2.projectPoints(rays.reshape(-1, 1, 3), np.zeros(3), np.zeros(3), matrix, opencv(lens))[0][:, 0]
+    across, down = (KERNELS[kernel](np.arange(n) - places[:, axis, None]) for axis, n in enumerate(SIZE))
+    expected = np.einsum("py,px,yxc->pc", down, across, picture.astype(np.float64))
+    expected /= (down.sum(1) * across.sum(1)).clip(1e-9)[:, None]
+    node = LensDistortion(
+        direction="undistort", focal=1.2, center=(28 / 60, 22 / 40), edge="clamp", kernel=kernel, **lens
+    )
+    out = run(node, {"image": picture}).reshape(-1, 4)
+    inside = np.all((places > 4) & (places < np.array(SIZE) - 5), axis=1)
+    if kernel == "nearest":  # a place in the middle of two pixels is rounded either way
+        inside &= np.all(np.abs(places % 1.0 - 0.5) > 1e-3, axis=1)
+    assert inside.mean() > 0.6 and np.abs(out - expected)[inside].max() < 2e-5 * picture.max()

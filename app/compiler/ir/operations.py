@@ -15,7 +15,7 @@ from ...custom_nodes import strip_prefix
 from ...resources.color_program import ColorProgram, LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ..areas import Region, Span, clip_span
+from ..areas import Region, Span, clip_region
 from ..library import Library
 from .operation import Op, SourceOp
 from .values import Accessor, Parameter, Ref, UniformConstant
@@ -224,7 +224,7 @@ class Gather(FunctionOp, frozen=True, kw_only=True):
         for item in self.accessors:
             if item.operand == ref and item.around is not None:
                 across, down = item.around.find_spans(region)
-                part = Region.of(clip_span(across, size[0], self.edge), clip_span(down, size[1], self.edge))
+                part = clip_region(across, down, size, self.edge)
                 footprint = footprint.union(part) if footprint else part
         return footprint or Region.whole(size)
 
@@ -281,9 +281,11 @@ class Convolve(Op, frozen=True):
     def _find_footprint(self, ref: Ref, size: Size, region: Region) -> Region:
         spans = [region.across, region.down]
         first, end = spans[self.axis]
-        span = (first * self.stride + self.origin, (end - 1) * self.stride + self.origin + len(self.weights))
-        spans[self.axis] = clip_span(span, size[self.axis], self.edge)
-        return Region.of(spans[0], spans[1])
+        spans[self.axis] = (
+            first * self.stride + self.origin,
+            (end - 1) * self.stride + self.origin + len(self.weights),
+        )
+        return clip_region(spans[0], spans[1], size, self.edge)
 
     def without_numbers(self) -> Convolve:
         return replace(self, weights=(), origin=0)

@@ -14,6 +14,7 @@ from ..areas import Neighborhood
 from ..ir import Accessor, Builder, Convolve, Gather, Parameter, PictureShape, Ref, UniformConstant
 from ..library import Library
 from . import gaussian
+from .padding import pad
 
 ENLARGE = ("primitive/enlarge", "enlarge")
 """The function that enlarges a picture along an axis with a cubic B-spline."""
@@ -29,8 +30,14 @@ class BlurBuilder:
         """Blur along x and y, as `axes` say.
 
         A decimated picture may extend beyond the edges of the full one, as far as the edge mode matters: `firsts` are
-        the positions of its first pixels.
+        the positions of its first pixels. A panorama is padded first: the other side of a pole is not at the same place
+        in a picture that extends beyond its edges.
         """
+        if edge == "panorama" and any(plan.steps for plan in axes):
+            across, down = (plan.reach for plan in axes)
+            padded = pad(self._builder, self._library, self._owner, image, (across, down), edge)
+            blurred = self.blur(padded, axes, "clamp")
+            return pad(self._builder, self._library, self._owner, blurred, (-across, -down), "clamp")
         picture, full = image, self._builder.shape(image).size
         firsts = [0, 0]
         spans = [gaussian.find_spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]

@@ -65,7 +65,7 @@ from ..ir import (
 )
 from ..library import Library
 from ..raster import CHANNELS
-from . import fourier, gaussian, transforms
+from . import fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
 
@@ -252,6 +252,10 @@ class Recorder:
         return self._add_op(
             ColorCall((picture.shape,), self._owner, program.text.name, program.function, color, program=program)
         )
+
+    def pad(self, image: Pixels, margin: tuple[int, int], edge: Edge = "clamp") -> Drawn:
+        source = self._find_pixels(image).ref
+        return self._wrap(padding.pad(self._builder, self._library, self._owner, source, margin, edge))
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
         picture = self._find_pixels(image)

@@ -38,6 +38,15 @@ class BlurAxis(Struct, frozen=True):
     factor: int
     weights: tuple[float, ...]
 
+    @property
+    def reach(self) -> int:
+        """How many pixels away, at full size, a pixel can matter: that many or a few less."""
+        reach, factor = 0, 1
+        for step in self.steps:
+            reach += factor * len(decimation_weights(step)[0])
+            factor *= step
+        return reach + factor * (len(self.weights) // 2 + 3)
+
 
 def plan_axis(sigma: float) -> BlurAxis:
     """Split `sigma`, in pixels, into decimations and a convolution at the small size."""
