@@ -134,9 +134,10 @@ def _try_sizes(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
     for width, height in ((1, 1), (2, 3), (17, 11), (64, 1), (1, 63)):
         pictures = make_pictures(node, (width, height), np.random.default_rng(5))
         size = None if pictures else (width, height)
+        across, down = node().output_size(dict.fromkeys(pictures, (width, height)), (width, height))
         for name, picture in render_node(renderer, node(), pictures, size).items():
             socket = node.outputs[name].socket
-            shape = (1, 1, socket.channels) if socket.single else (height, width, socket.channels)
+            shape = (1, 1, socket.channels) if socket.single else (down, across, socket.channels)
             if picture.shape != shape:
                 yield f"the output '{name}' has the shape {picture.shape} in place of {shape}"
             if not np.isfinite(picture).all():

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, Size, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Size, Slider
 
 Projection = Literal["lat-long", "cube strip", "cube cross", "fisheye", "mirror ball", "little planet", "perspective"]
 """How directions lie in a picture."""
@@ -32,6 +32,7 @@ class Panorama(Filter):
     )  # fmt: skip
 
     image = Image()
+    out = OutputSocket(follows="image")
     source: Annotated[Projection, Doc("The projection of the picture.")] = "lat-long"
     source_angle: Annotated[
         float,
@@ -93,7 +94,7 @@ def _limit_angle(projection: Projection, angle: float) -> float:
 
 def _measure_quarter(projection: Projection, angle: float, size: Size) -> float:
     """How many pixels of a picture a quarter turn takes; of a perspective view, what its middle takes."""
-    width, height = size
+    height = size[1]
     angle = _limit_angle(projection, angle)
     return {
         "lat-long": height / 2.0,

@@ -42,23 +42,21 @@ class Resize(Filter):
         return (max(round(width * self.scale[0]), 1), max(round(height * self.scale[1]), 1))
 
     def passes(self, draw: Draw) -> Drawn:
-        before, after = draw.size_of(self.image), draw.size
         # Across a pole of a panorama lies the pixel half a turn away: whole pixels only at the full width.
-        axes = (1, 0) if self.edge == "panorama" else (0, 1)
-        resized: Pixels = self.image
-        size = list(before)
-        for axis in axes:
-            size[axis] = after[axis]
-            shrink = before[axis] / after[axis]
-            reach = math.ceil(3.0 * max(shrink, 1.0)) + 2
-            resized = draw(
-                "resize",
-                image=resized,
-                size=(size[0], size[1]),
-                edge=self.edge,
-                overlap=(0, reach) if axis else (reach, 0),
-                axis=axis,
-                shrink=shrink,
-                kernel=self.kernel,
-            )
-        return resized
+        first, last = (1, 0) if self.edge == "panorama" else (0, 1)
+        return self._resample(draw, self._resample(draw, self.image, first), last)
+
+    def _resample(self, draw: Draw, picture: Pixels, axis: int) -> Drawn:
+        before, after = draw.size_of(picture), draw.size
+        shrink = before[axis] / after[axis]
+        reach = math.ceil(3.0 * max(shrink, 1.0)) + 2
+        return draw(
+            "resize",
+            image=picture,
+            size=(before[0], after[1]) if axis else (after[0], before[1]),
+            edge=self.edge,
+            overlap=(0, reach) if axis else (reach, 0),
+            axis=axis,
+            shrink=shrink,
+            kernel=self.kernel,
+        )

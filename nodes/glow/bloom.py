@@ -31,10 +31,9 @@ _OCTAVES = 4
 _FAINTEST = 1e-12
 """No level counts for less, so that levels that all count for nothing are all alike instead."""
 
-
 _LEVEL_REACH = 7
-"""How far light reaches, in pixels of the smallest level: less than 3 on the way down and 4 on the way up, where a level
-reads 3 pixels of the finer one and 2 of the coarser one."""
+"""How far light reaches, in pixels of the smallest level: less than 3 on the way down and 4 on the way up, where each
+level reads 3 pixels of the finer one and 2 of the coarser one."""
 
 
 class Bloom(Filter):
