@@ -48,7 +48,8 @@ class Recent:
 
 @dataclass(frozen=True)
 class Preferences:
-    """`ui_scale` is 0 for what the system says; `shortcuts` are those that differ, by action; "" stands for none.
+    """`ui_scale` is 0 for what the system says. `keymap` is the program whose shortcuts are used, `shortcuts` are those
+    that differ from it, by action; "" stands for none.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
     `memory_budget` in MiB. `isf_folders` hold shaders that can be added, `preset_folders` presets. `extra` keeps what
@@ -57,6 +58,7 @@ class Preferences:
 
     theme: Literal["dark", "light"] = "dark"
     ui_scale: float = 0.0
+    keymap: Literal["halation", "nuke", "blender", "fusion"] = "halation"
     shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))
     recent: tuple[Recent, ...] = ()
     folders: Mapping[Purpose, str] = field(default_factory=lambda: MappingProxyType[Purpose, str]({}))

@@ -12,6 +12,7 @@ from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..theme.style import ui_scale
+from ..toolkit.keys import display_shortcut
 from ..toolkit.words import show_tip
 from .brush import DETAILS_FROM, DrawContext, TextCache, make_canvas_colors
 from .crumbs import draw_crumbs
@@ -48,7 +49,6 @@ from .staging import SceneBuilder
 if TYPE_CHECKING:
     from .context import CanvasContext
 
-_HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
 _BUTTONS = (
     int(imgui.ButtonFlags_.mouse_button_left)
@@ -224,7 +224,9 @@ class Canvas:
         hot = self._hot = self._find_hot(frame, scene)
         facts = gather_look_facts(self._context, brush.ink, mouse.gesture, hot)
         if not session.graph.nodes:
-            paint_hint(brush, frame.panel, _HINTS)
+            keys = display_shortcut(self._context.actions.shortcut("node.add"))
+            hints = "An empty graph", f"{keys} adds a node", "Drop an image or a graph file here"
+            paint_hint(brush, frame.panel, hints)
         visible = [box for box in scene.boxes.values() if overlaps(box.rect, _grow(brush.visible, 32.0))]
         for box in visible:
             if box.sort == "frame":

@@ -15,6 +15,7 @@ from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet_button, tip_of, tool, width_of_buttons
+from ..toolkit.keys import display_shortcut
 from . import commands
 from .paint import paint_key
 from .state import Mode
@@ -79,7 +80,8 @@ def _make_view_tools(context: CurvesContext) -> list[_CurveTool]:
 
     def make_mode_tool(which: Mode, icon: str, label: str) -> _CurveTool:
         def draw() -> None:
-            if quiet_button(context, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
+            keys = display_shortcut(context.actions.shortcut("keys.mode"))
+            if quiet_button(context, icon, f"button keys {which}", f"{label} ({keys})", lit=state.mode == which):
                 state.mode = which
 
         return _CurveTool(square, draw)

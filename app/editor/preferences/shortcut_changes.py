@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 def assign_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut, "" for none."""
     own = {**context.store.current.shortcuts, id: keys}
-    if context.actions[id].shortcut == keys:
+    if context.actions.default_shortcut(id) == keys:
         del own[id]
     context.store.change(shortcuts=own)
 
@@ -25,4 +25,4 @@ def take_shortcut(context: PreferencesContext, id: str, keys: str) -> None:
 
 def reset_shortcut(context: PreferencesContext, id: str) -> None:
     """Reset an action to its default shortcut; another action that has it loses it."""
-    take_shortcut(context, id, context.actions[id].shortcut)
+    take_shortcut(context, id, context.actions.default_shortcut(id))

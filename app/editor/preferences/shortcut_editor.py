@@ -9,9 +9,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..shared.action import ListedAction
 from ..shared.fuzzy import match
+from ..shared.keymaps import KEYMAPS
 from ..shared.shortcut_groups import group_actions
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import align_right, quiet_button
+from ..toolkit.fields import combo
 from ..toolkit.keys import display_shortcut, find_pressed_chord
 from ..toolkit.places import record
 from ..toolkit.words import draw_dim, draw_wrapped, tip
@@ -37,6 +39,7 @@ class ShortcutEditor:
 
     def draw(self) -> None:
         """Draw into the current window."""
+        self._draw_keymaps()
         label = f"{icons.ICON_FA_ROTATE_LEFT} Reset all"
         imgui.set_next_item_width(220 * ui_scale())
         hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search actions"
@@ -61,6 +64,17 @@ class ShortcutEditor:
     def stop(self) -> None:
         """Stop listening for keys."""
         self._waiting, self._offered = "", None
+
+    def _draw_keymaps(self) -> None:
+        """Draw the choice of a program's shortcuts; the user's own ones stay above them."""
+        keymap = self._context.store.current.keymap
+        imgui.align_text_to_frame_padding()
+        imgui.text_unformatted("Keys as in")
+        tip("The shortcuts of another program. What you change below counts in every keymap.")
+        imgui.same_line()
+        names = {name.capitalize(): name for name in KEYMAPS}
+        if chosen := combo(self._context, "keymap", keymap.capitalize(), tuple(names), 160 * ui_scale()):
+            self._context.log.attempt(lambda: self._context.store.change(keymap=names[chosen]))
 
     def _draw_row(self, action: ListedAction) -> None:
         scale, palette = ui_scale(), self._context.palette
@@ -96,7 +110,7 @@ class ShortcutEditor:
         if not keys:
             return
         id, self._waiting = self._waiting, ""
-        if keys in ("Delete", "Backspace") and self._context.actions[id].shortcut != keys:
+        if keys in ("Delete", "Backspace") and self._context.actions.default_shortcut(id) != keys:
             self._context.log.attempt(lambda: assign_shortcut(self._context, id, ""))
         elif self._context.actions.conflicts(id, keys):
             self._offered = (id, keys)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Generic, Literal, Never, TypeVar
 
 from ...authoring.log import Log
@@ -61,13 +62,19 @@ class BoundAction:
 class Actions:
     """All actions in the order of the menus, with the user's own shortcuts.
 
-    `overrides` gives the user's shortcuts by action id, "" for none at all. Actions are added with their contexts after
+    `overrides` gives the user's shortcuts by action id, "" for none at all; `keymap` those that another program's users
+    are used to. Actions are added with their contexts after
     both are made, since panels run actions themselves.
     """
 
-    def __init__(self, overrides: Callable[[], Mapping[str, str]], log: Log) -> None:
+    def __init__(
+        self,
+        overrides: Callable[[], Mapping[str, str]],
+        log: Log,
+        keymap: Callable[[], Mapping[str, str]] = lambda: MappingProxyType({}),
+    ) -> None:
         self.all: tuple[ListedAction, ...] = ()
-        self.overrides = overrides
+        self.overrides, self.keymap = overrides, keymap
         self._log = log
         self._by_id: dict[str, tuple[ListedAction, BoundAction]] = {}
 
@@ -82,7 +89,12 @@ class Actions:
 
     def shortcut(self, id: str) -> str:
         """The current shortcut of an action."""
-        return self.overrides().get(id, self[id].shortcut)
+        own = self.overrides().get(id)
+        return self.default_shortcut(id) if own is None else own
+
+    def default_shortcut(self, id: str) -> str:
+        """The shortcut of an action in the keymap, before the user changed it."""
+        return self.keymap().get(id, self[id].shortcut)
 
     def in_menu(self, name: str) -> Iterator[ListedAction]:
         """The actions of a context menu."""

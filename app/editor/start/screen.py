@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from time import localtime, strftime
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from ...authoring.recovery.recovery import RecoveredWork
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import main_button, quiet_button
 from ..toolkit.dialogs import backdrop, dialog, escape_pressed
-from ..toolkit.keys import chord
+from ..toolkit.keys import chord, display_shortcut
 from ..toolkit.places import record
 from ..toolkit.words import cut_middle, draw_dim, draw_wrapped, font, tip
 from .gallery import PresetGallery
@@ -22,10 +23,10 @@ if TYPE_CHECKING:
     from .context import StartContext
 
 HINTS = (
-    "Tab adds a node. Drag from a socket to empty canvas to add one that fits.",
-    "Double-click a node to view it. Ctrl+1 assigns it to the key 1, which shows it again.",
+    "{node.add} adds a node. Drag from a socket to empty canvas to add one that fits.",
+    "Double-click a node to view it. {viewer.assign.1} assigns it to the key {viewer.recall.1}, which shows it again.",
     "Drop pictures and graphs on the window.",
-    "Ctrl+P finds every command, F1 shows all shortcuts.",
+    "{help.palette} finds every command, {help.shortcuts} shows all shortcuts.",
     "Unsaved work comes back after a crash.",
 )
 
@@ -102,9 +103,14 @@ class StartScreen:
         with font(self._context, "bold"):
             imgui.text_unformatted("First time here?")
         for line in HINTS:
-            draw_wrapped(self._context.palette.dim, line)
+            draw_wrapped(self._context.palette.dim, self._fill_in_keys(line))
         if quiet_button(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Do not show this again"):
             self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
+
+    def _fill_in_keys(self, line: str) -> str:
+        """The text with the current shortcuts of the actions that it names in braces."""
+        actions = self._context.actions
+        return re.sub(r"\{([\w.]+)\}", lambda match: display_shortcut(actions.shortcut(match[1])), line)
 
     def _draw_recoveries(self, recovered: tuple[RecoveredWork, ...]) -> None:
         if not recovered:

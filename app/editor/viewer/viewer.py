@@ -13,6 +13,7 @@ from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
 from ..shared.coloring import find_color_manager
 from ..theme.style import u32, ui_scale
+from ..toolkit.keys import display_shortcut
 from . import infobar
 from .banner import draw_banner
 from .finding import InvalidPixelSearch
@@ -45,7 +46,6 @@ _CATCH = (
     | int(imgui.ButtonFlags_.mouse_button_middle)
     | int(imgui.ButtonFlags_.mouse_button_right)
 )
-_EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image here."
 
 
 @dataclass(frozen=True)
@@ -213,9 +213,9 @@ class Viewer:
         elif images.a is None and not preview.busy:
             draw_message(self._context, sight, self._hint(), palette.dim)
         elif viewer.compares and self._context.session.views.find_port("B") is None:
-            draw_badge(
-                self._context, sight, "B shows nothing: choose it above, or press Shift+V on a node", palette.warning
-            )
+            keys = display_shortcut(self._context.actions.shortcut("node.view_b"))
+            sentence = f"B shows nothing: choose it above, or press {keys} on a node"
+            draw_badge(self._context, sight, sentence, palette.warning)
         elif viewer.picking:
             draw_badge(self._context, sight, "Click to pick. Right click cancels", palette.accent)
         elif viewer.drawing_region:
@@ -309,7 +309,8 @@ class Viewer:
         port = self._context.session.views.find_port("A")
         if port is not None and port.node == OUTPUTS:
             return f"Nothing is linked to the output '{port.socket}' yet."
-        return _EMPTY
+        keys = display_shortcut(self._context.actions.shortcut("node.add"))
+        return f"Nothing to show yet: add a node ({keys} over the graph), or drop an image here."
 
     def _time(self, images: _FrameImages) -> None:
         """Measure how long pictures take, for the info line and the proxy of drags."""

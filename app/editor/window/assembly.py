@@ -24,6 +24,7 @@ from ...renderer.viewing.probe import PixelProbe
 from ...resources.sandbox import Sandbox
 from ...watch.watching import FileWatcher
 from ..shared.action import Actions
+from ..shared.keymaps import KEYMAPS
 from ..shared.stage import DocumentStage
 from ..toolkit.context import Interface
 from .editor import Editor
@@ -52,7 +53,7 @@ def assemble(device: Device, sandbox: Sandbox, state: Path | None = None) -> Edi
         DocumentStage(session),
         Preview(renderer, display),
         store,
-        Actions(lambda: store.current.shortcuts, log),
+        Actions(lambda: store.current.shortcuts, log, lambda: KEYMAPS[store.current.keymap]),
         RecoveryFile(folder, store.current.autosave),
         SystemClipboard(),
         display,

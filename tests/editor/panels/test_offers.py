@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any, cast, get_args
 
 import pytest
 from halation.authoring.commands import Disconnect, MakeGroup
 from halation.authoring.log import Log
-from halation.authoring.preferences import PreferenceStore
+from halation.authoring.preferences import TYPES, PreferenceStore
 from halation.authoring.session import Session
 from halation.editor.command_palette.commands import list_commands, rank_commands
 from halation.editor.preferences.shortcut_changes import assign_shortcut, reset_shortcut, take_shortcut
 from halation.editor.problems.findings import list_problems, show_element
 from halation.editor.shared.action import Action, Actions
+from halation.editor.shared.keymaps import KEYMAPS
 from halation.editor.shared.shortcut_groups import balance_columns, condense_rows, group_actions
 from halation.editor.shared.stage import DocumentStage
 from halation.editor.toolkit.context import Interface
@@ -37,7 +38,7 @@ def desk(tmp_path: Path) -> Editor:
         cast(Any, SimpleNamespace(fault="", faults={}, errors={}, find_rivals=str)) for _ in range(3)
     )
     log = Log()
-    actions = Actions(lambda: store.current.shortcuts, log)
+    actions = Actions(lambda: store.current.shortcuts, log, lambda: KEYMAPS[store.current.keymap])
     return Editor(
         DocumentStage(Session(sandbox=UNRESTRICTED)),
         preview,
@@ -70,8 +71,45 @@ def test_every_shortcut_can_be_pressed_and_is_written_in_one_way(desk: Editor, c
     assert [one.id for one in desk.actions.all if one.shortcut and text(chord(one.shortcut)) != one.shortcut] == []
 
 
-def test_no_two_actions_share_a_shortcut(desk: Editor, contexts: Contexts) -> None:
-    assert not {one.id: clash for one in desk.actions.all if (clash := desk.actions.conflicts(one.id, one.shortcut))}
+@pytest.mark.parametrize("keymap", KEYMAPS)
+def test_no_two_actions_share_a_shortcut(desk: Editor, contexts: Contexts, keymap: str) -> None:
+    desk.store.change(keymap=keymap)
+    pressed = {action.id: desk.actions.shortcut(action.id) for action in desk.actions.all}
+    assert not {id: clash for id, keys in pressed.items() if (clash := desk.actions.conflicts(id, keys))}
+
+
+@pytest.mark.parametrize("keymap", KEYMAPS)
+def test_every_keymap_is_complete(desk: Editor, contexts: Contexts, keymap: str) -> None:
+    """It names actions that exist, by keys that can be pressed, and no action that has a key loses it."""
+    ids = {action.id for action in desk.actions.all}
+    assert KEYMAPS[keymap].keys() <= ids and get_args(TYPES["keymap"]) == tuple(KEYMAPS)
+    assert all(text(chord(keys)) == keys for keys in KEYMAPS[keymap].values())
+    desk.store.change(keymap=keymap)
+    assert not [action.id for action in desk.actions.all if action.shortcut and not desk.actions.shortcut(action.id)]
+    reserved = {"Ctrl+Tab", "Ctrl+Shift+Tab"}  # the window library goes through panels with them
+    assert not reserved & {desk.actions.shortcut(id) for id in ids}
+
+
+def test_a_keymap_is_what_users_of_that_program_press(desk: Editor, contexts: Contexts) -> None:
+    """Spot checks against the manuals of the programs."""
+    manuals = {
+        "nuke": {"node.mute": "D", "node.add": "Tab", "layout.arrange": "L", "frame.add": "Alt+B"},
+        "blender": {"node.add": "Shift+A", "node.mute": "M", "group.make": "Ctrl+G", "view.maximize": "Ctrl+Space"},
+        "fusion": {"node.add": "Shift+Space", "node.mute": "Ctrl+P", "node.view": "1", "time.play": "Space"},
+    }
+    for keymap, keys in manuals.items():
+        desk.store.change(keymap=keymap)
+        assert {id: desk.actions.shortcut(id) for id in keys} == keys
+
+
+def test_own_shortcuts_stand_above_the_keymap(desk: Editor, contexts: Contexts) -> None:
+    desk.store.change(keymap="nuke")
+    assign_shortcut(contexts.preferences, "node.mute", "Ctrl+M")
+    assert desk.actions.shortcut("node.mute") == "Ctrl+M"
+    reset_shortcut(contexts.preferences, "node.mute")
+    assert desk.actions.shortcut("node.mute") == "D" and not desk.store.current.shortcuts
+    sheet = {action.id for _, group in group_actions(desk.actions) for action in group}
+    assert "link.dots" in sheet  # it has a key in Nuke only
 
 
 def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, contexts: Contexts) -> None:
