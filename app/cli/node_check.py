@@ -1,4 +1,4 @@
-"""`halation nodes --check`: checks that nodes of plug-ins keep the promises of all nodes."""
+"""`halation nodes --check`: checks that nodes, those of plug-ins too, keep the promises of all nodes."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def check_nodes(name: str, as_json: bool, sandbox: Sandbox) -> int:
             faults[id] += () if faults[id] else find_render_faults(renderer, node)
     finally:
         renderer.close()
-    for plugin in chosen:
-        faults |= {name: sentences for name, sentences in _find_file_faults(plugin) if sentences}
+    for shader, sentences in _find_file_faults(chosen, classes):
+        faults |= {shader: sentences} if sentences else {}
     if as_json:
         print_json({"faults": faults})
     else:
@@ -58,10 +58,14 @@ def _choose_nodes(name: str, plugins: tuple[Plugin, ...]) -> tuple[Mapping[str, 
     return {id: node for plugin in chosen for id, node in plugin.nodes.items()}, chosen
 
 
-def _find_file_faults(plugin: Plugin) -> Iterator[tuple[str, list[str]]]:
-    """The faults in each shader file of a plug-in."""
+def _find_file_faults(chosen: list[Plugin], classes: Mapping[str, type[Node]]) -> Iterator[tuple[str, list[str]]]:
+    """The faults in each shader file of the chosen plug-ins, or in those of single nodes."""
     from ..compiler import load_library
     from ..regression.node_promises import find_file_faults
 
-    names = [name for name in load_library().texts if name.startswith(f"{plugin.namespace}/")]
-    yield from ((name, list(find_file_faults(name, names))) for name in names)
+    names = [name for name in load_library().texts if not name.startswith("viewer/")]
+    namespaces = tuple(f"{plugin.namespace}/" for plugin in chosen)
+    shaders = {node.shader for node in classes.values()}
+    for name in names:
+        if name.startswith(namespaces) if chosen else name in shaders:
+            yield name, list(find_file_faults(name, names))

@@ -138,7 +138,9 @@ def test_half_size_looks_the_same(node: type[Node], renderer: Renderer, picture:
         shrunk = [halved(now, "triangle"), halved(now, "box"), *([now[1::2, 1::2]] if kind is not Kind.IMAGE else [])]
         expected, found = [seen(one, now, kind) for one in shrunk], seen(half[name], now, kind)
         assert np.abs(from_afar(expected[1]) - from_afar(found)).mean() < AFAR, place
-        assert name in noted(node, "detail") or any(flip(one, found) < LIMIT for one in expected), place
+        assert name in noted(node, "detail") or any(flip(one, found) < LIMIT for one in expected), (
+            f"{place}: a proxy of half the size looks different; mend it, or say why in proxy_notes"
+        )
 
 
 @pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)

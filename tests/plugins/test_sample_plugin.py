@@ -161,6 +161,7 @@ def test_what_a_node_does_not_keep_is_said(site: Path, tmp_path: Path, case: str
     (copy / "acme_glow" / "shaders" / "glow" / "soft_glow.glsl").write_text(shader)
     result = halation(copy, "nodes", "--check")
     assert result.returncode == 1 and sentence in result.stdout, result
+    assert sentence in halation(copy, "nodes", "--check", "acme_glow.soft_glow").stdout
 
 
 def test_a_plugin_that_cannot_be_loaded_keeps_nothing(site: Path, tmp_path: Path) -> None:
