@@ -16,10 +16,14 @@ from .._declare import (
     Trait,
     Vector,
 )
+from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._march import surfaces
 
-_RAYS = {"preview": 4, "quality": 16, "reference": 64}
-"""Rays to a pixel where surfaces are rough; their neighbors lend them as many times 16."""
+_RAYS = {"preview": 2, "quality": 4, "reference": 64}
+"""Rays to a pixel where surfaces are rough; their neighbors lend them as many times 16, and the filter more."""
+
+_STRIDES = (3, 6, 12)
+"""Pixels between what the passes of the filter read."""
 
 _FOUND = Vector(width=4)
 
@@ -170,24 +174,16 @@ class ScreenReflections(Filter):
         mirror = draw("screen_reflections_mirror", surfaces=all_surfaces, normal=normal, result=_FOUND, **search)
         if not draw.is_linked(self.material) and self.roughness <= 0.0:
             return draw("screen_reflections_sharp", self.image, mirror=mirror, result=_FOUND)
-        scattered = draw(
+        light, spread = draw.several(
             "screen_reflections_scattered",
-            self.image,
+            (LIGHT, SPREAD),
             surfaces=all_surfaces,
             normal=normal,
             rough=rough,
             mirror=mirror,
-            result=_FOUND,
+            levels=prefilter(draw, "screen_reflections", self.image),
             **search,
             count=_RAYS[self.quality],
         )
-        return draw(
-            "screen_reflections_denoise",
-            surfaces=all_surfaces,
-            normal=normal,
-            rough=rough,
-            mirror=mirror,
-            scattered=scattered,
-            result=_FOUND,
-            rays=rays,
-        )
+        guide = draw("screen_reflections_guide", surfaces=all_surfaces, normal=normal, result=LIGHT)
+        return denoise(draw, "screen_reflections", guide, light, spread, rays, _RAYS[self.quality], _STRIDES)

@@ -1,10 +1,12 @@
 #include "lib/alpha.glsl"
-#include "lib/color.glsl"
+#include "lib/brdf.glsl"
+#include "lib/denoise.glsl"
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/prefiltered_near.glsl"
 
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
-const float SCREEN_REFLECTIONS_LAMP = 3.0;    // most light of a pixel, as a multiple of its neighbors' mean
+const float SCREEN_REFLECTIONS_FOOTPRINT = 0.0;  // side of the part of the picture that a ray stands for, as a part of its share
 
 vec3 screen_reflections_planes() { return march_planes(); }
 vec3 screen_reflections_bounds() { return march_bounds(); }
@@ -54,10 +56,29 @@ vec4 screen_reflections_mirror(
     return screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
 }
 
-// The light of the surface that a ray met, times the confidence.
-vec4 screen_reflections_met(vec4 found) { return found.w > 0.0 ? found.w * finite(image_near(found.xy)) : vec4(0.0); }
+vec4 screen_reflections_half() { return prefiltered_half(); }
+vec4 screen_reflections_levels() { return prefiltered_levels(); }
+vec4 screen_reflections_guide() { return vec4(normal_at(pixel), surfaces_at(pixel).x); }
+void screen_reflections_period(const vec4 rays[3], int count, out vec4 light, out vec3 spread) {
+    denoise_period(rays, count, light, spread);
+}
+void screen_reflections_level(const vec4 rays[3], int stride, float contrast, out vec4 light, out vec3 spread) {
+    denoise_level(rays, stride, contrast, light, spread);
+}
 
-vec4 screen_reflections_sharp() { return screen_reflections_met(mirror_at(pixel)); }
+// The light of the surface that a ray met, times the confidence.
+vec4 screen_reflections_sharp() {
+    vec4 met = mirror_at(pixel);
+    return met.w > 0.0 ? met.w * finite(image_near(met.xy)) : vec4(0.0);
+}
+
+// The same, where the ray stands for a solid angle: the mean over what the picture shows of it.
+vec4 screen_reflections_met(const vec4 rays[3], vec4 met, float solid) {
+    if (met.w <= 0.0) return vec4(0.0);
+    float near = surfaces_at(ivec2(met.xy)).x, depth = near > 0.0 ? 1.0 / near : met.z;
+    float width = sqrt(solid) * met.z / pixel_pitch(rays, depth, vec2(extent));
+    return met.w * prefiltered_near(met.xy, SCREEN_REFLECTIONS_FOOTPRINT * width, extent);
+}
 
 // The part of microfacets that faces a direction and is not hidden by others, for GGX (Smith 1967).
 float screen_reflections_open(float cosine, float alpha) {
@@ -65,80 +86,57 @@ float screen_reflections_open(float cosine, float alpha) {
     return 2.0 * cosine / (cosine + sqrt(mix(square, 1.0, alpha * alpha)));
 }
 
-vec4 screen_reflections_scattered(
+// The direction of a random ray from a surface with the normal z, and the solid angle that it stands for among `count`:
+// by a visible microfacet with its probability (Heitz 2018, in the form of Dupuy and Benyoub 2023).
+vec4 screen_reflections_way(vec3 view, float alpha, vec2 random, int count) {
+    vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
+    float turn = 2.0 * OCCLUSION_PI * random.x, z = 1.0 - random.y * (1.0 + stretched.z);
+    float side = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+    vec3 bump = vec3(side * cos(turn), side * sin(turn), z) + stretched;
+    bump = normalize(vec3(alpha * bump.xy, max(bump.z, 1e-6)));
+    float facets = screen_reflections_open(view.z, alpha) * ggx_facets(vec3(0.0, 0.0, 1.0), bump, alpha);
+    return vec4(reflect(-view, bump), 4.0 * view.z / max(facets * float(count), 1e-9));
+}
+
+// The light from many random directions, with the variance of its mean and the width in pixels over which it blurs a
+// point: the reflected point appears as far behind the surface as it is in front.
+void screen_reflections_scattered(
     const vec4 rows[3], const vec4 rays[3], float thickness, float longest, float fade, float border, bool sky,
-    int steps, int count
+    int steps, int count, out vec4 light, out vec3 spread
 ) {
     vec3 normal = normal_at(pixel);
-    if (normal == vec3(0.0)) return vec4(0.0);
-    float alpha = rough_at(pixel) * rough_at(pixel);
-    if (alpha < SCREEN_REFLECTIONS_SHARP) return screen_reflections_met(mirror_at(pixel));
+    float rough = rough_at(pixel), alpha = rough * rough;
+    light = vec4(0.0), spread = vec3(0.0, 0.0, rough);
+    if (normal == vec3(0.0)) return;
+    if (alpha < SCREEN_REFLECTIONS_SHARP) {
+        light = screen_reflections_met(rays, mirror_at(pixel), 0.0);
+        return;
+    }
     const vec2 lattice = vec2(0.75487767, 0.56984029);  // R2 sequence (Roberts 2018)
     vec3 plane = march_normal(rows, pixel, extent);
     vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     mat3 frame = mat3(across, cross(normal, across), normal);
     vec3 view = -normalize(camera_ray(rays, camera_uv(pixel, extent))) * frame;
     vec2 noise = occlusion_noise(pixel, true);
-    vec4 sum = vec4(0.0);
-    float total = 0.0;
+    float depth = 1.0 / surfaces_at(pixel).x, total = 0.0, squares = 0.0, away = 0.0;
     for (int i = 0; i < count; ++i) {
-        // A visible microfacet with its probability (Heitz 2018, in the form of Dupuy and Benyoub 2023).
-        vec2 random = fract(noise + float(i) * lattice);
-        vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
-        float turn = 2.0 * OCCLUSION_PI * random.x, z = 1.0 - random.y * (1.0 + stretched.z);
-        float side = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
-        vec3 bump = vec3(side * cos(turn), side * sin(turn), z) + stretched;
-        bump = normalize(vec3(alpha * bump.xy, max(bump.z, 1e-6)));
-        vec3 way = reflect(-view, bump);
+        vec4 way = screen_reflections_way(view, alpha, fract(noise + float(i) * lattice), count);
         if (way.z <= 0.0) continue;
         float weight = screen_reflections_open(way.z, alpha);
-        total += weight;
-        sum += weight * screen_reflections_met(
-            screen_reflections_ray(rows, frame * way, plane, thickness, longest, fade, border, sky, steps)
+        vec4 met = screen_reflections_ray(
+            rows, frame * way.xyz, plane, thickness, longest, fade, border, sky, steps
         );
-    }
-    return total > 0.0 ? sum / total : vec4(0.0);
-}
-
-// The mean over 4 x 4 pixels of the same surface, one period of the noise; over fewer pixels where the reflection is
-// sharper.
-vec4 screen_reflections_denoise(const vec4 rays[3]) {
-    vec4 found = scattered_at(pixel), met = mirror_at(pixel);
-    float alpha = rough_at(pixel) * rough_at(pixel);
-    vec3 normal = normal_at(pixel);
-    if (normal == vec3(0.0) || alpha < SCREEN_REFLECTIONS_SHARP) return found;
-    float depth = 1.0 / surfaces_at(pixel).x, apart = pixel_pitch(rays, depth, vec2(extent));
-    // The width of a point's reflection in pixels: the reflected point appears as far behind the surface as it is in
-    // front.
-    float reach = met.w > 0.0 ? 2.0 * alpha * met.z / (depth + met.z) * depth / apart : 4.0;
-    reach = max(reach, 40.0 * alpha);  // wide lobes reach beyond the mirrored ray
-    vec3 here = depth * camera_ray(rays, camera_uv(pixel, extent));
-    vec4 sum = vec4(0.0);
-    float weights[25], total = 0.0;
-    for (int i = 0; i < 25; ++i) {
-        ivec2 off = ivec2(i % 5, i / 5) - 2, at = pixel + off;
-        weights[i] = 0.0;
-        if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent))) continue;
-        float near = surfaces_at(at).x, weight = clamp(reach + 1.0 - float(max(abs(off.x), abs(off.y))), 0.0, 1.0);
-        if (near <= 0.0 || weight <= 0.0) continue;
-        weight *= (abs(off.x) == 2 ? 0.5 : 1.0) * (abs(off.y) == 2 ? 0.5 : 1.0);
-        vec3 away = camera_ray(rays, camera_uv(at, extent)) / near - here;
-        weight *= at == pixel ? 1.0 : same_surface(normal, normal_at(at), away, apart);
-        weight *= clamp(1.0 - 8.0 * abs(rough_at(at) - rough_at(pixel)), 0.0, 1.0);
-        weights[i] = weight;
-        sum += weight * scattered_at(at);
+        vec4 found = screen_reflections_met(rays, met, way.w);
+        float bright = luminance(found.rgb);
+        light += weight * found;
+        squares += weight * bright * bright;
+        away += weight * (met.w > 0.0 ? met.z / (depth + met.z) : 1.0);
         total += weight;
     }
-    // A single ray that meets a lamp would make a bright dot: no pixel may be much brighter than the mean.
-    float most = SCREEN_REFLECTIONS_LAMP * luminance(max(sum.rgb, 0.0)) / total;
-    sum = vec4(0.0);
-    for (int i = 0; i < 25; ++i) {
-        if (weights[i] == 0.0) continue;
-        vec4 light = scattered_at(pixel + ivec2(i % 5, i / 5) - 2);
-        light.rgb *= min(1.0, most / max(luminance(light.rgb), 1e-9));
-        sum += weights[i] * light;
-    }
-    return finite(sum / total);
+    if (total <= 0.0) return;
+    light /= total;
+    float reach = 2.0 * alpha * away / total * depth / pixel_pitch(rays, depth, vec2(extent));
+    spread = finite(vec3(squares / total, reach, rough));
 }
 
 // The Fresnel reflectance (Schlick 1994), reduced for rough surfaces at grazing angles (Lagarde 2011).
