@@ -26,7 +26,7 @@ class ContactShadows(Filter):
     """Add the short shadows where objects touch, from a sun or a lamp.
 
     A ray from every pixel toward the light is followed through the picture for a short distance, until it meets a
-    surface, according to depth (McGuire and Mara 2014). A light with a size gives soft edges, softer the farther away
+    surface, according to depth (McGuire and Mara 2014). Objects count as deep as they are wide. A light with a size gives soft edges, softer the farther away
     the shadow caster is. Surfaces that face away from the light stay unchanged: they are dark already. Objects outside
     of the picture cast no shadow.
     """
@@ -69,7 +69,7 @@ class ContactShadows(Filter):
             unit="scene",
             minimum=0.0,
             maximum=1e8,
-            doc="The assumed thickness of objects: rays that are farther behind them pass.",
+            doc="The least thickness of objects, which count as deep as they are wide: rays farther behind them pass.",
         ),
     ] = 0.3
     color: Annotated[RGBA, Doc("The color of the shadow; its alpha is the strength of the shadow.")] = (
@@ -86,7 +86,7 @@ class ContactShadows(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
-        all_surfaces = surfaces(draw, self.depth, "contact_shadows")
+        all_surfaces = surfaces(draw, self.depth, "contact_shadows", rays)
         length = math.hypot(*self.direction)
         sun = tuple(part / length for part in self.direction) if length else (0.0, 0.0, 1.0)
         shadow = draw(

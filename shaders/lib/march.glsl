@@ -19,8 +19,10 @@ struct March {
     vec2 middle;       // the center of that pixel
     int level;         // cells have 4^level pixels to a side
     float gap;         // the distance of the ray behind the visible surface
+    bool behind;       // true if the ray is behind the whole object at this pixel
     bool endless;      // true if it is infinitely far away at `last`
     float sure;        // confidence: 1 if it met a visible surface, less the deeper it entered an object from the side
+    vec2 grazed;       // confidence and `at` where it most likely met an object that may be thinner than that
 };
 
 // The nearness of the ray at a place along it.
@@ -61,7 +63,9 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     ray.middle = own + 0.5;
     ray.level = 0;
     ray.gap = 0.0;
+    ray.behind = false;
     ray.sure = 0.0;
+    ray.grazed = vec2(0.0);
     return ray;
 }
 
@@ -84,9 +88,9 @@ ivec2 march_texel(ivec2 cell, ivec2 size, int level) {
 float march_gap(float near, float surface) { return max(1.0 / max(near, 1e-30) - 1.0 / max(surface, 1e-30), 0.0); }
 
 // Advances the ray by one cell. `seen` is the content of the cell: for a pixel the nearness at its center and the
-// slopes to the right and down, for a larger cell the largest and the smallest nearness. True where the ray meets a
-// surface.
-bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
+// slopes to the right and down, and the depth of a solid object; for a larger cell the largest nearness of surfaces and
+// the smallest of the backs of solid objects. True where the ray meets a surface.
+bool march_step(inout March ray, ivec2 cell, vec4 seen, float thickness) {
     const float rounding = 1e-6;
     vec2 low = vec2(cell << (2 * ray.level)), high = low + float(1 << (2 * ray.level));
     float next = min(max(march_leaves(ray, low, high), ray.at + ray.nudge), ray.last);
@@ -99,9 +103,11 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             return false;
         }
         ray.gap = hidden ? thickness : 0.0;
+        ray.behind = hidden;
         ray.plane = vec3(0.0);
     } else if (seen.x <= 0.0) {
         ray.gap = 0.0;
+        ray.behind = false;
     } else {
         vec2 middle = low + 0.5;
         float now = seen.x + dot(seen.yz, ray.from + ray.pace * ray.at - middle);
@@ -117,31 +123,34 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             // changed suddenly: by more than the surface and the ray can change within a pixel.
             float gap = march_gap(near_now, now), step = abs(ray.gain) * ray.nudge / MARCH_NUDGE;
             float crack = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x) + step / (near_now * near_now);
-            ray.sure = clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
+            bool inside = min(gap, march_gap(near_next, then)) < seen.w;
+            ray.sure = inside ? 1.0 : clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
             // If each of two pixels lies behind the plane of the other, there is a convex edge. It does not hide a ray
             // that leaves it: the planes only extend too far.
             vec2 away = middle - ray.middle;
             bool bulges = seen.x < ray.plane.x + dot(away, ray.plane.yz) && ray.plane.x < seen.x - dot(away, seen.yz);
             if (bulges && after > ahead && gap <= 2.0 * crack) ray.sure = 0.0;
-            if ((ray.gap == 0.0 || ray.gap > gap + crack) && ray.sure > 0.0) {
+            if ((ray.gap == 0.0 || ray.gap > gap + crack || ray.behind && inside) && ray.sure > 0.0) {
                 // Move inside the object, unless it is just a crease: at its border, interpolated colors would mix two
                 // surfaces.
                 if (gap > crack) ray.at = min(ray.at + MARCH_INSIDE / MARCH_NUDGE * ray.nudge, ray.last);
-                return true;
+                if (seen.w == 0.0 || inside || ray.sure == 1.0) return true;
+                if (ray.sure > ray.grazed.x) ray.grazed = vec2(ray.sure, ray.at);
             }
         }
         ray.gap = after < least ? march_gap(near_next, then) : 0.0;
+        ray.behind = ray.gap > seen.w;
     }
-    if (ray.level == 0) ray.plane = seen, ray.middle = low + 0.5;
+    if (ray.level == 0) ray.plane = seen.xyz, ray.middle = low + 0.5;
     ray.at = next;
     ray.level = min(ray.level + 1, MARCH_LEVELS);
     return false;
 }
 
-// The three draws that make the picture `surfaces`. This one reads `depth`.
-vec3 march_planes() {
+// The draws that make the picture `surfaces`. This one reads `depth`.
+vec4 march_planes() {
     float here = nearness(depth_at(pixel));
-    if (here == 0.0) return vec3(0.0);
+    if (here == 0.0) return vec4(0.0);
     vec2 slope;
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
@@ -153,30 +162,31 @@ vec3 march_planes() {
         vec2 bend = mix(abs(two - 2.0 * one + here), abs(one - here), equal(two, vec2(0.0))) / here;
         slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
     }
-    return here * vec3(1.0, slope);
+    return vec4(here * vec3(1.0, slope), 0.0);
 }
 
-// The largest and smallest nearness of the planes in 4 x 4 pixels; the background counts as 0.
-vec3 march_bounds() {
+// The largest nearness of the planes in 4 x 4 pixels, and the smallest of the backs of objects; the background counts
+// as 0.
+vec4 march_bounds() {
     vec2 found = vec2(0.0, 1e30);
     for (int i = 0; i < 16; ++i) {
         ivec2 at = 4 * pixel + ivec2(i & 3, i >> 2);
         if (any(greaterThanEqual(at, planes_size))) continue;
-        vec3 plane = planes_at(at);
-        float most = 0.5 * (abs(plane.y) + abs(plane.z));
-        found = vec2(max(found.x, plane.x + most), min(found.y, max(plane.x - most, 0.0)));
+        vec4 plane = planes_at(at);
+        float most = 0.5 * (abs(plane.y) + abs(plane.z)), back = max(plane.x - most, 0.0);
+        found = vec2(max(found.x, plane.x + most), min(found.y, back / (1.0 + plane.w * back)));
     }
-    return vec3(found, 0.0);
+    return vec4(found, 0.0, 0.0);
 }
 
-// The third draw, which reads `planes` and `bounds`: all levels in one picture.
-vec3 march_surfaces() {
+// The last draw, which reads `planes` and `bounds`: all levels in one picture.
+vec4 march_surfaces() {
     ivec2 size = planes_size;
-    if (pixel.y < size.y) return all(lessThan(pixel, size)) ? planes_at(pixel) : vec3(0.0);
+    if (pixel.y < size.y) return all(lessThan(pixel, size)) ? planes_at(pixel) : vec4(0.0);
     ivec2 cell = pixel - ivec2(0, size.y);
     int level = 1;
     while (level < MARCH_LEVELS && cell.x >= march_cells(size, level).x) cell.x -= march_cells(size, level++).x;
-    if (any(greaterThanEqual(cell, march_cells(size, level)))) return vec3(0.0);
+    if (any(greaterThanEqual(cell, march_cells(size, level)))) return vec4(0.0);
     int side = 1 << (2 * (level - 1));
     vec2 found = vec2(0.0, 1e30);
     for (int y = 0; y < side; ++y)
@@ -186,19 +196,23 @@ vec3 march_surfaces() {
             vec2 bound = bounds_at(at).xy;
             found = vec2(max(found.x, bound.x), min(found.y, bound.y));
         }
-    return vec3(found, 0.0);
+    return vec4(found, 0.0, 0.0);
 }
 
 // Follows a ray through the picture `surfaces`, in at most `steps` steps. True where it meets a surface, and where it
 // reaches infinity at a background pixel: then it is still `endless`.
 bool march(inout March ray, ivec2 size, float thickness, int steps) {
-    ray.plane = surfaces_at(ivec2(ray.from));
+    ray.plane = surfaces_at(ivec2(ray.from)).xyz;
     for (int i = 0; i < steps && ray.at < ray.last; ++i) {
         ivec2 cell = march_cell(ray, size);
         if (march_step(ray, cell, surfaces_at(march_texel(cell, size, ray.level)), thickness)) {
             ray.endless = false;
             return true;
         }
+    }
+    if (ray.grazed.x > 0.0) {
+        ray.sure = ray.grazed.x, ray.at = ray.grazed.y, ray.endless = false;
+        return true;
     }
     if (ray.at < ray.last || !ray.endless || ray.gap > 0.0) return false;
     ray.sure = 1.0;
@@ -207,7 +221,7 @@ bool march(inout March ray, ivec2 size, float thickness, int steps) {
 
 // The normal of the plane of a pixel, toward the camera.
 vec3 march_normal(const vec4 rows[3], ivec2 at, ivec2 size) {
-    vec3 plane = surfaces_at(at);
+    vec3 plane = surfaces_at(at).xyz;
     return plane.x > 0.0 ? camera_normal(rows, camera_uv(at, size), plane.yz / plane.x * vec2(size)) : vec3(0.0);
 }
 

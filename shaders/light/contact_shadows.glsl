@@ -1,9 +1,13 @@
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/solid.glsl"
 
-vec3 contact_shadows_planes() { return march_planes(); }
-vec3 contact_shadows_bounds() { return march_bounds(); }
-vec3 contact_shadows_surfaces() { return march_surfaces(); }
+vec4 contact_shadows_planes() { return march_planes(); }
+vec4 contact_shadows_neighbors(const vec4 rays[3]) { return solid_neighbors(rays); }
+vec4 contact_shadows_runs(int reach) { return solid_runs(reach); }
+vec4 contact_shadows_solid(const vec4 rays[3]) { return solid_planes(rays); }
+vec4 contact_shadows_bounds() { return march_bounds(); }
+vec4 contact_shadows_surfaces() { return march_surfaces(); }
 
 vec3 contact_shadows_normal(const vec4 rows[3], ivec2 at) {
     vec3 normal = normal_at(at);

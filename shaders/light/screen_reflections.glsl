@@ -8,9 +8,9 @@
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
 const float SCREEN_REFLECTIONS_FOOTPRINT = 0.0;  // side of the part of the picture that a ray stands for, as a part of its share
 
-vec3 screen_reflections_planes() { return march_planes(); }
-vec3 screen_reflections_bounds() { return march_bounds(); }
-vec3 screen_reflections_surfaces() { return march_surfaces(); }
+vec4 screen_reflections_planes() { return march_planes(); }
+vec4 screen_reflections_bounds() { return march_bounds(); }
+vec4 screen_reflections_surfaces() { return march_surfaces(); }
 
 // The unit normal, facing the camera; 0 on the background.
 vec3 screen_reflections_normal(const vec4 rows[3], const vec4 rays[3]) {
