@@ -12,7 +12,7 @@ SPREAD = Vector(width=3)
 _LEVELS = 6
 """As PREFILTERED_LEVELS."""
 
-_CONTRAST = 4.0
+_CONTRAST = 2.0
 """Standard deviations by which light may differ (Schied et al. 2017)."""
 
 

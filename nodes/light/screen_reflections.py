@@ -171,16 +171,21 @@ class ScreenReflections(Filter):
             "sky": self.sky,
             "steps": self.steps,
         }
-        mirror = draw("screen_reflections_mirror", surfaces=all_surfaces, normal=normal, result=_FOUND, **search)
         if not draw.is_linked(self.material) and self.roughness <= 0.0:
-            return draw("screen_reflections_sharp", self.image, mirror=mirror, result=_FOUND)
+            return draw(
+                "screen_reflections_sharp",
+                self.image,
+                surfaces=all_surfaces,
+                normal=normal,
+                result=_FOUND,
+                **search,
+            )
         light, spread = draw.several(
             "screen_reflections_scattered",
             (LIGHT, SPREAD),
             surfaces=all_surfaces,
             normal=normal,
             rough=rough,
-            mirror=mirror,
             levels=prefilter(draw, "screen_reflections", self.image),
             **search,
             count=_RAYS[self.quality],

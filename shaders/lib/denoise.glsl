@@ -9,7 +9,7 @@
 #include "lib/occlusion.glsl"
 
 const float DENOISE_ROUGH = 8.0;    // surfaces whose roughness differs by 1 / 8 are different
-const float DENOISE_REACH = 0.25;
+const float DENOISE_REACH = 1.0;
 const float DENOISE_LEAST = 1e-3;   // of the luminance: less contrast is never noise
 
 // What a pixel needs of itself to compare others with it.
@@ -40,6 +40,8 @@ float denoise_same(const vec4 rays[3], Denoised here, ivec2 at, vec3 spread, flo
     if (guide.w <= 0.0) return 0.0;
     vec3 way = camera_ray(rays, camera_uv(at, extent)) / guide.w - here.place;
     float same = same_surface(here.guide.xyz, guide.xyz, way, here.apart * stride);
+    // On curved surfaces neighbors mirror other directions, and a smooth one shows it.
+    same *= clamp(2.0 - distance(here.guide.xyz, guide.xyz) / (0.5 * spread.z * spread.z), 0.0, 1.0);
     return same * clamp(1.0 - DENOISE_ROUGH * abs(spread.z - here.spread.z), 0.0, 1.0);
 }
 
@@ -50,23 +52,27 @@ void denoise_period(const vec4 rays[3], int count, out vec4 light, out vec3 spre
     light = here.light, spread = here.spread;
     if (here.guide.w <= 0.0 || spread.y <= 0.0) return;
     vec4 sum = vec4(0.0);
-    float total = 0.0, total_square = 0.0, square = 0.0, reach = 0.0;
+    float total = 0.0, total_square = 0.0, square = 0.0, reach = 0.0, total_shine = 0.0;
     for (int i = 0; i < 25; ++i) {
         ivec2 off = ivec2(i % 5, i / 5) - 2, at = pixel + off;
         vec3 other = spread_at(at);
-        float weight = clamp(2.0 * min(other.y, here.spread.y) + 1.0 - denoise_away(here, off), 0.0, 1.0);
+        float weight = clamp(0.5 * min(other.y, here.spread.y) + 1.0 - denoise_away(here, off), 0.0, 1.0);
         weight *= (abs(off.x) == 2 ? 0.5 : 1.0) * (abs(off.y) == 2 ? 0.5 : 1.0);
         if (weight > 0.0 && at != pixel) weight *= denoise_same(rays, here, at, other, 1.0);
         if (weight <= 0.0) continue;
-        sum += weight * light_at(at);
+        vec4 there = light_at(at);
+        sum += weight * there;
+        // Bright light shows a wrong blur most.
+        float shine = weight * (abs(luminance(there.rgb)) + 1e-6);
+        reach += shine * other.y;
+        total_shine += shine;
         square += weight * other.x;
         total_square += weight * weight;
-        reach += weight * other.y;
         total += weight;
     }
     light = finite(sum / total);
     float mean = luminance(light.rgb), variance = max(square / total - mean * mean, 0.0);
-    spread = finite(vec3(variance * total_square / (total * total * float(count)), reach / total, here.spread.z));
+    spread = finite(vec3(variance * total_square / (total * total * float(count)), reach / total_shine, here.spread.z));
 }
 
 // A later pass over 3 x 3 pixels that are `stride` apart. Light that differs by more than `contrast` standard

@@ -6,7 +6,7 @@
 #include "lib/prefiltered_near.glsl"
 
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
-const float SCREEN_REFLECTIONS_FOOTPRINT = 0.0;  // side of the part of the picture that a ray stands for, as a part of its share
+const float SCREEN_REFLECTIONS_FOOTPRINT = 0.1;  // side of the part of the picture that a ray stands for, as a part of its share
 
 vec4 screen_reflections_planes() { return march_planes(); }
 vec4 screen_reflections_bounds() { return march_bounds(); }
@@ -45,17 +45,6 @@ vec4 screen_reflections_ray(
     return finite(vec4(place, far, sure));
 }
 
-vec4 screen_reflections_mirror(
-    const vec4 rows[3], const vec4 rays[3], float thickness, float longest, float fade, float border, bool sky,
-    int steps
-) {
-    vec3 normal = normal_at(pixel);
-    if (normal == vec3(0.0)) return vec4(0.0);
-    vec3 way = reflect(normalize(camera_ray(rays, camera_uv(pixel, extent))), normal);
-    vec3 plane = march_normal(rows, pixel, extent);
-    return screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
-}
-
 vec4 screen_reflections_half() { return prefiltered_half(); }
 vec4 screen_reflections_levels() { return prefiltered_levels(); }
 vec4 screen_reflections_guide() { return vec4(normal_at(pixel), surfaces_at(pixel).x); }
@@ -66,9 +55,16 @@ void screen_reflections_level(const vec4 rays[3], int stride, float contrast, ou
     denoise_level(rays, stride, contrast, light, spread);
 }
 
-// The light of the surface that a ray met, times the confidence.
-vec4 screen_reflections_sharp() {
-    vec4 met = mirror_at(pixel);
+// The light of the surface that a mirrored ray meets, times the confidence.
+vec4 screen_reflections_sharp(
+    const vec4 rows[3], const vec4 rays[3], float thickness, float longest, float fade, float border, bool sky,
+    int steps
+) {
+    vec3 normal = normal_at(pixel);
+    if (normal == vec3(0.0)) return vec4(0.0);
+    vec3 way = reflect(normalize(camera_ray(rays, camera_uv(pixel, extent))), normal);
+    vec3 plane = march_normal(rows, pixel, extent);
+    vec4 met = screen_reflections_ray(rows, way, plane, thickness, longest, fade, border, sky, steps);
     return met.w > 0.0 ? met.w * finite(image_near(met.xy)) : vec4(0.0);
 }
 
@@ -108,19 +104,18 @@ void screen_reflections_scattered(
     float rough = rough_at(pixel), alpha = rough * rough;
     light = vec4(0.0), spread = vec3(0.0, 0.0, rough);
     if (normal == vec3(0.0)) return;
-    if (alpha < SCREEN_REFLECTIONS_SHARP) {
-        light = screen_reflections_met(rays, mirror_at(pixel), 0.0);
-        return;
-    }
+    bool sharp = alpha < SCREEN_REFLECTIONS_SHARP;
+    if (sharp) count = 1;
     const vec2 lattice = vec2(0.75487767, 0.56984029);  // R2 sequence (Roberts 2018)
     vec3 plane = march_normal(rows, pixel, extent);
     vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
     mat3 frame = mat3(across, cross(normal, across), normal);
     vec3 view = -normalize(camera_ray(rays, camera_uv(pixel, extent))) * frame;
     vec2 noise = occlusion_noise(pixel, true);
-    float depth = 1.0 / surfaces_at(pixel).x, total = 0.0, squares = 0.0, away = 0.0;
+    float depth = 1.0 / surfaces_at(pixel).x, total = 0.0, squares = 0.0, away = 1e-6, shines = 1e-6;
     for (int i = 0; i < count; ++i) {
         vec4 way = screen_reflections_way(view, alpha, fract(noise + float(i) * lattice), count);
+        if (sharp) way = vec4(-view.xy, view.z, 0.0);
         if (way.z <= 0.0) continue;
         float weight = screen_reflections_open(way.z, alpha);
         vec4 met = screen_reflections_ray(
@@ -130,12 +125,15 @@ void screen_reflections_scattered(
         float bright = luminance(found.rgb);
         light += weight * found;
         squares += weight * bright * bright;
-        away += weight * (met.w > 0.0 ? met.z / (depth + met.z) : 1.0);
+        float shine = weight * met.w * (abs(bright) + 1e-3);
+        away += shine * met.z / (depth + met.z);
+        shines += shine;
         total += weight;
     }
     if (total <= 0.0) return;
     light /= total;
-    float reach = 2.0 * alpha * away / total * depth / pixel_pitch(rays, depth, vec2(extent));
+    if (sharp) return;
+    float reach = 2.0 * alpha * away / shines * depth / pixel_pitch(rays, depth, vec2(extent));
     spread = finite(vec3(squares / total, reach, rough));
 }
 

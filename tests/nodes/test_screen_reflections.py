@@ -267,3 +267,52 @@ def test_rays_pass_behind_what_is_thin(run):
     floor = normal[..., 2] > 0.5
     seen = [mirrored(run, camera, depth, normal, image=image, thickness=far)[floor][:, 2] > 0.5 for far in (0.01, 1e4)]
     assert seen[0].sum() == 0 and seen[1].sum() > 100
+
+
+LAMP, LUMINANCE = (0.3, 1.6), 60.0
+
+
+def lobe(normal_view: Array, alpha: float, random: np.random.Generator, count: int) -> tuple[Array, Array]:
+    """Directions off a floor, by facets of GGX as often as they are, and their weights."""
+    u, turn = random.random(count), 2 * np.pi * random.random(count)
+    slope = alpha * np.sqrt(u / (1 - u))
+    facet = np.stack([slope * np.cos(turn), slope * np.sin(turn), np.ones_like(u)], -1)
+    facet /= np.linalg.norm(facet, axis=-1, keepdims=True)
+    cosine = facet @ normal_view
+    way = 2 * cosine[:, None] * facet - normal_view
+
+    def lit(c: Array) -> Array:
+        return 2 * c / (c + np.sqrt(c * c + alpha**2 * (1 - c * c)))
+
+    up = np.maximum(way[:, 2], 1e-9)
+    weight = lit(up) * cosine * lit(normal_view[2]) / (normal_view[2] * facet[:, 2])
+    return way, np.where((cosine > 0) & (way[:, 2] > 0), weight, 0.0)
+
+
+@pytest.mark.parametrize(("roughness", "radius", "most"), [(0.25, 0.06, 0.12), (0.4, 0.06, 0.3), (0.25, 0.2, 0.08)])
+def test_a_small_lamp_leaves_no_speckle(run, roughness, radius, most):
+    camera = look_at((0.0, -4.0, 1.5), (0.2, 3.0, 0.9), (1.2, 1.2 * 16 / 9))
+    depth, normal, place, view = taken(camera, [FLOOR, WALL])
+    bright = (normal[..., 1] < -0.5) & (np.hypot(place[..., 0] - LAMP[0], place[..., 2] - LAMP[1]) < radius)
+    image = np.where(bright[..., None], np.float32([LUMINANCE] * 3 + [1]), np.float32([0.1, 0.1, 0.1, 1]))
+    node = ScreenReflections(roughness=roughness, reflectance=1.0, border=0.0, distance=1e6, fade=0.0, thickness=1e6)
+    inputs = {"image": image, "depth": depth, "normal": normal, "camera": camera}
+    light = run(node, inputs, output="reflection")[..., 0]
+    random = np.random.default_rng(2)
+    exact, noisy = [], []
+    for y, x in np.argwhere(normal[..., 2] > 0.5):
+        if y % 3 or x % 3 or not 40 < x < 120 or y > 84:
+            continue
+        way, weight = lobe(-view[y, x], roughness**2, random, 20000)
+        far, _ = meet(place[y, x], way, [WALL])
+        at, _ = projected(camera, place[y, x] + np.where(np.isfinite(far), far, 0.0)[:, None] * way)
+        column, row = np.clip(np.nan_to_num(at), 0, np.array(SIZE) - 1).astype(int).T
+        seen = np.isfinite(far) & ((at > 0) & (at < SIZE)).all(-1)
+        exact.append((weight * seen * image[row, column, 0]).sum() / weight.sum())
+        noisy.append(light[y, x])
+    exact, noisy = np.array(exact), np.array(noisy)
+    assert len(exact) > 150
+    error = noisy - exact
+    print(np.sqrt((error**2).mean()), exact.mean(), noisy.mean(), np.abs(error).max())
+    assert np.sqrt((error**2).mean()) < most
+    assert abs(noisy.mean() / exact.mean() - 1.0) < 0.1
