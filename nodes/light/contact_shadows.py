@@ -26,9 +26,9 @@ class ContactShadows(Filter):
     """Add the short shadows where objects touch, from a sun or a lamp.
 
     A ray from every pixel toward the light is followed through the picture for a short distance, until it meets a
-    surface, according to depth (McGuire and Mara 2014). Objects count as deep as they are wide. A light with a size gives soft edges, softer the farther away
-    the shadow caster is. Surfaces that face away from the light stay unchanged: they are dark already. Objects outside
-    of the picture cast no shadow.
+    surface, according to depth (McGuire and Mara 2014). Objects count as deep as they are wide. A light with a size
+    gives soft edges, softer the farther away the shadow caster is. Surfaces that face away from the light stay
+    unchanged: they are dark already. Objects outside of the picture cast no shadow.
     """
 
     aliases = ("screen space shadows", "drop shadow", "shadow", "shadows", "contact shadow", "ray shadows")

@@ -19,7 +19,7 @@ from .._declare import (
 from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._march import surfaces
 
-_RAYS = {"preview": 2, "quality": 4, "reference": 64}
+_RAYS = {"preview": 2, "quality": 8, "reference": 64}
 """Rays to a pixel where surfaces are rough; their neighbors lend them as many times 16, and the filter more."""
 
 _STRIDES = (3, 6, 12)
@@ -33,7 +33,8 @@ class ScreenReflections(Filter):
 
     A ray from every pixel is followed through the picture until it meets a surface, according to depth (McGuire and
     Mara 2014, through a pyramid of nearest depths as in Uludag 2014). On rough surfaces rays scatter by GGX (Heitz
-    2018), so reflections are sharp at contacts and blur with the distance. The strength is Schlick's (1994) Fresnel.
+    2018), so reflections are sharp at contacts and blur with the distance. A filter that is guided by their variance
+    removes the noise (Schied et al. 2017). The strength is Schlick's (1994) Fresnel.
     Objects outside of the picture cannot be reflected: there the surface stays unchanged.
     """
 
@@ -97,7 +98,7 @@ class ScreenReflections(Filter):
     ] = 0.3
     sky: Annotated[bool, Doc("Reflect the background, as if it were infinitely far.")] = True
     quality: Annotated[
-        Literal["preview", "quality", "reference"], Doc("4, 16 or 64 rays to a pixel where surfaces are rough.")
+        Literal["preview", "quality", "reference"], Doc("2, 8 or 64 rays to a pixel where surfaces are rough.")
     ] = "quality"
     steps: Annotated[
         int,

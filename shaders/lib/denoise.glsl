@@ -9,7 +9,7 @@
 #include "lib/occlusion.glsl"
 
 const float DENOISE_ROUGH = 8.0;    // surfaces whose roughness differs by 1 / 8 are different
-const float DENOISE_REACH = 1.0;
+const float DENOISE_REACH = 1.0;    // of the width of the blur: farther pixels count less and less
 const float DENOISE_LEAST = 1e-3;   // of the luminance: less contrast is never noise
 
 // What a pixel needs of itself to compare others with it.
@@ -24,7 +24,8 @@ Denoised denoise_here(const vec4 rays[3]) {
     vec2 up = vec2(dot(guide.xyz, normalize(right)), dot(guide.xyz, normalize(down)));
     float facing = abs(dot(guide.xyz, normalize(place)));
     up = dot(up, up) > 1e-12 ? normalize(up) : vec2(0.0, 1.0);
-    return Denoised(guide, light_at(pixel), place, spread_at(pixel), up, 1.0 / max(facing, 0.05), pixel_pitch(rays, depth, vec2(extent)));
+    float apart = pixel_pitch(rays, depth, vec2(extent));
+    return Denoised(guide, light_at(pixel), place, spread_at(pixel), up, 1.0 / max(facing, 0.05), apart);
 }
 
 // How far a pixel is, in pixels of the blur along its longer side: reflections at grazing angles are narrower across.
@@ -87,7 +88,8 @@ void denoise_level(const vec4 rays[3], int stride, float contrast, out vec4 ligh
         if (i == 4) continue;
         ivec2 off = ivec2(i % 3, i / 3) - 1, at = pixel + stride * off;
         vec3 other = spread_at(at);
-        float weight = clamp(2.0 * DENOISE_REACH * min(other.y, here.spread.y) / denoise_away(here, stride * off) - 1.0, 0.0, 1.0);
+        float reach = DENOISE_REACH * min(other.y, here.spread.y);
+        float weight = clamp(2.0 * reach / denoise_away(here, stride * off) - 1.0, 0.0, 1.0);
         weight *= off.x == 0 || off.y == 0 ? 2.0 : 1.0;
         if (weight > 0.0) weight *= denoise_same(rays, here, at, other, float(stride));
         if (weight <= 0.0) continue;

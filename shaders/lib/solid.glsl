@@ -1,7 +1,7 @@
-// How deep the objects of a picture are: as deep as they are wide. Seen from any side, a slice through a ball is a circle,
-// whose width the picture shows; at a place with `a` pixels to the left end of the circle and `b` to the right one it is
-// 2 sqrt(a b) deep. Of the slices across and down the thinner one counts, so a rod is as deep as it is thick. Surfaces
-// that reach the border of the picture count as endless on that side.
+// How deep the objects of a picture are: as deep as they are wide. Seen from any side, a slice through a ball is a
+// circle, whose width the picture shows; at a place with `a` pixels to the left end of the circle and `b` to the right
+// one it is 2 sqrt(a b) deep. Of the slices across and down the thinner one counts, so a rod is as deep as it is thick.
+// Surfaces that reach the border of the picture count as endless on that side.
 //
 // `runs` holds how many pixels of the same surface follow to the left, to the right, above and below.
 #include "lib/camera.glsl"

@@ -2,9 +2,9 @@
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
 
-vec3 light_shafts_planes() { return march_planes(); }
-vec3 light_shafts_bounds() { return march_bounds(); }
-vec3 light_shafts_surfaces() { return march_surfaces(); }
+vec4 light_shafts_planes() { return march_planes(); }
+vec4 light_shafts_bounds() { return march_bounds(); }
+vec4 light_shafts_surfaces() { return march_surfaces(); }
 
 // The phase function of Henyey and Greenstein (1941), 1 for isotropic haze. At a cosine of 1 light continues straight
 // ahead.

@@ -6,7 +6,9 @@
 #include "lib/prefiltered_near.glsl"
 
 const float SCREEN_REFLECTIONS_SHARP = 1e-3;  // with a smaller alpha, GGX counts as a mirror
-const float SCREEN_REFLECTIONS_FOOTPRINT = 0.1;  // side of the part of the picture that a ray stands for, as a part of its share
+// The side of the square whose mean a ray takes, as a part of what it stands for. With more, light leaks past objects:
+// of 0, 0.1 and 0.25 this had the least error in a room with small lamps.
+const float SCREEN_REFLECTIONS_FOOTPRINT = 0.1;
 
 vec4 screen_reflections_planes() { return march_planes(); }
 vec4 screen_reflections_bounds() { return march_bounds(); }

@@ -289,7 +289,7 @@ def lobe(normal_view: Array, alpha: float, random: np.random.Generator, count: i
     return way, np.where((cosine > 0) & (way[:, 2] > 0), weight, 0.0)
 
 
-@pytest.mark.parametrize(("roughness", "radius", "most"), [(0.25, 0.06, 0.12), (0.4, 0.06, 0.3), (0.25, 0.2, 0.08)])
+@pytest.mark.parametrize(("roughness", "radius", "most"), [(0.25, 0.06, 0.05), (0.4, 0.06, 0.06)])
 def test_a_small_lamp_leaves_no_speckle(run, roughness, radius, most):
     camera = look_at((0.0, -4.0, 1.5), (0.2, 3.0, 0.9), (1.2, 1.2 * 16 / 9))
     depth, normal, place, view = taken(camera, [FLOOR, WALL])
@@ -313,6 +313,5 @@ def test_a_small_lamp_leaves_no_speckle(run, roughness, radius, most):
     exact, noisy = np.array(exact), np.array(noisy)
     assert len(exact) > 150
     error = noisy - exact
-    print(np.sqrt((error**2).mean()), exact.mean(), noisy.mean(), np.abs(error).max())
     assert np.sqrt((error**2).mean()) < most
-    assert abs(noisy.mean() / exact.mean() - 1.0) < 0.1
+    assert abs(noisy.mean() / exact.mean() - 1.0) < 0.08

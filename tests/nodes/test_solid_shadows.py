@@ -49,7 +49,9 @@ def render(meet, eye=(0.3, -5.5, 2.6)):
     with np.errstate(divide="ignore"):
         floor = np.where(way[..., 2] < 0.0, -start[2] / way[..., 2], np.inf)
     depth = np.minimum(meet(start, way), floor)
-    place = np.where((depth == floor)[..., None] & np.isfinite(depth)[..., None], start + floor[..., None] * way, np.nan)
+    place = np.where(
+        (depth == floor)[..., None] & np.isfinite(depth)[..., None], start + floor[..., None] * way, np.nan
+    )
     return camera, np.where(np.isfinite(depth), depth, FAR), place
 
 
