@@ -15,8 +15,12 @@ from .._declare import (
     Slider,
     Vector,
 )
+from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
+
+_STRIDES = (3, 6)
+"""Pixels between what the passes of the filter read."""
 
 _COARSE = (24, 12)
 """What is hidden of the surroundings is seen this coarsely."""
@@ -90,14 +94,14 @@ class DirectionalOcclusion(Filter):
         sky = shrunk(draw, "directional_occlusion", self.environment, SKY)
         factor = FACTORS[self.resolution]
         slices, steps = SAMPLES[self.quality]
-        visible = draw(
+        visible, lamps, spread = draw.several(
             "directional_occlusion_seen",
-            self.image,
+            (DATA, LIGHT, SPREAD),
             self.depth,
             normal=normal,
+            levels=prefilter(draw, "directional_occlusion", self.image),
             sky=shrunk(draw, "directional_occlusion", sky, _COARSE),
             size=measure_size(draw.size, factor),
-            result=DATA,
             rows=rows,
             rays=rays,
             factor=factor,
@@ -111,17 +115,33 @@ class DirectionalOcclusion(Filter):
             up=self.up,
             matched=self.denoise,
         )
+        if self.denoise:
+            guide = draw(
+                "directional_occlusion_guide",
+                self.depth,
+                normal=normal,
+                size=visible.size,
+                result=LIGHT,
+                factor=factor,
+            )
+            lamps = denoise(draw, "directional_occlusion", guide, lamps, spread, rays, slices, _STRIDES)
+        gathered, lamps = (
+            denoise_and_enlarge(
+                draw, "directional_occlusion", self.depth, normal, part, rays, factor, self.denoise and part is visible
+            )
+            for part in (visible, lamps)
+        )
         light = draw(
             "directional_occlusion_light",
             self.depth,
             self.albedo,
             normal=normal,
-            gathered=denoise_and_enlarge(
-                draw, "directional_occlusion", self.depth, normal, visible, rays, factor, self.denoise
-            ),
+            gathered=gathered,
+            lamps=lamps,
             sky=irradiance(draw, "directional_occlusion", sky),
             rays=rays,
             intensity=self.intensity,
+            bounce=self.bounce,
             rotation=self.rotation,
             up=self.up,
         )

@@ -1,11 +1,17 @@
 #include "light/ambient_occlusion.glsl"
 #include "light/image_based_light.glsl"
 #include "lib/alpha.glsl"
+#include "lib/denoise.glsl"
 #include "lib/environment.glsl"
 #include "lib/finite.glsl"
 #include "lib/occlusion.glsl"
+#include "lib/prefiltered_near.glsl"
 
 const int DIRECTIONAL_OCCLUSION_PARTS = 4;  // parts of the hidden light on each side of a slice
+const float DIRECTIONAL_OCCLUSION_FOOTPRINT = 0.2;  // of the width of a sample: how wide the mean is that it takes
+const float DIRECTIONAL_OCCLUSION_AROUND = 64.0;    // pixels: the surroundings with which a lamp is compared
+const float DIRECTIONAL_OCCLUSION_LAMP = 2.0;       // what is so many times as bright as these is a lamp
+const float DIRECTIONAL_OCCLUSION_BLUR = 0.25;      // of the radius: how far the filter may look
 const float DIRECTIONAL_OCCLUSION_BRIGHTEST = 65504.0;  // the largest half float: more could overflow in sums
 
 vec3 directional_occlusion_normal(const vec4 rows[3]) { return ambient_occlusion_normal(rows); }
@@ -34,24 +40,50 @@ vec3 directional_occlusion_hidden(
     return sum * hidden / float(DIRECTIONAL_OCCLUSION_PARTS);
 }
 
-// The light divided by pi that a white surface gets from its neighbors, minus the sky light that they hide.
-vec4 directional_occlusion_seen(
+// How many pixels wide a part of a slice is: its step along, and its share of the circle across.
+float directional_occlusion_width(vec2 away, int slices, vec2 pace) {
+    return DIRECTIONAL_OCCLUSION_FOOTPRINT * sqrt(length(pace) * length(away) * OCCLUSION_PI / float(slices));
+}
+
+// The luminance above which a pixel counts as a lamp.
+float directional_occlusion_limit(ivec2 at) {
+    vec3 around = prefiltered_near(vec2(at) + 0.5, DIRECTIONAL_OCCLUSION_AROUND, depth_size).rgb;
+    return DIRECTIONAL_OCCLUSION_LAMP * luminance(max(around, 0.0));
+}
+
+// The light of a pixel up to the limit, and the rest, which is the mean over a square `width` pixels wide.
+mat2x3 directional_occlusion_parts(ivec2 at, float limit, float width) {
+    vec3 here = clamp(levels_at(at).rgb, 0.0, DIRECTIONAL_OCCLUSION_BRIGHTEST);
+    vec3 near = prefiltered_near(vec2(at) + 0.5, width, depth_size).rgb;
+    near = clamp(near, 0.0, DIRECTIONAL_OCCLUSION_BRIGHTEST);
+    return mat2x3(
+        here * min(1.0, limit / max(luminance(here), 1e-9)), near * max(0.0, 1.0 - limit / max(luminance(near), 1e-9))
+    );
+}
+
+// The light divided by pi that a white surface gets from its neighbors, minus the sky light that they hide; `visible`
+// also has the open part. Few samples meet a lamp, so what is much brighter than its surroundings is kept apart as
+// `lamps`, with the mean of its squares in `spread`, and is blurred farther.
+void directional_occlusion_seen(
     const vec4 rows[3], const vec4 rays[3], int factor, int slices, int steps, float radius, float falloff,
-    float intensity, float bounce, float rotation, int up, bool matched
+    float intensity, float bounce, float rotation, int up, bool matched, out vec4 visible, out vec4 lamps,
+    out vec3 spread
 ) {
+    visible = AMBIENT_OCCLUSION_OPEN, lamps = vec4(0.0, 0.0, 0.0, 1.0), spread = vec3(0.0, 0.0, 1.0);
     ivec2 at = pixel * factor;
-    if (!is_surface(depth_at(at))) return AMBIENT_OCCLUSION_OPEN;
+    if (!is_surface(depth_at(at))) return;
     Seen here = ambient_occlusion_seen(rays, at);
     vec2 noise = occlusion_noise(pixel, matched);
-    float fade = 1.0 / max(falloff * radius, 1e-6 * radius), open = 0.0, whole = 0.0;
-    vec3 light = vec3(0.0);
+    float fade = 1.0 / max(falloff * radius, 1e-6 * radius), open = 0.0, whole = 0.0, squares = 0.0, reach = 0.0;
+    float limit = directional_occlusion_limit(at);
+    vec3 light = vec3(0.0), sum = vec3(0.0);
     for (int s = 0; s < slices; ++s) {
         Slice slice = slice_at(rows, rays, here, vec2(depth_size), OCCLUSION_PI * (float(s) + noise.x) / float(slices));
         vec2 next = OCCLUSION_NEXT * normalize(slice.pace);
         // Horizons ahead along the slice and behind: cosines to the view, and the light that passes up to them.
         vec2 ends = slice.tilt + vec2(0.5, -0.5) * OCCLUSION_PI, surface = cos(ends), horizon = surface;
         vec2 passes = vec2(slice_light(slice.tilt, ends.x), slice_light(slice.tilt, ends.y));
-        vec3 bounced = vec3(0.0);
+        vec3 bounced = vec3(0.0), caught = vec3(0.0);
         for (int k = 0; k < steps; ++k) {
             float part = (float(k) + fract(noise.y + float(s + k * steps) * OCCLUSION_GOLDEN)) / float(steps);
             vec2 away = part * radius * slice.pace + next;
@@ -67,8 +99,12 @@ vec4 directional_occlusion_seen(
                 float angle = acos(clamp(rise, -1.0, 1.0));
                 float left = slice_light(slice.tilt, side == 0 ? angle : -angle);
                 // A sample above the horizon is visible. It emits light if it faces this surface.
-                if (dot(normal_at(other), ambient_occlusion_place(rays, other) - here.place) < 0.0)
-                    bounced += (passes[side] - left) * clamp(image_at(other).rgb, 0.0, DIRECTIONAL_OCCLUSION_BRIGHTEST);
+                if (dot(normal_at(other), ambient_occlusion_place(rays, other) - here.place) < 0.0) {
+                    float width = directional_occlusion_width(away, slices, radius / float(steps) * slice.pace);
+                    mat2x3 parts = directional_occlusion_parts(other, limit, width);
+                    bounced += (passes[side] - left) * parts[0];
+                    caught += (passes[side] - left) * parts[1];
+                }
                 passes[side] = left;
             }
         }
@@ -78,8 +114,27 @@ vec4 directional_occlusion_seen(
         vec3 hidden = directional_occlusion_hidden(here, slice, ends.x, passes.x, start, up, rotation)
             + directional_occlusion_hidden(here, slice, ends.y, passes.y, start, up, rotation);
         light += slice.share * (bounce * bounced - intensity * hidden);
+        sum += slice.share * caught;
+        float bright = luminance(slice.share * caught);
+        squares += bright * bright;
+        reach = max(reach, radius * length(slice.pace));
     }
-    return finite(vec4(light, open) / whole);
+    float mean = whole / float(slices);
+    visible = finite(vec4(light, open) / whole);
+    lamps = finite(vec4(sum / whole, 1.0));
+    spread = finite(vec3(squares / (float(slices) * mean * mean), DIRECTIONAL_OCCLUSION_BLUR * reach / float(factor), 1.0));
+}
+
+vec4 directional_occlusion_half() { return prefiltered_half(); }
+vec4 directional_occlusion_levels() { return prefiltered_levels(); }
+vec4 directional_occlusion_guide(int factor) {
+    return vec4(normal_at(pixel * factor), nearness(depth_at(pixel * factor)));
+}
+void directional_occlusion_period(const vec4 rays[3], int count, out vec4 light, out vec3 spread) {
+    denoise_period(rays, count, light, spread);
+}
+void directional_occlusion_level(const vec4 rays[3], int stride, float contrast, out vec4 light, out vec3 spread) {
+    denoise_level(rays, stride, contrast, light, spread);
 }
 
 vec4 directional_occlusion_denoise(const vec4 rays[3], int factor) { return ambient_occlusion_denoise(rays, factor); }
@@ -88,11 +143,12 @@ vec4 directional_occlusion_enlarge(const vec4 rays[3], int factor) {
     return ambient_occlusion_between(rays, factor, AMBIENT_OCCLUSION_OPEN);
 }
 
-vec4 directional_occlusion_light(const vec4 rays[3], float intensity, float rotation, int up) {
+vec4 directional_occlusion_light(const vec4 rays[3], float intensity, float bounce, float rotation, int up) {
     float depth = depth_at(pixel);
     if (!is_surface(depth)) return vec4(0.0, 0.0, 0.0, 1.0);
     Seen here = ambient_occlusion_seen(rays, pixel);
-    vec3 light = max(intensity * directional_occlusion_from(here.normal, up, rotation) + gathered_at(pixel).rgb, 0.0);
+    vec3 light = intensity * directional_occlusion_from(here.normal, up, rotation) + gathered_at(pixel).rgb;
+    light = max(light + bounce * lamps_at(pixel).rgb, 0.0);
     return finite(vec4(light * clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0), 1.0));
 }
 

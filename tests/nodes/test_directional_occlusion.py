@@ -8,7 +8,7 @@ from halation.nodes import CameraModel, look_at
 from halation.nodes.light.ambient_occlusion import AmbientOcclusion
 from halation.nodes.light.directional_occlusion import DirectionalOcclusion
 from lens import blender
-from scipy.ndimage import binary_erosion
+from scipy.ndimage import binary_erosion, gaussian_filter
 
 SIZE, SMALL = (320, 180), (160, 90)
 
@@ -263,3 +263,19 @@ def test_cycles_bounces_light_once_off_colored_walls(run):
         assert np.corrcoef(found[inside][:, channel], expected[inside][:, channel])[0, 1] > 0.985
     worked = light(run, scene, image=image, radius=2.4)[..., :3][inside] - expected[inside]
     assert np.sqrt((worked**2).mean(0)).max() < 0.03
+
+
+def test_a_small_lamp_does_not_splatter(run):
+    """Beside a lamp of few pixels light falls off smoothly, and none of it is lost."""
+    scene = corner()
+    _, _, normal, place, inner = scene
+    lamp = (normal[..., 0] > 0.5) & (np.hypot(place[..., 1], place[..., 2] - 0.25) < 0.04)
+    assert 4 < lamp.sum() < 60
+    image = np.where(lamp[..., None], np.float32([200, 200, 200, 1]), np.float32([0, 0, 0, 1]))
+    near = inner & (normal[..., 2] > 0.5) & (np.hypot(place[..., 0] - 0.2, place[..., 1]) < 0.15)
+    few, many = (light(run, scene, image=image, quality=quality)[..., 0] for quality in ("quality", "reference"))
+    rough, error = few - gaussian_filter(few, 3.0), few - many
+    assert near.sum() > 50
+    assert rough[near].std() < 0.25 * few[near].mean()
+    assert np.sqrt((error[near] ** 2).mean()) < 0.22 * many[near].mean()
+    assert abs(few[near].mean() / many[near].mean() - 1.0) < 0.15
