@@ -122,7 +122,8 @@ void directional_occlusion_seen(
     float mean = whole / float(slices);
     visible = finite(vec4(light, open) / whole);
     lamps = finite(vec4(sum / whole, 1.0));
-    spread = finite(vec3(squares / (float(slices) * mean * mean), DIRECTIONAL_OCCLUSION_BLUR * reach / float(factor), 1.0));
+    reach *= DIRECTIONAL_OCCLUSION_BLUR / float(factor);
+    spread = finite(vec3(squares / (float(slices) * mean * mean), reach, 1.0));
 }
 
 vec4 directional_occlusion_half() { return prefiltered_half(); }
