@@ -250,8 +250,7 @@ class Graph(Wired[Item]):
 
     def fit(self, port: Port, value: object) -> Plain:
         """Convert a setting to the type of a value. Raises GraphError if the value cannot be set to it."""
-        declaration = self.declaration(port)
-        plain = coerce(declaration, value)
+        plain = coerce(declaration := self.declaration(port), value)
         if (fault := value_fault(declaration, value)) or plain is None:
             raise GraphError(f"{port}: {fault}")
         return plain

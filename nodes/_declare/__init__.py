@@ -28,11 +28,13 @@ from .lengths import (
     MAX_REFERENCE_HEIGHT,
     REFERENCE_HEIGHT,
     LengthUnits,
+    Spacing,
     convert_length,
     is_length,
     length_unit_fault,
     name_reference,
     resolve_length_unit,
+    space_pixels,
     unit_factor,
 )
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
@@ -148,6 +150,7 @@ __all__ = [
     "Socket",
     "Source",
     "SpaceChange",
+    "Spacing",
     "StageName",
     "Stops",
     "Swatch",
@@ -178,6 +181,7 @@ __all__ = [
     "ramp_at",
     "ramp_knots",
     "resolve_length_unit",
+    "space_pixels",
     "toggle_name",
     "unit_factor",
 ]

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import re
 
-from msgspec import structs
+from msgspec import Struct, structs
 
 from .values import Plain, Value
 
@@ -102,3 +102,27 @@ def declare_in_unit(value: Value, unit: str) -> Value:
     )
     limits = {name: getattr(value, name) * factor for name in ("low", "high", "minimum", "maximum")}
     return structs.replace(value, unit=unit, default=converted, **limits)
+
+
+class Spacing(Struct, frozen=True):
+    """How an operator of 3x3 pixels works for pixels of another size: which pixels it reads, and of what.
+
+    A picture of n times the size that is averaged over n x n pixels is the picture of the usual size. So an operator
+    that reads pixels `step` apart of a picture that is blurred by `sigma` gives the same result. `gain` keeps the sum
+    where the wanted distance is no whole number of pixels, or less than one.
+    """
+
+    step: int
+    sigma: float
+    gain: float
+
+
+def space_pixels(width: float) -> Spacing:
+    """The spacing for a distance of pixels in working units; 0 means neighbors at any size.
+
+    The variance of a box that is n pixels wide is n^2 / 12, of which the pixel itself has 1 / 12.
+    """
+    if width <= 0.0:
+        return Spacing(1, 0.0, 1.0)
+    step = max(1, round(width))
+    return Spacing(step, math.sqrt(max(width * width - 1.0, 0.0) / 12.0), width / step)

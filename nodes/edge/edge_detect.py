@@ -1,7 +1,7 @@
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, ProxyNote, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, OutputSocket, ProxyNote, Slider, space_pixels
 
 
 class EdgeDetect(Filter):
@@ -11,6 +11,7 @@ class EdgeDetect(Filter):
     brightness. Sobel and Feldman 1968, Prewitt 1970, Scharr 2000. Alpha is kept.
     """
 
+    version = 2
     aliases = (
         "find edges", "sobel", "prewitt", "laplacian", "edges", "filter", "edge filter", "outline", "roberts", "kirsch",
         "edge",
@@ -32,31 +33,50 @@ class EdgeDetect(Filter):
         float,
         Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Subtracted from every edge, so that weaker edges disappear."),
     ] = 0.0
+    width: Annotated[
+        float,
+        Slider(
+            0.0,
+            16.0,
+            unit="px",
+            minimum=0.0,
+            maximum=200.0,
+            doc="Distance of the pixels that are compared, and about the width of lines; 0 is one pixel at any size.",
+        ),
+    ] = 1.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = OutputSocket()
     magnitude = OutputSocket(Field())
 
+    @classmethod
+    def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
+        return {"width": 0.0, **values}
+
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        spacing = space_pixels(self.width)
+        image = draw.blur(self.image, spacing.sigma, self.edge)
         out = draw(
             "edge_detect",
-            self.image,
+            image=image,
             edge=self.edge,
-            overlap=1,
+            overlap=spacing.step,
             operator=self.operator,
             channels=self.channels,
-            strength=self.strength,
-            threshold=self.threshold,
+            strength=self.strength * spacing.gain,
+            threshold=self.threshold / spacing.gain,
+            spacing=spacing.step,
         )
         magnitude = draw(
             "edge_detect_magnitude",
-            self.image,
+            image=image,
             edge=self.edge,
-            overlap=1,
+            overlap=spacing.step,
             result=Field(),
             operator=self.operator,
             channels=self.channels,
-            strength=self.strength,
-            threshold=self.threshold,
+            strength=self.strength * spacing.gain,
+            threshold=self.threshold / spacing.gain,
+            spacing=spacing.step,
         )
         return {"out": out, "magnitude": magnitude}

@@ -1,6 +1,7 @@
-from typing import Annotated, Literal
+from math import hypot
+from typing import Annotated, Any, Literal
 
-from .._declare import Dial, Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, Slider
+from .._declare import Dial, Doc, Draw, Drawn, Edge, Field, Filter, Image, ProxyNote, Slider, space_pixels
 
 
 class Emboss(Filter):
@@ -10,6 +11,7 @@ class Emboss(Filter):
     light shades: `N.L / L.z` (Lambert; bump mapping: Blinn 1978). That is 1 where the picture is flat. Alpha is kept.
     """
 
+    version = 2
     aliases = ("bump boss", "bump", "relief", "bevel", "color emboss", "create bump map", "texturize", "bevel alpha")
 
     proxy_notes = (
@@ -45,19 +47,36 @@ class Emboss(Filter):
             0.0, 10.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of a blur that makes the relief smooth first."
         ),
     ] = 0.7
+    width: Annotated[
+        float,
+        Slider(
+            0.0,
+            16.0,
+            unit="px",
+            minimum=0.0,
+            maximum=200.0,
+            doc="Distance of the pixels whose heights make the slope; 0 is one pixel at any size.",
+        ),
+    ] = 1.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
+    @classmethod
+    def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
+        return {"width": 0.0, **values}
+
     def passes(self, draw: Draw) -> Drawn:
+        spacing = space_pixels(self.width)
         tone = draw.point("emboss_tone", self.image, result=Field())
-        relief = draw.blur(tone, self.softness, self.edge)
+        relief = draw.blur(tone, hypot(self.softness, spacing.sigma), self.edge)
         return draw(
             "emboss",
             self.image,
             relief=relief,
             edge=self.edge,
-            overlap={"image": 0, "relief": 1},
+            overlap={"image": 0, "relief": spacing.step},
             kind=self.kind,
             direction=self.direction,
             elevation=self.elevation,
             height=self.height,
+            spacing=spacing.step,
         )

@@ -1,9 +1,9 @@
 from collections.abc import Mapping
 from math import fsum
 from types import MappingProxyType
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, OutputSocket, ProxyNote, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, OutputSocket, ProxyNote, Slider, space_pixels
 
 _IDENTITY: Kernel3x3 = (0, 0, 0, 0, 1, 0, 0, 0, 0)
 
@@ -32,6 +32,7 @@ class Convolve3x3(Filter):
     out = scale * sum(kernel * neighbors) + bias. The kernel is not flipped (correlation, not convolution).
     """
 
+    version = 2
     aliases = (
         "convolve", "convolution", "matrix", "kernel", "custom filter", "custom convolution", "filter", "laplacian",
         "edge enhance", "soften", "shadow filter", "3x3",
@@ -79,7 +80,22 @@ class Convolve3x3(Filter):
         ),
     ] = 0.0
     filter_alpha: Annotated[bool, Doc("Filter alpha like a color instead of keeping it.")] = False
+    width: Annotated[
+        float,
+        Slider(
+            0.0,
+            16.0,
+            unit="px",
+            minimum=0.0,
+            maximum=200.0,
+            doc="Distance of the neighbors, in whole pixels, at least one; 0 is one pixel at any size.",
+        ),
+    ] = 1.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    @classmethod
+    def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
+        return {"width": 0.0, **values}
 
     def weights(self) -> Kernel3x3:
         """The nine weights that are applied: preset, normalization and scale resolved."""
@@ -93,12 +109,14 @@ class Convolve3x3(Filter):
         return "image" if self.weights() == _IDENTITY and self.bias == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        step = space_pixels(self.width).step
         return draw(
             "convolve3x3",
             self.image,
             edge=self.edge,
-            overlap=1,
+            overlap=step,
             kernel=self.weights(),
+            spacing=step,
             bias=self.bias,
             filter_alpha=self.filter_alpha,
         )

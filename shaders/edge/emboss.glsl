@@ -4,14 +4,14 @@ const float emboss_gray = 0.18;  // mid-gray of scene-linear light
 
 float emboss_tone(vec4 image) { return display_tone(image); }
 
-float emboss_height(int x, int y) { return relief_at(pixel + ivec2(x, y)); }
+float emboss_height(ivec2 away) { return relief_at(pixel + away); }
 
-vec4 emboss(int kind, float direction, float elevation, float height) {
-    float falling = emboss_height(1, 1) - emboss_height(-1, -1), rising = emboss_height(1, -1) - emboss_height(-1, 1);
+vec4 emboss(int kind, float direction, float elevation, float height, int spacing) {
+    float falling = emboss_height(spacing * ivec2(1, 1)) - emboss_height(spacing * ivec2(-1, -1)), rising = emboss_height(spacing * ivec2(1, -1)) - emboss_height(spacing * ivec2(-1, 1));
     vec2 slope = vec2(
-        2.0 * (emboss_height(1, 0) - emboss_height(-1, 0)) + falling + rising,
-        2.0 * (emboss_height(0, 1) - emboss_height(0, -1)) + falling - rising
-    ) / 8.0;
+        2.0 * (emboss_height(spacing * ivec2(1, 0)) - emboss_height(spacing * ivec2(-1, 0))) + falling + rising,
+        2.0 * (emboss_height(spacing * ivec2(0, 1)) - emboss_height(spacing * ivec2(0, -1))) + falling - rising
+    ) / float(8 * spacing);
     vec3 normal = normalize(vec3(-height * slope, 1.0));
     vec3 light = vec3(cos(elevation) * vec2(cos(direction), -sin(direction)), sin(elevation));
     float shade = finite(max(dot(normal, light), 0.0) / light.z);
