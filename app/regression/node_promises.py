@@ -164,7 +164,8 @@ def _try_choices(renderer: Renderer, node: type[Node], _: str) -> Iterator[str]:
     pictures = make_pictures(node, (9, 7), np.random.default_rng(7), single=False)
     for value in node.values.values():
         for choice in value.choices[1:]:
-            for name, picture in render_node(renderer, node(**{value.name: choice}), pictures, (9, 7)).items():
+            subject = node().with_values(**{value.name: choice})
+            for name, picture in render_node(renderer, subject, pictures, (9, 7)).items():
                 if not np.isfinite(picture).all():
                     yield f"the output '{name}' has NaN or infinity with {value.name}={choice}"
 

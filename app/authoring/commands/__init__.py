@@ -26,8 +26,18 @@ from .linking import (
     ToggleCollapse,
     ToggleMute,
 )
-from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll
-from .values import DescribeControl, ExposeValue, HideControl, RenameControl, ResetNode, ResetValue, SetValue, SetValues
+from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll, SetReferenceHeight
+from .values import (
+    ConvertLength,
+    DescribeControl,
+    ExposeValue,
+    HideControl,
+    RenameControl,
+    ResetNode,
+    ResetValue,
+    SetValue,
+    SetValues,
+)
 from .viewing import AssignViewer, ReplaceDocument, ReplaceGraph
 
 __all__ = [
@@ -50,6 +60,7 @@ __all__ = [
     "BakeKeys",
     "Connect",
     "ConnectNodes",
+    "ConvertLength",
     "CutLinks",
     "CutSelection",
     "DeleteSelection",
@@ -100,6 +111,7 @@ __all__ = [
     "SetKey",
     "SetOutput",
     "SetPreroll",
+    "SetReferenceHeight",
     "SetValue",
     "SetValues",
     "SpliceChain",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from halation.nodes import ColorSettings, Size
+from halation.nodes import MAX_REFERENCE_HEIGHT, ColorSettings, Size
 
 from ...errors import GraphError
 from ...graph import Settings
@@ -72,6 +72,20 @@ class SetColorSettings(EditCommand[None]):
         working = color.working if self.working is None else self.working
         settings = replace(document.root.settings, color=ColorSettings(config, working))
         return _set(document, "Set color", settings, self.merge)
+
+
+@dataclass(frozen=True)
+class SetReferenceHeight(EditCommand[None]):
+    """Set the height at which numbers of lengths are pixels; None for pixels of the picture."""
+
+    height: int | None
+    merge: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        if self.height is not None and not 1 <= self.height <= MAX_REFERENCE_HEIGHT:
+            raise GraphError(f"a reference height of {self.height}: give 1 to {MAX_REFERENCE_HEIGHT}")
+        settings = replace(document.graph.settings, reference_height=self.height)
+        return Edited("Set reference height", None, replace(document.graph, settings=settings), merge=self.merge)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from msgspec import structs
 from ...errors import GraphError
 from ...graph import Control, Port, signature
 from ...graph.names import fresh_name
+from ...graph.unit_conversion import convert_length_unit
 from ..edits.elements import clean_text
 from ..edits.values import find_control, fit_color, reset_value
 from ..state.open_document import OpenDocument
@@ -49,6 +50,21 @@ class SetValues(EditCommand[None]):
             keys = add_key(document, port, fitted)
             graph = graph.animate(port, keys) if keys else graph.set(port, fitted)
         return Edited(self.label, None, graph, merge=self.merge)
+
+
+@dataclass(frozen=True)
+class ConvertLength(EditCommand[None]):
+    """Give a length in another unit, so that a picture of a height stays as it is."""
+
+    ports: tuple[Port, ...]
+    unit: str
+    height: int
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = document.graph
+        for port in self.ports:
+            graph = convert_length_unit(graph, port, self.unit, self.height)
+        return Edited(f"Set unit to {self.unit}", None, graph)
 
 
 @dataclass(frozen=True)

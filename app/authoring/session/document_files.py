@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from halation.nodes import REFERENCE_HEIGHT
+
 from ...document import load, loads, save
 from ...errors import UsageError
-from ...graph import Graph, Output, Port, signature
+from ...graph import Graph, Output, Port, Settings, signature
 from ...renderer.provenance.file_finder import load_graph_of_picture
 from ..commands.adding import DropFiles
 from ..commands.grouping import LinkGroup
@@ -29,8 +31,9 @@ _OUTPUT = Port("outputs", "image")
 
 
 def _make_blank_graph() -> Graph:
-    """What a new document holds: one output, and nothing that feeds it."""
-    return layout.pin_places(Graph(outputs={_OUTPUT.socket: Output()}))
+    """What a new document holds: one output that nothing feeds, and lengths that look the same at every size."""
+    settings = Settings(reference_height=REFERENCE_HEIGHT)
+    return layout.pin_places(Graph(outputs={_OUTPUT.socket: Output()}, settings=settings))
 
 
 class DocumentFiles:

@@ -15,7 +15,7 @@ from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Signature, Unknown, signature
 from ..fields.lights import describe_count
-from ..fields.numbers import SUFFIX, bar, format_number
+from ..fields.numbers import bar, format_number, unit_suffix
 from ..shared.entries import spell_out
 from .geometry import Rect
 
@@ -310,7 +310,7 @@ def _make_field_texts(value: Value, plain: Plain) -> tuple[FieldText, ...]:
     if value.type in ("vector", "matrix") and isinstance(plain, tuple):
         return tuple(FieldText(format_number(part, value), bar(part, value)) for part in plain)
     if value.type in ("float", "int") and isinstance(plain, int | float):
-        suffix = SUFFIX[value.unit]
+        suffix = unit_suffix(value.unit)
         return (
             FieldText(
                 f"{format_number(plain, value)} {suffix}" if suffix else format_number(plain, value), bar(plain, value)

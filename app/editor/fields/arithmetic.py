@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from halation.nodes import Unit
+from halation.nodes import Unit, read_reference
 
 from ...errors import UsageError
 
@@ -48,7 +48,7 @@ _WORDS: Mapping[str, str] = MappingProxyType(
 _FAULTS = (ZeroDivisionError, OverflowError)
 
 
-def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
+def evaluate(text: str, old: float = 0.0, unit: str | None = None) -> float:
     """Evaluate a text: `0.5+1`, `(2-3)*4**2`, `30deg`, `50%`; `+1`, `*2`, `/3` and `-=1` change `old`.
 
     A minus sign at the beginning makes a negative number. Nothing but arithmetic is understood.
@@ -76,7 +76,7 @@ def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
     return number
 
 
-def _read_tokens(text: str, unit: Unit | None) -> list[float | str]:
+def _read_tokens(text: str, unit: str | None) -> list[float | str]:
     tokens: list[float | str] = []
     for match in _TOKEN.finditer(text.rstrip()):
         number, word, operator, unknown_sign = match.groups()
@@ -86,8 +86,9 @@ def _read_tokens(text: str, unit: Unit | None) -> list[float | str]:
     return tokens
 
 
-def find_factor(word: str, unit: Unit | None) -> float:
-    """The factor of a unit after a number."""
+def find_factor(word: str, unit: str | None) -> float:
+    """The factor of a unit after a number. In a field of pixels at a height, px is that unit."""
+    unit = "px" if read_reference(unit) else unit
     if not word:
         return 1.0
     if word == "%":

@@ -13,7 +13,7 @@ from ..toolkit.fields import background
 from ..toolkit.places import Rect, place
 from ..toolkit.words import write
 from .fields import Edit, Fields
-from .numbers import SUFFIX, Drag, bar, clamp_number, drop_digit, edit_text, find_step, format_number
+from .numbers import Drag, bar, clamp_number, drop_digit, edit_text, find_step, format_number, unit_suffix
 from .text_entry import text_entry
 
 THRESHOLD = 3.0
@@ -59,7 +59,7 @@ def number_field(
         fields.pressed = ""
     current = edit.value if edit else value
     assert isinstance(current, int | float)
-    unit = SUFFIX[declaration.unit] if suffix is None else suffix
+    unit = unit_suffix(declaration.unit) if suffix is None else suffix
     _draw(fields, rect, current, declaration, unit, label, mixed and edit is None, hovered, active, plain)
     return edit
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from decimal import Decimal
 from types import MappingProxyType
 
-from halation.nodes import Unit, Value
+from halation.nodes import Value, read_reference
 
 from ...errors import UsageError
 from .arithmetic import evaluate
 
-SUFFIX: Mapping[Unit | None, str] = MappingProxyType(
+SUFFIX: Mapping[str | None, str] = MappingProxyType(
     {
         "px": "px",
         "height": "h",
@@ -29,7 +29,7 @@ SUFFIX: Mapping[Unit | None, str] = MappingProxyType(
 )
 """The suffix of a number, by unit."""
 
-MEANING: Mapping[Unit | None, str] = MappingProxyType(
+MEANING: Mapping[str | None, str] = MappingProxyType(
     {
         "px": "pixels at full size",
         "height": "fraction of the picture's height",
@@ -42,6 +42,19 @@ MEANING: Mapping[Unit | None, str] = MappingProxyType(
         "scene": "scene units",
     }
 )
+
+
+def unit_suffix(unit: str | None) -> str:
+    """The suffix of a number with a unit; that of pixels at a height is the unit itself: px@1080."""
+    return SUFFIX.get(unit, unit or "")
+
+
+def unit_meaning(unit: str | None) -> str:
+    """What a unit means, in words."""
+    if height := read_reference(unit):
+        return f"pixels of a picture that is {height} pixels high"
+    return MEANING.get(unit, "")
+
 
 RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
 """Frames per second."""
@@ -173,7 +186,7 @@ def describe_value(declaration: Value, default: str) -> str:
     """The tooltip of a value: description, unit, range and default."""
     lines = [declaration.doc] if declaration.doc else []
     if declaration.type in ("float", "int", "vector", "curve"):
-        meaning, limits = MEANING[declaration.unit], _limits(declaration)
+        meaning, limits = unit_meaning(declaration.unit), _limits(declaration)
         low, high = declaration.low, declaration.high
         soft = f"usually {low:g} to {high:g}" if math.isfinite(low) and math.isfinite(high) else ""
         facts = "; ".join(part for part in (meaning, soft, limits) if part)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from halation.nodes import Plain, Value
+from halation.nodes import REFERENCE_HEIGHT, Node, Plain, Value, is_length, name_reference
 
 from ...authoring.commands import ReplaceGraph, ResetValue, SetValue, SetValues
 from ...errors import GraphError, UsageError
@@ -41,7 +41,29 @@ def reset(session: Session, ports: Ports) -> None:
 
 def default_of(graph: Graph, port: Port) -> Plain:
     """The default of a value: its number in a new node."""
-    return signature(graph.node(port.node)).values[port.socket].default
+    return declare(graph, port, signature(graph.node(port.node)).values[port.socket]).default
+
+
+def declare(graph: Graph, port: Port, declaration: Value) -> Value:
+    """The declaration of a value in the unit that its number has in a graph."""
+    item = graph.nodes.get(port.node)
+    if not is_length(declaration) or not isinstance(item, Node) or port.socket not in item.values:
+        return declaration
+    return item.declaration(port.socket, graph.settings.reference_height)
+
+
+def list_other_units(graph: Graph, port: Port, declaration: Value) -> tuple[str, ...]:
+    """The units in which a length could be given instead; empty for other values."""
+    item = graph.nodes.get(port.node)
+    if not isinstance(item, Node) or port.socket not in item.values or not is_length(item.values[port.socket]):
+        return ()
+    reference = name_reference(graph.settings.reference_height or REFERENCE_HEIGHT)
+    return tuple(unit for unit in (reference, "px", "height") if unit != declaration.unit)
+
+
+def find_height(graph: Graph, shown: int) -> int:
+    """The height of the picture for which numbers are converted: that which is shown, else that of the canvas."""
+    return shown if shown > 1 else graph.settings.size[1] if graph.settings.size else REFERENCE_HEIGHT
 
 
 def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:

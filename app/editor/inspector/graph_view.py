@@ -24,6 +24,7 @@ from ...authoring.commands import (
     SetFrameRange,
     SetFrameRate,
     SetPreroll,
+    SetReferenceHeight,
 )
 from ...authoring.edits.element_id import NO_ELEMENT, ElementId
 from ...authoring.edits.elements import entry
@@ -41,6 +42,7 @@ from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
+from .applying import find_height
 from .color_rows import color_rows
 from .end_view import describe_binding, draw_text
 from .heading import draw_faults, draw_heading
@@ -81,6 +83,7 @@ class GraphView:
         # What the graph offers comes first. So the settings of the project, which are set once, are folded then.
         if not inside and rows.fold("Project", "project", is_open=not has_controls):
             self._size(rows)
+            self._reference_height(rows)
             self._time(rows)
             color_rows(rows, self._fields)
         self._ends(rows, "inputs")
@@ -163,6 +166,30 @@ class GraphView:
         if edit and isinstance(edit.value, tuple):
             wide, high = edit.value
             rows.act(lambda: session.apply(SetCanvasSize((int(wide), int(high)), merge=edit.merge)))
+
+    def _reference_height(self, rows: Rows) -> None:
+        """Draw the height at which numbers of lengths are pixels. Switching it on keeps the picture as it is."""
+        session = rows.context.session
+        reference = session.graph.settings.reference_height
+        doc = "Lengths are pixels of a picture of this height, so that the look is the same at every size."
+        rows.name("reference height", "lengths at", doc=doc, changed=reference is not None)
+        width = rows.field()
+        if reference is None:
+            if imgui.button("Pixels of the picture##reference height", (width, 0.0)):
+                height = find_height(session.graph, rows.context.viewer.picture[1])
+                rows.act(lambda: session.apply(SetReferenceHeight(height)))
+            rows.record("reference height")
+            tip("A larger picture has finer grain and thinner lines; click to make the look the same at every size")
+            return
+        width -= imgui.get_frame_height()
+        edit = number_field(self._fields, "reference height", reference, _SIDE, width, suffix="px high", plain=True)
+        rows.record("reference height")
+        imgui.same_line(0.0, 0.0)
+        if rows.icon(icons.ICON_FA_XMARK, "no reference height", "Pixels of the picture"):
+            rows.act(lambda: session.apply(SetReferenceHeight(None)))
+        if edit and isinstance(edit.value, int | float):
+            height, token = int(edit.value), edit.merge
+            rows.act(lambda: session.apply(SetReferenceHeight(height, merge=token)))
 
     def _time(self, rows: Rows) -> None:
         """Draw the frame range, the frame rate and the pre-roll."""

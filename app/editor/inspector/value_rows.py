@@ -4,25 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING
 
 from halation.nodes import Node, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.commands import Disconnect, ExposeValue, HideControl, RenameControl
+from ...authoring.commands import ConvertLength, Disconnect, ExposeValue, HideControl, RenameControl
 from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.values import can_animate, find_control
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
-from ..fields.numbers import describe_default, describe_value
+from ..fields.numbers import describe_default, describe_value, unit_meaning
 from ..fields.value_field import value_field
 from ..shared.render_facts import convention_words, first_words, use_of
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
-from .applying import Ports, apply, as_text, default_of, from_text, reset
+from .applying import (
+    Ports,
+    apply,
+    as_text,
+    declare,
+    default_of,
+    find_height,
+    from_text,
+    list_other_units,
+    reset,
+)
 from .color_rows import space_field
 from .file_field import FileField
 from .keying import WIDTH, Keying, spoken, value_now
@@ -52,6 +63,7 @@ class ValueRows:
         context, port = rows.context, ports[0]
         session, key = context.session, str(port)
         graph = session.graph
+        declaration = declare(graph, port, declaration)
         source = session.graph.links.get(port)
         moves = source is None and can_animate(session.graph, port)
         value = value_now(session, port)[0] if moves else graph.value(port)
@@ -245,6 +257,13 @@ class ValueRows:
             entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.apply(ExposeValue(port)))
         else:
             entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.apply(HideControl(control)))
+        units = list_other_units(session.graph, port, declaration) if source is None else ()
+        if units:
+            imgui.separator()
+        height = find_height(session.graph, context.viewer.picture[1])
+        for unit in units:
+            label = f"In {unit_meaning(unit).capitalize()} ({unit})"
+            entry(icons.ICON_FA_RULER, label, True, partial(session.apply, ConvertLength(ports, unit, height)))
         if source is None and can_animate(session.graph, port):
             self._keying.menu(rows, ports, as_text(value))
         if source is not None:

@@ -51,6 +51,8 @@ class PixelPicker(Protocol):
 
     picking: str
     """`node.value` that the next click on the picture sets; "" for none."""
+    picture: tuple[int, int]
+    """Size of the shown picture at full size."""
 
 
 class SnapshotSource(Protocol):
