@@ -351,7 +351,7 @@ def _resolve(path: Path) -> Path | None:
         return None
 
 
-def _make_node(kind: type[Node], values: Mapping[str, Plain], units: LengthUnits) -> Node:
+def _make_node(kind: type[Node], values: Mapping[str, Any], units: LengthUnits) -> Node:
     """A node. A length without a number has its default, converted to the unit that is chosen for it."""
     if not units:
         return kind(**values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, Protocol
+from typing import Any, Literal, Protocol, Self
 
 from .model import Port
 from .names import check_name, pick
@@ -40,3 +40,30 @@ def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> di
     place, new_place = f"{section}.{old}", f"{section}.{new}" if new else ""
     ui, extra = move_layout(graph.ui, place, new_place), move_keys(graph.extra, place, new_place)
     return {section: ends, "links": links, "ui": ui, "extra": extra}
+
+
+class EndEdits:
+    """The edits of a graph that rename and remove its inputs, outputs and controls."""
+
+    def remove_input(self, name: str) -> Self:
+        """A graph without an input and its links."""
+        return self._move_end("inputs", name)
+
+    def remove_output(self, name: str) -> Self:
+        """A graph without an output and its link."""
+        return self._move_end("outputs", name)
+
+    def remove_control(self, name: str) -> Self:
+        """A graph without a control; its value keeps its setting."""
+        return self._move_end("controls", name)
+
+    def rename_input(self, old: str, new: str) -> Self:
+        """A graph where an input has another name; links follow."""
+        return self._move_end("inputs", old, new)
+
+    def rename_output(self, old: str, new: str) -> Self:
+        """A graph where an output has another name; its link follows."""
+        return self._move_end("outputs", old, new)
+
+    def _move_end(self, section: EndSection, old: str, new: str | None = None) -> Self:
+        raise NotImplementedError

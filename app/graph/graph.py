@@ -15,7 +15,7 @@ from msgspec import structs
 from ..errors import GraphError
 from .animation import Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
-from .ends import EndSection, move_end
+from .ends import EndEdits, EndSection, move_end
 from .followed_types import find_field_outputs, find_type_fault
 from .length_units import choose_length_unit, resolve_unit
 from .method_arguments import check_method_arguments
@@ -67,7 +67,7 @@ Item = Node | Group | Unknown
 
 @check_method_arguments
 @dataclass(frozen=True)
-class Graph(Wired[Item]):
+class Graph(Wired[Item], EndEdits):
     """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
 
     `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps unknown keys of the file, by the JSON
@@ -312,26 +312,6 @@ class Graph(Wired[Item]):
         check_name(name, "control", self.controls)
         self.declaration(control.target)
         return self._with(controls={**self.controls, name: control})
-
-    def remove_input(self, name: str) -> Self:
-        """A graph without an input and its links."""
-        return self._move_end("inputs", name)
-
-    def remove_output(self, name: str) -> Self:
-        """A graph without an output and its link."""
-        return self._move_end("outputs", name)
-
-    def remove_control(self, name: str) -> Self:
-        """A graph without a control; its value keeps its setting."""
-        return self._move_end("controls", name)
-
-    def rename_input(self, old: str, new: str) -> Self:
-        """A graph where an input has another name; links follow."""
-        return self._move_end("inputs", old, new)
-
-    def rename_output(self, old: str, new: str) -> Self:
-        """A graph where an output has another name; its link follows."""
-        return self._move_end("outputs", old, new)
 
     def rename_control(self, old: str, new: str) -> Self:
         """A graph where a control has another name; expressions follow."""

@@ -17,7 +17,7 @@ from ...authoring.edits.values import can_animate, find_control
 from ...graph import INPUTS, Graph, Port, signature
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
-from ..fields.numbers import describe_default, describe_value, unit_meaning
+from ..fields.numbers import describe_default, describe_value
 from ..fields.value_field import value_field
 from ..shared.render_facts import convention_words, first_words, use_of
 from ..theme.palette import RGB
@@ -262,8 +262,9 @@ class ValueRows:
             imgui.separator()
         height = find_height(session.graph, context.viewer.picture[1])
         for unit in units:
-            label = f"In {unit_meaning(unit).capitalize()} ({unit})"
-            entry(icons.ICON_FA_RULER, label, True, partial(session.apply, ConvertLength(ports, unit, height)))
+            entry(
+                icons.ICON_FA_RULER, f"Unit: {unit}", True, partial(session.apply, ConvertLength(ports, unit, height))
+            )
         if source is None and can_animate(session.graph, port):
             self._keying.menu(rows, ports, as_text(value))
         if source is not None:
