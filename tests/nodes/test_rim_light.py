@@ -91,3 +91,20 @@ def test_masks_end_at_nothing_and_at_all(run):
     np.testing.assert_allclose(half - 1.0, 0.5 * (whole - 1.0), atol=1e-6)
     for mask, expected in ((-1.0, none), (3.0, whole), (np.nan, none)):
         np.testing.assert_array_equal(run(RimLight(), inputs | {"mask": np.full((40, 60), mask)}), expected)
+
+
+def test_broken_pixels_become_finite_and_stay_alone(run):
+    """A pixel that is not a number is black, one that is infinite is the largest half, and light ends there too."""
+    picture = np.full((40, 60, 4), 0.5, np.float32)
+    picture[20, 30], picture[20, 31, 0], picture[20, 32, 3] = np.nan, np.inf, np.nan
+    inputs = {"normal": BALL["normal"], "camera": CAMERA}
+    found, sound = (run(RimLight(), {"image": image, **inputs}) for image in (picture, np.full_like(picture, 0.5)))
+    assert np.isfinite(found).all()
+    np.testing.assert_array_equal(found[20, 30], 0.0)
+    assert found[20, 31, 0] == 65504.0
+    np.testing.assert_array_equal(found[20, 32], (0.5, 0.5, 0.5, 0.0))  # without cover no light is added
+    changed = (found != sound).any(2)
+    assert [*zip(*np.nonzero(changed), strict=True)] == [(20, 30), (20, 31), (20, 32)]
+    suns = np.full((40, 60, 4), (3e38, 1.0, 1.0, 1.0), np.float32)
+    bright = run(RimLight(color=(3e38, 1.0, 1.0, 1.0), intensity=4.0), {"image": suns, **inputs})
+    assert np.isfinite(bright).all() and (bright[..., 0] == 65504.0).any()

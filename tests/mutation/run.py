@@ -1,0 +1,178 @@
+"""Puts faults into a copy of the tree, one at a time, and says which of them no test notices.
+
+    .venv/bin/python tests/mutation/run.py --seed 7 --count 20                  # 20 faults anywhere
+    .venv/bin/python tests/mutation/run.py --seed 7 --count 20 renderer editor  # 20 faults in each of these rooms
+    .venv/bin/python tests/mutation/run.py --at app/media/goldens.py:105        # all faults of one line
+
+The same seed draws the same faults of the same tree. Each is shown only to the tests that `--changed` would run for its
+file, the nearest first, so a fault that is noticed far away counts as a survivor. Ends with 1 if a room's share of
+noticed faults is below its floor in `floors.json`; a better share of at least fifty faults raises it with
+`HALATION_RENEW=1`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).parents[1]))
+
+from changes import TESTS, covers
+from mutation.mutants import Mutant, list_mutants
+from selection import LIST
+from source_trees import ROOT, copy_tree, run_in_tree
+
+FLOORS = Path(__file__).with_name("floors.json")
+"""Room -> percent of faults that must be noticed: the least of what was measured on several seeds."""
+
+LIMIT = 600.0
+"""Seconds after which a fault counts as noticed: it may loop for ever."""
+
+ENOUGH = 50
+"""Faults of a room from which on a better share raises its floor: of fewer, luck decides."""
+
+FILES = 12
+"""The most test files that see a fault, the nearest ones: what is basic is imported by all."""
+
+SLOW_ROOMS = ("gui", "hostile", "law", "mutation")
+"""Rooms of tests that no fault is shown to: each takes minutes, or reads the tree itself."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A fault and what the tests said."""
+
+    mutant: Mutant
+    room: str
+    was_noticed: bool
+    words: str
+
+
+def room_of(path: Path) -> str:
+    """The room of a file, as scores are counted: a folder of `app`, the nodes, or the shaders."""
+    top, room, *_ = path.parts
+    return room.removesuffix(".py") if top == "app" else top
+
+
+def list_files(rooms: Iterable[str] = ()) -> list[Path]:
+    """The files of those rooms, or of all."""
+    files = [*(ROOT / "app").rglob("*.py"), *(ROOT / "nodes").rglob("*.py"), *(ROOT / "shaders").rglob("*.glsl")]
+    paths = sorted(path.relative_to(ROOT) for path in files)
+    return [path for path in paths if not (chosen := {*rooms}) or room_of(path) in chosen]
+
+
+def draw_mutants(seed: int, count: int, rooms: tuple[str, ...]) -> list[Mutant]:
+    """That many faults anywhere, or in each of those rooms; every fault is as likely as any other."""
+    chance, sample = random.Random(seed), list[Mutant]()
+    for room in rooms or ("",):
+        files = list_files((room,) if room else ())
+        mutants = [mutant for path in files for mutant in list_mutants(path, (ROOT / path).read_text("utf-8"))]
+        sample += chance.sample(mutants, min(count, len(mutants)))
+    return sample
+
+
+def list_line_mutants(place: str) -> list[Mutant]:
+    """All faults of one line, `app/media/goldens.py:105`."""
+    name, _, number = place.rpartition(":")
+    source = (ROOT / name).read_text("utf-8")
+    mutants = list_mutants(Path(name), source)
+    return [mutant for mutant in mutants if source.count("\n", 0, mutant.start) + 1 == int(number)]
+
+
+def list_tests(path: Path) -> list[str]:
+    """The test files that cover a file, the nearest first: of its own name, of its room, then all others."""
+    tests = [test for test in sorted(TESTS.rglob("test_*.py")) if covers(test, {ROOT / path})]
+    tests = [test for test in tests if test.relative_to(TESTS).parts[0] not in SLOW_ROOMS]
+
+    def measure_distance(test: Path) -> tuple[bool, bool, bool, bool]:
+        name, folder = test.stem.removeprefix("test_"), test.parent.name
+        is_twin = name.rstrip("s") == path.stem.rstrip("s")
+        return not is_twin, path.stem not in test.read_text("utf-8"), folder not in path.parts, folder == "nodes"
+
+    return [str(test.relative_to(ROOT)) for test in sorted(tests, key=measure_distance)][:FILES]
+
+
+def try_mutant(tree: Path, mutant: Mutant) -> Trial:
+    """Show a fault to its tests, and take it out of the tree again."""
+    room, tests = room_of(mutant.path), list_tests(mutant.path)
+    if not tests:
+        return Trial(mutant, room, False, "no test covers the file")
+    path = tree / mutant.path
+    source = path.read_text("utf-8")
+    path.write_text(mutant.apply(source), "utf-8")
+    slow = [f"--deselect={name}" for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
+    words = ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no"]
+    try:
+        # Quick tests first: most faults are noticed by one of them.
+        for selection in (slow, []) if slow else ([],):
+            ended = run_in_tree(tree, *words, *selection, *tests, timeout=LIMIT)
+            if ended.returncode not in (0, 5):  # 5: all tests of the files are slow
+                lines = [line for line in ended.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
+                return Trial(mutant, room, True, " ".join(lines[:1]) or f"exit code {ended.returncode}")
+        return Trial(mutant, room, False, f"{len(tests)} files of tests pass")
+    except subprocess.TimeoutExpired:
+        return Trial(mutant, room, True, "no end")
+    finally:
+        path.write_text(source, "utf-8")
+
+
+def rate(trials: Iterable[Trial]) -> dict[str, tuple[int, int]]:
+    """Faults that were noticed, and all faults, by room."""
+    scores = defaultdict[str, list[int]](lambda: [0, 0])
+    for trial in trials:
+        scores[trial.room][0] += trial.was_noticed
+        scores[trial.room][1] += 1
+    return {room: (noticed, count) for room, (noticed, count) in sorted(scores.items())}
+
+
+def raise_floors(floors: dict[str, float], scores: dict[str, tuple[int, int]]) -> dict[str, float]:
+    """The floors with better shares of rooms where enough faults were tried."""
+    shares = {room: 100.0 * noticed / count for room, (noticed, count) in scores.items() if count >= ENOUGH}
+    return {**floors, **{room: max(round(share, 1), floors.get(room, 0.0)) for room, share in shares.items()}}
+
+
+def read_options() -> argparse.Namespace:
+    """The command line."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("rooms", nargs="*", help="folders of app, `nodes` or `shaders`; by default everything")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--count", type=int, default=20, help="faults, of each room that is named")
+    parser.add_argument("--at", metavar="FILE:LINE", action="append", default=[], help="all faults of a line")
+    return parser.parse_args()
+
+
+def main() -> int:
+    """Try faults, list survivors, compare with the floors."""
+    options = read_options()
+    sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
+    mutants = [mutant for place in options.at for mutant in list_line_mutants(place)]
+    mutants = mutants if options.at else draw_mutants(options.seed, options.count, tuple(options.rooms))
+    trials: list[Trial] = []
+    with tempfile.TemporaryDirectory() as folder:
+        tree = copy_tree(Path(folder) / "tree")
+        for mutant in mutants:
+            trials.append(trial := try_mutant(tree, mutant))
+            text = mutant.describe((ROOT / mutant.path).read_text("utf-8"))
+            print("noticed " if trial.was_noticed else "SURVIVED", text, f"({trial.words})")
+    scores, floors = rate(trials), json.loads(FLOORS.read_text("utf-8"))
+    for room, (noticed, count) in scores.items():
+        print(f"{room:<16} {noticed:>3} of {count:<3} {100.0 * noticed / count:5.1f} %")
+    if os.environ.get("HALATION_RENEW"):
+        FLOORS.write_text(json.dumps(raise_floors(floors, scores), indent=1, sort_keys=True) + "\n", "utf-8")
+    below = [room for room, (noticed, count) in scores.items() if 100.0 * noticed / count < floors.get(room, 0.0)]
+    if below and not options.at:
+        print("below their floors:", *below)
+    return int(bool(below) and not options.at)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,113 @@
+"""Faults are put where they change what runs, the same seed draws the same ones, and the tests of a file see them."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+from import_graph import ROOT
+from mutation import run
+from mutation.mutants import Mutant, list_mutants
+from mutation.run import draw_mutants, list_files, list_tests, raise_floors, rate, room_of, try_mutant
+
+PYTHON = '''"""Text with 1 + 1."""
+__all__ = ["size"]
+
+def size(count: int | None = 3, *, é: float = 0.5) -> int:  # 1 < 2
+    if count is None and not é:
+        return min(count, 2)
+    print(f"{count:03d}")
+    return "%d" % count if count <= 2 else place(é, count // 7)
+'''
+
+GLSL = """// a + b
+#define TWICE 2.0
+layout(location = 0) out vec4 color;
+float f(float x) { return max(x - 0.5, 0.0) * 3.0; } /* 1.0 */
+"""
+
+
+def change(path: str, source: str) -> list[tuple[str, str]]:
+    """What the mutants of a text take away, and what they put there."""
+    return [(source[mutant.start : mutant.end], mutant.text) for mutant in list_mutants(Path(path), source)]
+
+
+def test_python_is_changed_where_it_runs() -> None:
+    assert change("a.py", PYTHON) == [
+        ("3", "4"),
+        ("0.5", "1.0"),
+        ("count is None and not é", "not (count is None and not é)"),
+        ("is", "is not"),
+        ("and", "or"),
+        ("not ", ""),
+        ("min", "max"),
+        ("2", "3"),
+        ('print(f"{count:03d}")', "None"),
+        ("count <= 2", "(not (count <= 2))"),
+        ("<=", "<"),
+        ("2", "3"),
+        ("é, count // 7", "count // 7, é"),
+        ("//", "*"),
+        ("7", "8"),
+    ]
+
+
+def test_glsl_is_changed_where_it_runs() -> None:
+    assert change("a.glsl", GLSL) == [
+        ("max", "min"),
+        ("-", "+"),
+        ("0.5", "1.0"),
+        ("0.0", "1.0"),
+        ("*", "/"),
+        ("3.0", "6.0"),
+    ]
+
+
+def test_every_fault_of_the_tree_can_be_read() -> None:
+    for path in list_files(("graph", "media"))[::7]:
+        source = (ROOT / path).read_text("utf-8")
+        for mutant in list_mutants(path, source):
+            ast.parse(mutant.apply(source))
+            assert mutant.apply(source) != source
+
+
+def test_the_same_seed_draws_the_same_faults() -> None:
+    rooms = ("document", "color")
+    sample = draw_mutants(3, 5, rooms)
+    assert sample == draw_mutants(3, 5, rooms) != draw_mutants(4, 5, rooms)
+    assert [room_of(mutant.path) for mutant in sample] == ["document"] * 5 + ["color"] * 5
+
+
+def test_the_nearest_tests_come_first() -> None:
+    assert list_tests(Path("app/graph/walk.py"))[0] == "tests/graph/test_walk.py"
+    assert list_tests(Path("shaders/geometry/curvature.glsl"))[0] == "tests/nodes/test_curvature.py"
+
+
+@pytest.mark.parametrize(("code", "was_noticed"), [(1, True), (0, False)])
+def test_a_fault_is_seen_by_the_tests_and_taken_out_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, code: int, was_noticed: bool
+) -> None:
+    path, seen = Path("app/graph/walk.py"), list[str]()
+    (tmp_path / path).parent.mkdir(parents=True)
+    (tmp_path / path).write_text("a < b")
+
+    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
+        seen.append((tree / path).read_text())
+        return subprocess.CompletedProcess(words, code, "FAILED a.py::test\n" if code else "", "")
+
+    monkeypatch.setattr(run, "run_in_tree", play)
+    trial = try_mutant(tmp_path, Mutant(path, 2, 3, "<="))
+    assert {*seen} == {"a <= b"} and (tmp_path / path).read_text() == "a < b"
+    assert trial.was_noticed is was_noticed and ("FAILED a.py::test" in trial.words) is was_noticed
+    assert rate([trial]) == {"graph": (int(was_noticed), 1)}
+
+
+def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
+    floors = {"graph": 90.0, "color": 80.0, "media": 85.0}
+    scores = {"graph": (40, 50), "color": (45, 50), "media": (9, 9), "cli": (49, 50)}
+    assert raise_floors(floors, scores) == {"graph": 90.0, "color": 90.0, "media": 85.0, "cli": 98.0}
+    kept = json.loads(run.FLOORS.read_text("utf-8"))
+    assert {*kept} <= {room_of(path) for path in list_files()} and all(0.0 < floor <= 100.0 for floor in kept.values())
