@@ -17,6 +17,11 @@ _INTRODUCTION = """\
 {count} nodes in {menus} menus. A value has a default, a range that its slider covers, and limits that typing cannot
 leave. Units: `px` pixels at full size, `height` a fraction of the height of the picture, `deg` degrees, `EV`
 photographic stops, `ratio` a factor, `count` a whole number of things, `s` seconds, `scene` the units of the scene.
+
+Every node that changes its input `image` at the same size has a *mask*: an input `mask` says where the change is seen,
+from 0 to 1, and without a link it is seen everywhere. The value `mix` (0 to 1) says how much of it is seen, and
+`invert_mask` exchanges inside and outside. The mask applies to the first output. Nodes with a mask of their own say
+what it does. Where an output is *Image, or Field as image is*, it is a Field if a Field is linked to `image`.
 """
 
 
@@ -65,15 +70,16 @@ def _node_section(node: type[Node]) -> Iterator[str]:
         yield _escape_paragraph(paragraph)
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("input", node.inputs), ("output", outputs)):
-        noted = {name: socket for name, socket in sockets.items() if socket_note(socket)}
+        noted = {name: socket for name, socket in sockets.items() if socket_note(socket) and not socket.folded}
         if noted:
             rows = [
                 (f"`{name}`", socket_type(socket), _escape_markdown(socket_note(socket)))
                 for name, socket in noted.items()
             ]
             yield _table((title, "type", ""), rows)
-    if node.values:
-        yield _table(("value", "type", "default", "range", "limits", "unit", ""), map(_value_row, node.values.values()))
+    values = [value for value in node.values.values() if not value.folded]
+    if values:
+        yield _table(("value", "type", "default", "range", "limits", "unit", ""), map(_value_row, values))
 
 
 def _value_row(value: Value) -> tuple[str, ...]:

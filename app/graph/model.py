@@ -142,6 +142,11 @@ class Signature(Struct, frozen=True):
     pointwise: bool = False
     anything: bool = False
 
+    @property
+    def unfolded_inputs(self) -> Mapping[str, Socket]:
+        """The inputs without the mask that many nodes have."""
+        return {name: socket for name, socket in self.inputs.items() if not socket.folded}
+
 
 @lru_cache(1024)
 def class_signature(kind: type[Node]) -> Signature:

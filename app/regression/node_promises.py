@@ -207,7 +207,7 @@ def make_pictures(
         if socket.single
         else rng.gamma(0.7, 1.0, (height, width, socket.channels)).astype(np.float32)
         for name, socket in node.inputs.items()
-        if not socket.kind.is_planned and (single or not socket.single)
+        if not socket.kind.is_planned and not socket.folded and (single or not socket.single)
     }
 
 

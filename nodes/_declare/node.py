@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 from .camera import CameraModel
 from .draw import Draw, Drawn
 from .lengths import LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
+from .masking import is_maskable, list_mask_values, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value
@@ -55,6 +56,9 @@ class Node:
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     aliases: ClassVar[tuple[str, ...]] = ()
     """Names that other programs give such a node, in lower case: the search finds it by them."""
+    has_mask: ClassVar[bool] = False
+    """True if it has the input `mask` and the values `mix` and `invert_mask`, as all have that change `image` at its
+    size. The mask is applied to the first output, after the node."""
     traits: ClassVar[tuple[Trait, ...]] = ()
     """What rules and tests need to know besides sockets and values."""
     proxy_notes: ClassVar[tuple[ProxyNote, ...]] = ()
@@ -82,6 +86,10 @@ class Node:
             cls.shader, cls.title = f"{namespace}/{cls.shader}", f"{cls.title} ({namespace.replace('_', ' ')})"
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, OutputSocket)}
+        own_names = tuple(body)
+        cls.has_mask = is_maskable(cls, cls.inputs, outputs, Node)
+        if cls.has_mask:
+            cls._add_mask()
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)
         if not outputs:
             implied = OutputSocket()
@@ -94,10 +102,20 @@ class Node:
         hints = get_type_hints(cls, include_extras=True)
         cls.values = {
             field.name: read_value(field.name, hints[field.name], field.default)
-            for field in sorted(_fields(cls), key=lambda field: field.name not in body)
+            for field in sorted(_fields(cls), key=lambda field: field.name not in own_names)
             if field.name != "length_units"
         }
-        cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
+        cls.order = tuple(name for name in own_names if name in cls.inputs or name in cls.values)
+
+    @classmethod
+    def _add_mask(cls) -> None:
+        """Declare the input and the values of a mask, as if the class body had them."""
+        cls.inputs = {**cls.inputs, "mask": make_mask()}
+        additions = list_mask_values()
+        annotations = {name: annotation for name, (annotation, _) in additions.items()}
+        cls.__annotations__ = vars(cls).get("__annotations__", {}) | annotations
+        for name, (_, default) in additions.items():
+            setattr(cls, name, default)
 
     def setting(self, name: str) -> Any:
         """What the value of this name is set to."""

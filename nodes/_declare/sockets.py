@@ -26,6 +26,8 @@ class Socket:
     doc: str = dataclasses.field(default="", kw_only=True)
     own_size: bool = dataclasses.field(default=False, kw_only=True)
     """True if a picture keeps its size; pictures of other inputs are scaled to the size of the first one."""
+    folded: bool = dataclasses.field(default=False, kw_only=True)
+    """True for the mask that many nodes have: interfaces show it only where it is used."""
     name: str = dataclasses.field(default="", init=False, compare=False)
 
     def __set_name__(self, owner: type, name: str) -> None:

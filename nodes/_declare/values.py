@@ -47,6 +47,10 @@ Holds = Literal["picture", "render", "table", "scene"]
 """The content of a file: pixels, layers of a render, a color table (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
 
 
+class Folded(Struct, frozen=True):
+    """The value belongs to the mask that many nodes have: interfaces show it only where it is used."""
+
+
 class File(Struct, frozen=True):
     """The value is the path of a file. `layer` names the value that chooses a layer of it."""
 
@@ -164,6 +168,8 @@ class Value(Struct, frozen=True):
     """The value that says of which cryptomatte it lists names."""
     space: bool = False
     """True for the name of a color space."""
+    folded: bool = False
+    """True if it belongs to the mask that many nodes have: interfaces show it only where it is used."""
 
     @property
     def glsl(self) -> str | None:
@@ -212,6 +218,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, OfLayer):
             facts |= {"file": note.path, "role": note.role}
+        elif isinstance(note, Folded):
+            facts["folded"] = True
         elif isinstance(note, OfSpace):
             facts["space"] = True
         elif isinstance(note, Picks):

@@ -22,7 +22,7 @@ def list_alike(graph: Graph, source_id: str, target_id: str) -> dict[Port, Port]
     if source_id not in graph.nodes or target_id not in graph.nodes:
         return {}
     outputs = signature(graph.nodes[source_id]).outputs
-    inputs = [Port(target_id, name) for name in signature(graph.nodes[target_id]).inputs if name in outputs]
+    inputs = [Port(target_id, name) for name in signature(graph.nodes[target_id]).unfolded_inputs if name in outputs]
     pairs = {port: Port(source_id, port.socket) for port in inputs if port not in graph.links}
     return {target: source for target, source in pairs.items() if why_not_linkable(graph, source, target) is None}
 
@@ -61,7 +61,8 @@ def _estimate_size(graph: Graph, element: ElementId) -> tuple[float, float]:
     if element not in graph.nodes or entry(graph, element).get("collapsed") is True:
         return width, height
     face = signature(graph.nodes[element])
-    rows = max(len(face.inputs), len(face.outputs)) + min(len(face.values), _MOST_FIELDS)
+    fields = [value for value in face.values.values() if not value.folded]
+    rows = max(len(face.unfolded_inputs), len(face.outputs)) + min(len(fields), _MOST_FIELDS)
     return width, _HEADER + rows * _ROW + _PICTURE
 
 
@@ -83,7 +84,7 @@ def _feed(graph: Graph, element: ElementId, id: str) -> Graph:
 
 def _find_free_input(graph: Graph, source: Port, id: str) -> Port | None:
     """The first input that `source` fits and nothing feeds; those that need a link come first."""
-    inputs = signature(graph.nodes[id]).inputs
+    inputs = signature(graph.nodes[id]).unfolded_inputs
     ports = sorted((Port(id, name) for name in inputs), key=lambda port: inputs[port.socket].optional)
     free = (port for port in ports if port not in graph.links)
     return next((port for port in free if why_not_linkable(graph, source, port) is None), None)

@@ -23,7 +23,7 @@ def element_size(graph: Graph, element: ElementId, measured: Sizes | None = None
     if element not in graph.nodes or facts.get("collapsed") is True:
         return WIDTH, HEADER
     face = signature(graph.nodes[element])
-    return WIDTH, HEADER + ROW * max(len(face.inputs) + len(face.outputs), 1)
+    return WIDTH, HEADER + ROW * max(len(face.unfolded_inputs) + len(face.outputs), 1)
 
 
 def _number(item: object, default: float) -> float:

@@ -40,13 +40,20 @@ def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Po
 
     Raises GraphError.
     """
-    names = signature(graph.node(id)).inputs
+    names = signature(graph.node(id)).unfolded_inputs
     ports = [port for port in list_targets(graph.node(id), id) if values or port.socket in names]
-    free = [port for port in ports if port not in graph.links]
+    free = [port for port in ports if port not in graph.links and not _is_folded(graph, port)]
     fitting = [port for port in (*free, *ports) if why_not_linkable(graph, source, port) is None]
     if not fitting:
         raise GraphError(f"'{source}' fits no input of node '{id}'{_explain_refusal(graph, source, ports)}")
     return fitting[0]
+
+
+def _is_folded(graph: Graph, port: Port) -> bool:
+    """True for a port of the mask that many nodes have, which is linked only where the user asks for it."""
+    face = signature(graph.node(port.node))
+    item = face.inputs.get(port.socket) or face.values.get(port.socket)
+    return item is not None and item.folded
 
 
 def first_source(graph: Graph, id: str, target: Port) -> Port:
@@ -182,7 +189,7 @@ def move_link(graph: Graph, old: Port, new: Port) -> Graph:
 
 def swap_inputs(graph: Graph, id: str) -> Graph:
     """A graph where the sources of a node's first two inputs changed places."""
-    names = tuple(signature(graph.node(id)).inputs)[:2]
+    names = tuple(signature(graph.node(id)).unfolded_inputs)[:2]
     ports = [Port(id, name) for name in names]
     sources = [graph.links.get(port) for port in ports]
     if len(ports) < 2 or sources == [None, None]:

@@ -21,7 +21,8 @@ from ..library import Library
 from ..request import Request
 from . import constants
 from .graph_at_frames import GraphAtFrames
-from .node_lowering import LoweringContext, NodeLowering, takes_field
+from .node_inputs import takes_field
+from .node_lowering import LoweringContext, NodeLowering
 from .pictures import PictureBuilder
 from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey, WatchedProvider, field_port
 

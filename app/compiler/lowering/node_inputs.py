@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from halation.nodes import ColorChange, Node, Render, Scene, Size
+from halation.nodes import CameraModel, ColorChange, Kind, Node, Render, Scene, Size, Socket
 from msgspec import Struct, field
 
+from ...graph import Port
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ..ir import Operand, PictureShape, Ref
+from ..ir import Operand, PictureShape, PlannedObject, Ref
 
 
 class NodeInputs(Struct, frozen=True):
@@ -51,3 +52,17 @@ class DrawnPicture(Struct, frozen=True):
     @property
     def size(self) -> Size:
         return self.shape.size
+
+
+def takes_field(socket: Socket) -> bool:
+    """True for a socket that reads the Field of an output that carries both an Image and a Field."""
+    return socket.kind in (Kind.FIELD, Kind.VECTOR)
+
+
+def find_cameras(inputs: NodeInputs) -> dict[Port, CameraModel]:
+    """The cameras that are linked to the inputs of a node."""
+    return {
+        Port(inputs.path, name): operand.content
+        for name in inputs.linked
+        if isinstance(operand := inputs.inputs[name], PlannedObject) and isinstance(operand.content, CameraModel)
+    }

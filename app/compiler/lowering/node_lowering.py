@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from halation.nodes import (
-    CameraModel,
     Field,
     Filter,
     Kind,
@@ -30,11 +29,11 @@ from ...graph import Graph, Port
 from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
 from ..library import Library
 from ..request import Request
-from . import constants
+from . import constants, masks
 from .draws import Recorder, find_choices
 from .expand import FlatGraph, find_stand_in
 from .graph_at_frames import GraphAtFrames
-from .node_inputs import DrawnPicture, NodeInputs
+from .node_inputs import DrawnPicture, NodeInputs, find_cameras, takes_field
 from .pictures import PictureBuilder
 from .steps import LoweringStep, StepKey, field_port
 
@@ -91,7 +90,7 @@ class NodeLowering:
         constants.check_values(path, node)
         inputs = self._collect_inputs(path, frame, node, operand_at)
         if frame == context.frame:
-            step.cameras = _find_cameras(inputs)
+            step.cameras = find_cameras(inputs)
         offset = frame - context.frame
         for name, operand in self._lower_outputs(inputs, step).items():
             step.results[Port(path, name), offset] = operand
@@ -124,15 +123,21 @@ class NodeLowering:
                 for name, operand in passed_through.items()
             }
         self._fit_all(inputs, size)
+        before = inputs.inputs.get(masks.IMAGE)
         reference = self._context.flat.find_reference_height(path)
         height = self._choose_height(node, reference, size, step)
         scaled_node = node.to_working_units(self._context.request.scale, height, reference)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
-            return self._lower_pointwise(inputs, scaled_node, size, step)
-        assert isinstance(scaled_node, Filter)
-        return self._lower_filter(inputs, scaled_node, size, step)
+            outputs = self._lower_pointwise(inputs, scaled_node, size, step)
+        else:
+            assert isinstance(scaled_node, Filter)
+            outputs = self._lower_filter(inputs, scaled_node, size, step)
+        if before is not None and masks.is_masked(inputs):
+            first = next(iter(outputs))
+            outputs[first] = masks.add_mask(self._builder, self._pictures, inputs, before, outputs[first])
+        return outputs
 
     # --- what a node reads -----------------------------------------------------------------------------------------
 
@@ -209,7 +214,8 @@ class NodeLowering:
                 name: inputs.inputs[source] if source else constants.make_empty_constant(node.outputs[name].socket)
                 for name, source in sources.items()
             }
-        neutral_input = None if inputs.wires or len(node.outputs) != 1 else node.identity()
+        has_work = bool(inputs.wires) or len(node.outputs) != 1
+        neutral_input = None if has_work else masks.IMAGE if masks.hides_node(node) else node.identity()
         return dict.fromkeys(node.outputs, inputs.inputs[neutral_input]) if neutral_input else None
 
     def _find_size(self, inputs: NodeInputs) -> Size:
@@ -384,17 +390,3 @@ class NodeLowering:
     def choose_missing(self, policy: Missing, frame: int) -> Missing:
         """What replaces a missing file. A node may read frames before the first or after the last: these are held."""
         return "hold" if policy == "error" and frame != self._context.frame else policy
-
-
-def takes_field(socket: Socket) -> bool:
-    """True for a socket that reads the Field of an output that carries both an Image and a Field."""
-    return socket.kind in (Kind.FIELD, Kind.VECTOR)
-
-
-def _find_cameras(inputs: NodeInputs) -> dict[Port, CameraModel]:
-    """The cameras that are linked to the inputs of a node."""
-    return {
-        Port(inputs.path, name): operand.content
-        for name in inputs.linked
-        if isinstance(operand := inputs.inputs[name], PlannedObject) and isinstance(operand.content, CameraModel)
-    }

@@ -167,7 +167,9 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
             collapsed=True,
         )
 
-    rows = _make_socket_rows(input_pins, output_pins, node_signature, facts)
+    folded_pins = [pin for pin in input_pins if _is_folded(pin, node_signature)]
+    row_pins = [pin for pin in input_pins if pin not in folded_pins]
+    rows = _make_socket_rows(row_pins, output_pins, node_signature, facts)
     y = HEADER + PAD / 2 + ROW * len(rows)
     values = _make_value_rows(id, item, graph, facts, node_signature.values)
     visible_rows = values if facts.expanded else _choose_rows(values)
@@ -187,7 +189,7 @@ def make_node_layout(id: str, item: Item, graph: Graph, facts: NodeFacts) -> Nod
         y,
         *heading,
         tuple(rows),
-        {row.left.name: row.left for row in rows if row.left},
+        {row.left.name: row.left for row in rows if row.left} | _place_in_header(folded_pins),
         {row.right.name: row.right for row in rows if row.right},
         picture,
         foot,
@@ -233,6 +235,16 @@ def _list_pins(node_signature: Signature, facts: NodeFacts) -> tuple[list[Pin], 
     )
 
 
+def _is_folded(pin: Pin, node_signature: Signature) -> bool:
+    socket = node_signature.inputs.get(pin.name)
+    return socket is not None and socket.folded
+
+
+def _place_in_header(pins: list[Pin]) -> dict[str, Pin]:
+    """The pin of the mask beside the title, so that it takes no row."""
+    return {pin.name: Pin(pin.name, pin.kind, 0.0, HEADER / 2, True) for pin in pins}
+
+
 def _make_socket_rows(
     inputs: list[Pin], outputs: list[Pin], node_signature: Signature, facts: NodeFacts
 ) -> list[NodeRow]:
@@ -256,9 +268,11 @@ def _move_row(row: NodeRow, y: float) -> NodeRow:
 def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values: Mapping[str, Value]) -> list[NodeRow]:
     rows: list[NodeRow] = []
     for name, value in values.items():
+        plain = item.setting(name) if isinstance(item, Node) else graph.value(Port(id, name))
+        if value.folded and plain == value.default and name not in facts.linked_ins:
+            continue
         kind = find_value_kind(value) if name in facts.linked_ins or _is_wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
-        plain = item.setting(name) if isinstance(item, Node) else graph.value(Port(id, name))
         linked, label = name in facts.linked_ins, value.label or spell_out(name)
         rows.append(NodeRow(0.0, pin, None, value, label, plain, linked, texts=_make_field_texts(value, plain)))
     return rows

@@ -14,7 +14,7 @@ from ...authoring.edits import paths
 from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import Code
-from ...graph import Group, Item, Port, Unknown, signature
+from ...graph import Group, Item, Port, Signature, Unknown, signature
 from ..fields.fields import Fields
 from ..shared.render_facts import render_path
 from ..toolkit.places import item_rect
@@ -41,7 +41,7 @@ class NodeView:
         session = rows.context.session
         item = session.graph.nodes[id]
         face = signature(item)
-        rows.fit(("name", *face.inputs, *(value.label or name for name, value in face.values.items())))
+        rows.fit(("name", *face.unfolded_inputs, *_list_labels(face)))
         draw_heading(
             rows, title_of(item), rows.palette.category(_category(item)), lambda: self._draw_buttons(rows, id, item), 3
         )
@@ -70,11 +70,13 @@ class NodeView:
             self._renders.draw(rows, id, item)
         else:
             for name, declaration in face.values.items():
-                self._values.draw(rows, (Port(id, name),), declaration)
-        if face.inputs:
+                if not declaration.folded:
+                    self._values.draw(rows, (Port(id, name),), declaration)
+        if face.unfolded_inputs:
             rows.draw_heading("Inputs")
-        for name, socket in face.inputs.items():
+        for name, socket in face.unfolded_inputs.items():
             _input(rows, Port(id, name), socket)
+        self._draw_mask(rows, id, item, face)
 
     def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
         """Draw the values that several nodes have in common; the first node is the active one."""
@@ -86,7 +88,7 @@ class NodeView:
             rows, kind, rows.palette.category(_category(items[0])), lambda: self._draw_shared_buttons(rows, ids), 1
         )
         rows.note(", ".join(ids))
-        declarations = common(session.graph, ids)
+        declarations = [declaration for declaration in common(session.graph, ids) if not declaration.folded]
         if not declarations:
             rows.note("These nodes have no value in common.")
             return
@@ -94,6 +96,21 @@ class NodeView:
         rows.draw_heading("Values in Common")
         for declaration in declarations:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
+
+    def _draw_mask(self, rows: Rows, id: str, item: Item, face: Signature) -> None:
+        """Draw the mask of a node and its values below a heading that stays closed until they are used."""
+        values = {name: value for name, value in face.values.items() if value.folded}
+        if not values or not isinstance(item, Node):
+            return
+        is_used = Port(id, "mask") in rows.context.session.graph.links
+        is_used |= any(item.setting(name) != value.default for name, value in values.items())
+        if not rows.fold("Mask", f"mask {id}", is_open=is_used):
+            return
+        for name, socket in face.inputs.items():
+            if socket.folded:
+                _input(rows, Port(id, name), socket)
+        for name, declaration in values.items():
+            self._values.draw(rows, (Port(id, name),), declaration)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -150,6 +167,11 @@ class NodeView:
                 rows.act(lambda: context.session.apply(MakeGroupLocal(id)))
             tip("Copy it into this document, so that it can be edited here")
             context.places[f"button local {id}"] = item_rect()
+
+
+def _list_labels(face: Signature) -> list[str]:
+    """What the values of a node are called, without those of its mask."""
+    return [value.label or name for name, value in face.values.items() if not value.folded]
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:

@@ -152,6 +152,9 @@ def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
         by_hand = by_hand.connect(graph.links[target], wiring.first_target(by_hand, graph.links[target], ids[0], False))
         by_hand = by_hand.connect(wiring.first_source(by_hand, ids[-1], target), target)
         assert by_hand.links == after.links
+        if by_hand.link_faults:  # an output that followed a Field may now be an Image
+            assert after.link_faults == by_hand.link_faults
+            continue
         assert keys(make_space(pin_places(after), [*map(ElementId, ids)], target)) == keys(by_hand)
         break
 

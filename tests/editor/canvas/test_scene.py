@@ -120,7 +120,8 @@ def test_a_node_shows_few_values_until_asked_for_all_and_linked_ones_always() ->
     few = staged(graph).boxes["tone_map"].layout
     every = staged(graph, open="tone_map").boxes["tone_map"].layout
     assert few.hidden > 0 and every.hidden == 0 and every.height > few.height
-    assert {row.value.name for row in every.rows if row.value} == set(catalogue()["tone_map"].values)
+    names = {name for name, value in catalogue()["tone_map"].values.items() if not value.folded}
+    assert {row.value.name for row in every.rows if row.value} == names
     linked = {row.value.name for row in few.rows if row.value and row.linked}
     assert linked == {"maximum"}
 
@@ -235,3 +236,11 @@ def test_comments_are_as_high_as_their_text() -> None:
     assert short == 40.0 and long > 120.0
     assert measure_comment("one\n\ntwo", 200.0) > measure_comment("one", 200.0)
     assert measure_comment("many words " * 20, 400.0) < long
+
+
+def test_the_mask_takes_no_row_until_its_values_are_set() -> None:
+    layout = staged(chain("exposure")).boxes["exposure"].layout
+    assert layout.ins["mask"].y < layout.rows[0].y and "mask" not in {row.left.name for row in layout.rows if row.left}
+    assert not {"mix", "invert_mask"} & {row.value.name for row in layout.rows if row.value}
+    mixed = staged(chain("exposure").set(P("exposure.mix"), 0.5), open="exposure").boxes["exposure"].layout
+    assert "mix" in {row.value.name for row in mixed.rows if row.value}
