@@ -57,8 +57,8 @@ def hard_range(value: Value) -> str:
 
 
 def output_type(output: OutputSocket) -> str:
-    """The type of an output, such as `Image, or Field as image is`."""
-    return f"{socket_type(output.socket)}{f', or Field as {output.follows} is' if output.follows else ''}"
+    """The type of an output, such as `Image or Field as image`."""
+    return f"{socket_type(output.socket)}{f' or Field as {output.follows}' if output.follows else ''}"
 
 
 def node_facts(node: type[Node]) -> dict[str, Any]:

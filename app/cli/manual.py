@@ -18,10 +18,10 @@ _INTRODUCTION = """\
 leave. Units: `px` pixels at full size, `height` a fraction of the height of the picture, `deg` degrees, `EV`
 photographic stops, `ratio` a factor, `count` a whole number of things, `s` seconds, `scene` the units of the scene.
 
-Every node that changes its input `image` at the same size has a *mask*: an input `mask` says where the change is seen,
+Every node that changes its input `image` at the same size has a mask: an input `mask` says where the change is seen,
 from 0 to 1, and without a link it is seen everywhere. The value `mix` (0 to 1) says how much of it is seen, and
 `invert_mask` exchanges inside and outside. The mask applies to the first output. Nodes with a mask of their own say
-what it does. Where an output is *Image, or Field as image is*, it is a Field if a Field is linked to `image`.
+what it does. An output that is an `Image or Field as image` is a Field if a Field is linked to `image`.
 """
 
 

@@ -162,10 +162,7 @@ class Graph(Wired[Item], EndEdits):
         return self._with(nodes={**self.nodes, id: item})
 
     def remove(self, id: str, heal: bool = True) -> Self:
-        """A graph without a node, its links and its controls.
-
-        With `heal`, the source of its first input that fits is linked to the targets of the node.
-        """
+        """A graph without a node, its links and controls; with `heal`, a source of it that fits feeds its targets."""
         self.node(id)
         links = {target: source for target, source in self.links.items() if id not in (target.node, source.node)}
         for target, source in self.links.items() if heal else ():
@@ -204,8 +201,7 @@ class Graph(Wired[Item], EndEdits):
     def replace(self, id: str, item: Item) -> Self:
         """A graph where another node replaces node `id`.
 
-        A link stays on the socket of the same name if it fits, else moves to the first free socket that fits, else is
-        removed. Controls of values that the new node lacks are removed.
+        A link stays on the socket of its name, else moves to the first free one that fits. What fits nothing is removed.
         """
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
@@ -347,9 +343,7 @@ class Graph(Wired[Item], EndEdits):
 
 def signature(item: Item) -> Signature:
     """The sockets and values of a node. Those of a group are the inputs, outputs and controls of its body."""
-    if isinstance(item, Node):
-        return class_signature(type(item))
-    return item.signature if isinstance(item, Group) else Signature({}, {}, {}, anything=True)
+    return class_signature(type(item)) if isinstance(item, Node) else item.signature
 
 
 def control_value(graph: Graph, name: str) -> Value | None:
@@ -366,12 +360,7 @@ def _find_value(item: Item, name: str, id: str) -> Value:
     """A value of a node, or a control of a group, with its setting as default. Raises GraphError."""
     if value := _find_setting(item, name):
         return value
-    face = signature(item)
-    if face.anything:
-        raise GraphError(f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown")
-    if name in face.inputs:
-        raise GraphError(f"'{id}.{name}' is an input, not a value: link an output to it")
-    raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
+    raise GraphError(signature(item).explain_missing_value(id, name))
 
 
 def _find_setting(item: Item, name: str) -> Value | None:

@@ -14,6 +14,7 @@ from msgspec.structs import force_setattr
 
 from ..errors import GraphError
 from .conversion import make_socket
+from .names import did_you_mean
 
 
 class Port(Struct, frozen=True, order=True):
@@ -107,6 +108,11 @@ class Unknown(Struct, frozen=True):
         if self.raw:
             force_setattr(self, "raw", freeze(self.raw))
 
+    @property
+    def signature(self) -> Signature:
+        """Sockets and values that nobody knows: every link is possible."""
+        return Signature({}, {}, {}, anything=True)
+
 
 @dataclass(frozen=True)
 class Settings:
@@ -141,6 +147,14 @@ class Signature(Struct, frozen=True):
     values: Mapping[str, Value]
     pointwise: bool = False
     anything: bool = False
+
+    def explain_missing_value(self, id: str, name: str) -> str:
+        """Why the node `id` has no value of a name that can be set."""
+        if self.anything:
+            return f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown"
+        if name in self.inputs:
+            return f"'{id}.{name}' is an input, not a value: link an output to it"
+        return f"node '{id}' has no value '{name}'{did_you_mean(name, self.values)}"
 
     @property
     def unfolded_inputs(self) -> Mapping[str, Socket]:
