@@ -201,7 +201,7 @@ class Graph(Wired[Item], EndEdits):
     def replace(self, id: str, item: Item) -> Self:
         """A graph where another node replaces node `id`.
 
-        A link stays on the socket of its name, else moves to the first free one that fits. What fits nothing is removed.
+        A link stays on the socket of its name, else moves to the first free one that fits. What fits none is removed.
         """
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
