@@ -56,7 +56,8 @@ class Preferences:
     another version of Halation wrote.
     """
 
-    theme: Literal["dark", "light"] = "dark"
+    theme: Literal["dark", "light", "contrast"] = "dark"
+    reduced_motion: bool = False
     ui_scale: float = 0.0
     keymap: Literal["halation", "nuke", "blender", "fusion"] = "halation"
     shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))

@@ -29,6 +29,12 @@ PICTURE = 96.0
 FIELDS = 4
 """The number of values that a node shows until the user expands it."""
 
+MOST_PARTS = 3
+"""Numbers of a vector that fit on a node."""
+
+MAIN = ("intensity", "amount", "strength", "exposure", "density")
+"""What nodes call the value that says how strong their effect is."""
+
 NodeSort = Literal["node", "group", "unknown", "input", "output"]
 
 
@@ -279,19 +285,29 @@ def _make_value_rows(id: str, item: Item, graph: Graph, facts: NodeFacts, values
 
 
 def _choose_rows(rows: list[NodeRow]) -> list[NodeRow]:
-    """The values of a node that is not expanded: linked values, and the first few others that fit on a line."""
+    """The values of a node that is not expanded: linked values, and the first few others that can be set on the node.
+
+    The value that says how strong the effect is always is among them: it is what is changed most.
+    """
     fields = [
         row
         for row in rows
         if not row.linked
         and row.value
-        and row.value.type != "matrix"
+        and can_set_on_node(row.value)
         and not (row.value.role and row.plain == row.value.default)
     ]
     if len(fields) == FIELDS + 1 and len(rows) == len(fields):
         return rows
-    chosen = {id(row) for row in fields[:FIELDS]}
+    main = [row for row in fields if row.value and row.value.name in MAIN][:1]
+    others = [row for row in fields if row not in main]
+    chosen = {id(row) for row in (*main, *others[: FIELDS - len(main)])}
     return [row for row in rows if row.linked or id(row) in chosen]
+
+
+def can_set_on_node(value: Value) -> bool:
+    """False for values that only the inspector can edit."""
+    return value.type not in ("matrix", "curve", "ramp") and (value.type != "vector" or value.length <= MOST_PARTS)
 
 
 def _is_wireable(graph: Graph, port: Port) -> bool:

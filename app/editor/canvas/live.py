@@ -24,8 +24,8 @@ from ..shared.dialogs import browse
 from ..toolkit.words import show_tip
 from .brush import TEXT, DrawContext, make_node_palette
 from .geometry import Rect
-from .layout import FIELD_HEIGHT, NodeRow
-from .paint_field import MOST_PARTS, paint_label, split_vector
+from .layout import FIELD_HEIGHT, MOST_PARTS, NodeRow
+from .paint_field import paint_label, split_vector
 from .scene import ElementBox
 from .sketch import Sketch
 

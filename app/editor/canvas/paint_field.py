@@ -8,7 +8,7 @@ from ..fields.colors import swatch
 from ..theme.style import u32
 from .brush import TEXT
 from .geometry import Rect
-from .layout import FieldText, NodeRow
+from .layout import MOST_PARTS, FieldText, NodeRow
 from .sketch import Sketch
 
 ROUND = 4.0
@@ -38,10 +38,6 @@ def paint_field(sketch: Sketch, row: NodeRow, muted: bool) -> None:
                 _paint_number(sketch, number_rect, "", part, color)
         case _:
             _paint_words(sketch, rect, row, color)
-
-
-MOST_PARTS = 3
-"""Numbers of a vector that fit on a node."""
 
 
 def split_vector(rect: Rect, count: int) -> tuple[float, list[Rect]]:

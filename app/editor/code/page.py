@@ -77,7 +77,7 @@ class Page:
         widget, theme = self.widget, self.context.palette.name
         if theme != self._theme:
             self._theme, self._marker_inputs = theme, ()
-            dark = theme == "dark"
+            dark = theme != "light"
             widget.set_palette(TextEditor.get_dark_palette() if dark else TextEditor.get_light_palette())
         self._follow()
         self._update_markers()

@@ -234,7 +234,7 @@ class GraphView:
         rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
         width = rows.field()
         if preroll is None:
-            if imgui.button("From the first frame##preroll", (width, 0.0)):
+            if imgui.button("First frame##preroll", (width, 0.0)):
                 rows.act(lambda: session.apply(SetPreroll(12)))
             rows.record("preroll")
             tip(doc)

@@ -44,7 +44,8 @@ class Toasts:
         """Draw a toast with its lower right corner at a point; returns its height."""
         scale = ui_scale()
         left = TOAST_SECONDS - self._context.log.age(entry)
-        opacity = min(max(left / _FADE, 0.05), 1.0)
+        fades = not self._context.interface.store.current.reduced_motion
+        opacity = min(max(left / _FADE, 0.05), 1.0) if fades else 1.0
         imgui.set_next_window_pos(corner, imgui.Cond_.always.value, ImVec2(1, 1))
         imgui.set_next_window_size_constraints(ImVec2(_WIDTH * scale, 0), ImVec2(_WIDTH * scale, 400 * scale))
         imgui.push_style_var(imgui.StyleVar_.alpha, opacity)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from imgui_bundle import ImVec2, imgui
@@ -24,7 +26,8 @@ from .shortcut_editor import ShortcutEditor
 if TYPE_CHECKING:
     from .context import PreferencesContext
 
-_SCALES = (0.0, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
+_THEMES: Mapping[str, str] = MappingProxyType({"dark": "Dark", "light": "Light", "contrast": "High contrast"})
+_SCALES = (0.0, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 _FLAT = imgui.ChildFlags_.nav_flattened.value
 _LABELS = 120.0
 _PAGES = ("Interface", "Shortcuts", "System")
@@ -76,8 +79,8 @@ class PreferencesDialog:
         preferences = self._context.store.current
         _draw_heading(self._context, "Appearance")
         label("Theme", _LABELS)
-        for theme in ("dark", "light"):
-            if imgui.radio_button(theme.capitalize(), preferences.theme == theme):
+        for theme, title in _THEMES.items():
+            if imgui.radio_button(title, preferences.theme == theme):
                 _change(self._context, theme=theme)
             record(self._context, f"theme {theme}")
             imgui.same_line()
@@ -89,6 +92,7 @@ class PreferencesDialog:
         if preferences.ui_scale not in _SCALES or not MIN_SCALE <= (preferences.ui_scale or 1.0) <= MAX_SCALE:
             imgui.same_line()
             draw_dim(self._context, "own")
+        _draw_switch(self._context, "reduced_motion", "Less motion: nothing blinks or fades")
         _draw_heading(self._context, "Graph")
         _draw_switch(self._context, "thumbnails", "Thumbnails on nodes")
         _draw_switch(self._context, "timings", "Time and memory of each node")

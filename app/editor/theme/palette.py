@@ -51,6 +51,11 @@ class Palette:
         return category_color(name, self.categories)
 
 
+def _darken(color: RGB) -> RGB:
+    red, green, blue = (0.6 * part for part in color)
+    return red, green, blue
+
+
 _KINDS = MappingProxyType(
     {
         Kind.IMAGE: parse_hex("e2b93b"),
@@ -123,4 +128,30 @@ LIGHT = Palette(
     categories=LIGHT_CATEGORIES,
 )
 
-PALETTES: Mapping[str, Palette] = MappingProxyType({palette.name: palette for palette in (DARK, LIGHT)})
+CONTRAST = Palette(
+    "contrast",
+    window=parse_hex("000000"),
+    panel=parse_hex("000000"),
+    field=parse_hex("101010"),
+    fill=parse_hex("2c2c66"),
+    raised=parse_hex("262626"),
+    hover=parse_hex("33333f"),
+    border=parse_hex("c8c8c8"),
+    text=parse_hex("ffffff"),
+    dim=parse_hex("d6d6d6"),
+    accent=parse_hex("ffd000"),
+    on_accent=parse_hex("000000"),
+    good=parse_hex("5df08a"),
+    warning=parse_hex("ffc24d"),
+    error=parse_hex("ffaaaa"),
+    canvas=parse_hex("000000"),
+    grid=parse_hex("1c1c1c"),
+    node=parse_hex("101010"),
+    shadow=parse_hex("000000"),
+    surround=parse_hex("000000"),
+    kinds=_KINDS,
+    categories=MappingProxyType({name: _darken(color) for name, color in DARK_CATEGORIES.items()}),
+)
+"""For users who need it: text at 7 to 1 and more (WCAG 2.1, 1.4.6), and borders that can be seen."""
+
+PALETTES: Mapping[str, Palette] = MappingProxyType({palette.name: palette for palette in (DARK, LIGHT, CONTRAST)})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import ImVec2, ImVec4, imgui
 
-from .palette import RGB, Palette
+from .palette import CONTRAST, RGB, Palette
 
 EM = 16.0
 """Font size in pixels at UI scale 1; canvas units are pixels at that scale."""
@@ -58,6 +58,9 @@ def apply(palette: Palette, scale: float) -> None:
     style.window_menu_button_position = imgui.Dir.none
     style.window_title_align = ImVec2(0.5, 0.5)
     style.disabled_alpha = 0.45
+    if palette.name == CONTRAST.name:
+        style.frame_border_size = style.tab_border_size = 1
+        style.disabled_alpha = 0.6
     style.scale_all_sizes(scale)
     style.font_size_base = EM
     style.font_scale_main = scale
@@ -143,7 +146,7 @@ def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
         ("drag_drop_target", p.accent, 1),
         ("drag_drop_target_bg", p.accent, 0.1),
         ("checkbox_selected_bg", p.field, 1),
-        ("nav_cursor", p.accent, 0.8),
+        ("nav_cursor", p.accent, 1 if p.name == CONTRAST.name else 0.8),
         ("nav_windowing_highlight", p.text, 0.7),
         ("nav_windowing_dim_bg", p.shadow, 0.4),
         ("modal_window_dim_bg", p.shadow, 0.5),

@@ -224,7 +224,8 @@ class Viewer:
             draw_badge(self._context, sight, "Click objects to pick them", palette.accent)
         elif viewer.finding:
             self._search += 1
-            draw_badge(self._context, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
+            dots = 3 if self._context.store.current.reduced_motion else self._search // 8 % 4
+            draw_badge(self._context, sight, f"Searching{'.' * dots}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
             self._offer_search(sight)
         if images.a is not None and not fault and images.a.kind.is_single:

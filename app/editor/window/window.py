@@ -279,6 +279,7 @@ class Window:
 
     def _restyle(self) -> None:
         likes = self.editor.store.current
+        imgui.get_io().config_input_text_cursor_blink = not likes.reduced_motion
         scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
         # The host scales the style too: behind the first frame, and where the window moves to another display.
         if self._styled != (self.editor.palette, scale, style.measure_style()):
