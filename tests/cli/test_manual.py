@@ -7,11 +7,11 @@ import re
 
 import pytest
 from halation.cli import manual
-from halation.nodes import catalogue
+from halation.nodes import built_in_nodes
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-NODES = catalogue()
+NODES = built_in_nodes()
 
 
 @pytest.fixture(scope="module")
