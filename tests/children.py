@@ -1,7 +1,7 @@
 """Processes that tests start: they hear signals, and end with their test.
 
 A shell that runs a command in the background has it ignore interrupts, and children inherit that: a test that sends
-one would wait for ever. So every worker hears the signals that a terminal sends.
+one would wait for ever. So every process that runs tests hears the signals that a terminal sends.
 
 A process that a test has left is ended, and the test fails. Those whose parent has ended too are found by an
 environment variable, when the last test of a module is over, and when a worker has ended.
@@ -33,9 +33,10 @@ _PROCESSES = Path("/proc")
 def pytest_configure(config: pytest.Config) -> None:
     """Hear signals, and mark what this process starts."""
     worker = os.environ.get("PYTEST_XDIST_WORKER", "")
+    runs_tests = bool(worker) or not getattr(config.option, "numprocesses", None)
     for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT"):
         number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) == signal.SIG_IGN and worker:
+        if number is not None and signal.getsignal(number) == signal.SIG_IGN and runs_tests:
             signal.signal(number, signal.default_int_handler if name == "SIGINT" else signal.SIG_DFL)
     if worker:
         os.environ[MARK] = f"{os.environ.get(_RUN, '')} {worker}"

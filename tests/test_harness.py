@@ -144,8 +144,9 @@ def test_stuck():
     assert not Path("/proc", (tmp_path / "number").read_text().strip(), "cmdline").exists()
 
 
+@pytest.mark.parametrize("workers", [0, 1])
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_children_hear_interrupts_though_a_shell_ignores_them(suite: Suite) -> None:
+def test_children_hear_interrupts_though_a_shell_ignores_them(suite: Suite, workers: int) -> None:
     code = """
 import signal, subprocess, sys
 def test_interrupt():
@@ -157,7 +158,7 @@ def test_interrupt():
 """
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        ended = suite(code, "-n", "1", "--timeout", "30")
+        ended = suite(code, "-n", str(workers), "--timeout", "30")
     finally:
         signal.signal(signal.SIGINT, before)
     assert "1 passed" in ended.stdout, ended.stdout

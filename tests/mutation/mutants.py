@@ -94,6 +94,8 @@ class _PythonReader:
         for name, field in ast.iter_fields(node):
             if name in ("annotation", "returns", "decorator_list", "type_params"):
                 continue
+            if isinstance(node, ast.ClassDef) and name == "keywords":
+                continue
             for child in field if isinstance(field, list) else [field]:
                 if isinstance(child, ast.AST):
                     self._visit(child)

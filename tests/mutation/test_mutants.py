@@ -20,6 +20,7 @@ def size(count: int | None = 3, *, é: float = 0.5) -> int:  # 1 < 2
     if count is None and not é:
         return min(count, 2)
     print(f"{count:03d}")
+    class Frozen(int, total=False): ...
     return "%d" % count if count <= 2 else place(é, count // 7)
 '''
 

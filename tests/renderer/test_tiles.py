@@ -11,7 +11,7 @@ import pytest
 from conftest import graph_of
 from devices import form_to_test
 from halation import document
-from halation.compiler import Region, Request, examine, explain
+from halation.compiler import Region, Request, Upload, examine, explain
 from halation.compiler.tiling import tiling
 from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port
@@ -19,6 +19,8 @@ from halation.inputs.provider import MediaProvider
 from halation.nodes import CameraModel, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
 from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
+from halation.renderer.execution.tiles import _PictureCache as PictureCache
+from halation.resources.picture import Picture
 from halation.resources.sandbox import UNRESTRICTED
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
@@ -225,6 +227,29 @@ def test_a_device_holds_tiles_of_what_is_too_large_for_it(fitting):
     assert plan.tiling is not None and "150x90 pixels is more than the 64" in explain(plan)
     same_bits(small.render(graph, wanted), fitting.render(graph, wanted))
     small.close()
+
+
+@pytest.mark.parametrize(
+    ("by_rows", "asked"),
+    [(True, [(10, 30), (25, 40), None]), (False, [None])],
+    ids=["rows", "whole"],
+)
+def test_only_the_rows_that_are_looked_at_are_read(by_rows, asked):
+    """A window within the rows that were read last asks for none; without one, and of other formats, all are read."""
+    pixels, loads = noise(60, 50), []
+
+    def load(picture):
+        loads.append(picture.rows)
+        return pixels[slice(*picture.rows)] if picture.rows else pixels
+
+    picture = Picture("a.exr", "", Kind.IMAGE, 4, by_rows=True)
+    cache = PictureCache(load, by_rows=by_rows)
+    for window in (Region(5, 10, 20, 20), Region(0, 15, 60, 10), Region(7, 25, 9, 15), None):
+        part = cache.read(Upload(0, picture, "n", (60, 50)), window).picture.pixels
+        whole = window is None or not by_rows
+        cut = pixels if whole else pixels[window.y : window.y + window.height, window.x : window.x + window.width]
+        np.testing.assert_array_equal(part, cut)
+    assert loads == asked
 
 
 def test_tiles_share_their_programs():
