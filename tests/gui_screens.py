@@ -17,7 +17,7 @@ from halation.document import save
 from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.window.editor import Editor
 from halation.graph import Control, Graph, Input, Output, Port, Settings
-from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
+from halation.nodes import Kind, Light, LightKind, catalogue, number_lights
 from halation.nodes.input.read_image import ReadImage
 from halation.renderer.jobs.render_job import RenderJob
 from halation.resources.sandbox import UNRESTRICTED
@@ -71,10 +71,10 @@ def window(ui: Ui) -> Screens:
 def inspector(ui: Ui) -> Screens:
     """What can be selected."""
     lamps = Lamps(
-        lights=numbers_of(
+        lights=number_lights(
             tuple(
-                Light(kind, color=(1.0, 0.2 * kind, 0.1), intensity=4.0 - 3.0 * kind, on=kind != LightKind.SUN)
-                for kind in (LightKind.SPOT, LightKind.SUN, *LightKind, *LightKind)
+                Light(kind, color=(1.0, 0.2 * place, 0.1), intensity=4.0 - 3.0 * place, on=kind != LightKind.SUN)
+                for place, kind in enumerate((LightKind.SPOT, LightKind.SUN, *LightKind, *LightKind))
             )
         )
     )

@@ -47,7 +47,8 @@ NOTES = (
     "Picks",
     "Curve",
     "ColorRamp",
-    "Lights",
+    "Items",
+    "ItemKind",
 )
 
 TYPES = MappingProxyType(
@@ -65,7 +66,7 @@ TYPES = MappingProxyType(
         "`Kernel3x3`": (vocabulary.Kernel3x3, (0.0,) * 9, "Nine numbers by rows; GLSL fills columns with them."),
         "`Points`": (vocabulary.Points, (), "A curve. `curve_knots` prepares it, `lib/curve.glsl` reads it."),
         "`Stops`": (vocabulary.Stops, (), "A color ramp. `ramp_knots` prepares it, `lib/curve.glsl` reads it."),
-        "`LightList`": (vocabulary.LightList, (), "Lights, read by `lights_of` in `passes`."),
+        "`LightSet`": (vocabulary.LightSet, vocabulary.ItemSet(), "Lights by name, read by `lights_of` in `passes`."),
         "`FilePath`, `RenderPath`, `TablePath`, `ScenePath`": (
             vocabulary.FilePath,
             "",

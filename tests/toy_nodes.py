@@ -18,7 +18,7 @@ from halation.nodes import (
     Kind,
     Light,
     LightKind,
-    LightList,
+    LightSet,
     Node,
     Number,
     Points,
@@ -28,7 +28,8 @@ from halation.nodes import (
     Source,
     Stops,
     Vector,
-    numbers_of,
+    name_lights,
+    number_lights,
 )
 from halation.nodes import OutputSocket as Made
 
@@ -111,7 +112,7 @@ class Lamps(Filter):
     """A list of lights."""
 
     image = Image()
-    lights: LightList = numbers_of((Light(),))
+    lights: LightSet = name_lights(lamp_1=Light())
 
 
 TOYS: dict[str, type[Node]] = {
@@ -174,8 +175,8 @@ def random_value(rng: Random, kind: type[Node], name: str) -> Any:
         return tuple(
             part for place in places for part in (place / 8, *(rng.uniform(-9.0, 9.0) for _ in range(value.length - 1)))
         )
-    if value.type == "lights":
-        return numbers_of(
+    if value.items:
+        return number_lights(
             tuple(
                 Light(rng.choice([*LightKind]), intensity=rng.uniform(-9.0, 9.0), on=rng.random() < 0.5)
                 for _ in range(rng.randint(0, 3))

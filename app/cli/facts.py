@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import inspect
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, cast
 
 if TYPE_CHECKING:
-    from halation.nodes import Node, OutputSocket, Socket, Value
+    from halation.nodes import ItemSet, Node, OutputSocket, Socket, Value
 
 
 def node_doc(node: type[Node]) -> str:
@@ -30,10 +31,12 @@ def format_value(plain: object) -> str:
 
 
 def default_text(value: Value) -> str:
-    """The default of a value; of a curve, ramp or lights the number of entries."""
+    """The default of a value; of a curve or ramp the number of points, of named items their names."""
     default = value.default
-    if isinstance(default, tuple) and value.type in ("curve", "ramp", "lights"):
-        word = {"curve": "point", "ramp": "stop", "lights": "light"}[value.type]
+    if isinstance(default, Mapping):
+        return ", ".join(cast("Mapping[str, object]", default)) or "none"
+    if isinstance(default, tuple) and value.type in ("curve", "ramp"):
+        word = {"curve": "point", "ramp": "stop"}[value.type]
         count = len(default) // value.length
         return f"{count} {word}{'' if count == 1 else 's'}"
     return format_value(default)
@@ -74,18 +77,7 @@ def node_facts(node: type[Node]) -> dict[str, Any]:
             name: _socket_facts(output.socket) | ({"follows": output.follows} if output.follows else {})
             for name, output in node.outputs.items()
         },
-        "values": {
-            value.name: {
-                "type": value.type,
-                "default": value.default,
-                "choices": list(value.choices),
-                "unit": value.unit,
-                "soft": _finite(value.low, value.high),
-                "hard": _finite(value.minimum, value.maximum),
-                "doc": value.doc,
-            }
-            for value in node.values.values()
-        },
+        "values": {value.name: _value_facts(value) for value in node.values.values()},
         "plan": plan_facts(node),
     }
 
@@ -107,6 +99,23 @@ def plan_facts(node: type[Node]) -> dict[str, Any]:
         for item in plan["passes"]
     ]
     return {"size": list(FULL_HD), "passes": passes, "peak_bytes": plan["peak_bytes"]}
+
+
+def _value_facts(value: Value) -> dict[str, Any]:
+    from ..graph.named_items import describe_items
+
+    facts: dict[str, Any] = {
+        "type": value.type,
+        "default": value.default if value.items is None else describe_items(cast("ItemSet", value.default)),
+        "choices": list(value.choices),
+        "unit": value.unit,
+        "soft": _finite(value.low, value.high),
+        "hard": _finite(value.minimum, value.maximum),
+        "doc": value.doc,
+    }
+    kinds = value.items.kinds if value.items else ()
+    fields = {kind.name: {part.name: _value_facts(part) for part in kind.declarations} for kind in kinds}
+    return {**facts, "kinds": fields} if fields else facts
 
 
 def _socket_facts(socket: Socket) -> dict[str, Any]:

@@ -63,16 +63,16 @@ def _find_value(graph: Graph, name: str) -> Value | None:
     """The value that a name stands for, or None; setting an unknown name raises an error later."""
     from ..errors import GraphError
     from ..graph import Group, Port
-    from ..graph.graph import control_value
+    from ..graph.graph import control_value, expand_socket
 
     head, dot, rest = name.partition(".")
     try:
         if not dot:
             return control_value(graph, name) if name in graph.controls else None
         item = graph.node(head)
-        if "." in rest:
-            return _find_value(item.body(), rest) if isinstance(item, Group) else None
-        return graph.declaration(Port(head, rest))
+        if isinstance(item, Group) and rest.partition(".")[0] in item.graph.nodes:
+            return _find_value(item.body(), rest)
+        return graph.declaration(Port(head, expand_socket(item, rest)))
     except GraphError:
         return None
 
@@ -89,7 +89,7 @@ def _split_settings(name: str, text: str, value: Value | None) -> Iterator[str]:
         else:
             raise UsageError(f"--set {name}=*: * works only for choices and switches; list values or a range")
         return
-    has_numbers = value is not None and value.type in ("color", "vector", "matrix", "curve", "ramp", "lights")
+    has_numbers = value is not None and value.type in ("color", "vector", "matrix", "curve", "ramp")
     has_one_number = value is not None and value.type in ("float", "int", "bool", "choice")
     is_single = text.startswith("=") or "@" in text or not has_one_number
     for part in text.split(";"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any, cast
 
-from halation.nodes import Plain, Unit, Value
+from halation.nodes import Scalar, Unit, Value
 
 from .code import CodeFault
 from .notes import ParameterNote
@@ -53,7 +53,7 @@ def make_value(glsl: str, name: str, note: ParameterNote, line: int) -> Value:
     return Value(**{**fields, "default": default})
 
 
-def _parse_default(glsl: str, name: str, text: str, line: int) -> Plain:
+def _parse_default(glsl: str, name: str, text: str, line: int) -> Scalar:
     words = {"true": True, "on": True, "false": False, "off": False}
     if glsl == "bool":
         if text not in words:
@@ -82,12 +82,12 @@ def _parse_number(text: str) -> float:
         return float("nan")
 
 
-def _numbers(default: Plain) -> tuple[float, ...]:
+def _numbers(default: Scalar) -> tuple[float, ...]:
     assert not isinstance(default, str)
     return default if isinstance(default, tuple) else (float(default),)
 
 
-def _choose_range(glsl: str, default: Plain, note: ParameterNote) -> tuple[float, float]:
+def _choose_range(glsl: str, default: Scalar, note: ParameterNote) -> tuple[float, float]:
     """The soft range: as it is said, else one that the default lies well inside of."""
     if note.low is not None and note.high is not None:
         return note.low, note.high

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 
 from ..errors import DocumentError
 from ..graph import Animation, Expression, Key, Keys
@@ -50,7 +50,7 @@ def _key(raw: Any, file: str, path: str) -> Key:
     return Key(record.frame, value, record.interpolation, record.left, record.right)
 
 
-def _plain(raw: object) -> Plain | None:
+def _plain(raw: object) -> Scalar | None:
     if isinstance(raw, bool | int | float):
         return raw
     if not isinstance(raw, list):

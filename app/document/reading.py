@@ -18,6 +18,7 @@ a link to a missing node, is no fault of reading: `graph.problems` finds it, so 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import reduce
 from pathlib import Path
 from typing import Any, cast, get_args
 
@@ -28,6 +29,8 @@ from ..custom_nodes import Code, CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapt_animation
+from ..graph.graph import find_setting
+from ..graph.named_items import find_item_faults, split_unknown
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerce, describe_type
 from ..resources.sandbox import Sandbox
@@ -223,7 +226,7 @@ class _BodyReader(Struct):
         for target, item in raw.items():
             where = member(member(at, "animation"), target)
             port, animation = self.parse_port(target, where), read_animation(item, self.file, where)
-            value = signature(nodes[port.node]).values.get(port.socket) if port.node in nodes else None
+            value = find_setting(nodes[port.node], port.socket) if port.node in nodes else None
             animations[port] = adapt_animation(value, animation) if value else animation
             self.keep_unknown(f"animation.{target}", item, records.AnimationRecord)
         return animations
@@ -301,14 +304,30 @@ class _BodyReader(Struct):
         values: dict[str, Plain] = {}
         for name, setting in raw.items():
             if name in declared:
+                if declared[name].items and isinstance(setting, dict):
+                    objects = cast("dict[str, Any]", setting)
+                    setting = self.keep_unknown_fields(f"{path}.values.{name}", declared[name], objects)
                 plain = coerce(declared[name], setting)
                 if plain is None:
+                    where = member(member(at, "values"), name)
                     fault = f"expected {describe_type(declared[name])}, got {word(setting)}"
-                    raise DocumentError(self.file, member(member(at, "values"), name), fault)
+                    for place, sentence in find_item_faults(declared[name], setting) if declared[name].items else ():
+                        where = reduce(member, place, where)
+                        fault = sentence if isinstance(setting, dict) else fault
+                        break
+                    raise DocumentError(self.file, where, fault)
                 values[name] = plain
         if unknown := {name: setting for name, setting in raw.items() if name not in declared}:
             self.extra[f"{path}.values"] = unknown
         return values
+
+    def keep_unknown_fields(self, path: str, value: Value, objects: dict[str, Any]) -> dict[str, Any]:
+        """Named items without the kinds and fields that this version does not know, which are saved again."""
+        assert value.items is not None
+        known, unknown = split_unknown(value.items, objects)
+        for place, keys in unknown.items():
+            self.extra[".".join((path, *place))] = keys
+        return known
 
     def read_group(self, id: str, raw: dict[str, Any], at: str, depth: int) -> tuple[Group, int]:
         """A group, and how many nodes it has when groups are expanded."""

@@ -12,10 +12,11 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import msgspec
-from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, Node, Value
+from halation.nodes import MAX_POINTS, ItemKind, Items, ItemSet, Node, Value
 
 from ..custom_nodes import Language
 from ..graph import INPUTS, OUTPUTS
+from ..graph.named_items import KIND, describe_items
 from . import records
 from .migrations import FORMAT
 
@@ -109,7 +110,6 @@ def schema(types: Mapping[str, type[Node]]) -> Schema:
             ),
             "curve": _points(2, range(2, MAX_POINTS + 1)),
             "ramp": _points(5, range(2, MAX_POINTS + 1)),
-            "lights": _points(LIGHT_NUMBERS, range(MAX_LIGHTS + 1)),
             **node_schemas,
         },
     }
@@ -188,13 +188,37 @@ def _value(value: Value) -> Schema:
         case "path" | "text":
             type_schema = {"type": "string"}
         case "color" | "vector" | "matrix":
-            length = 4 if value.type == "color" else value.length
-            type_schema = {"type": "array", "items": number, "minItems": length, "maxItems": length}
-        case "curve" | "ramp" | "lights":
+            type_schema = {"type": "array", "items": number, "minItems": value.length, "maxItems": value.length}
+        case "curve" | "ramp":
             type_schema = {"$ref": f"#/$defs/{value.type}"}
+        case "items":
+            assert value.items is not None
+            type_schema = _items(value.items)
     unit = f"Unit: {value.unit}." if value.unit else ""
     doc = " ".join(part for part in (value.doc, unit) if part)
-    return {**type_schema, "default": value.default, **({"description": doc} if doc else {})}
+    default = describe_items(value.default) if isinstance(value.default, ItemSet) else value.default
+    return {**type_schema, "default": default, **({"description": doc} if doc else {})}
+
+
+def _items(items: Items) -> Schema:
+    """Named items: each has a kind, which says what fields it has. Kinds and fields of newer versions are kept."""
+    kinds = [_item_kind(kind) for kind in items.kinds]
+    names = [kind.name for kind in items.kinds]
+    kind_schema = {
+        "description": f"The kind of {items.noun}.",
+        "type": "string",
+        "default": names[0],
+        "examples": names,
+    }
+    entry: Schema = {"type": "object", "properties": {KIND: kind_schema}, "allOf": kinds}
+    return {**_entries(entry, _NAME), "maxProperties": items.most}
+
+
+def _item_kind(kind: ItemKind) -> Schema:
+    """The fields of a kind of named items, for those that are of it."""
+    fields = {name: _value(value) for name, value in kind.fields.items()}
+    is_kind: Schema = {"properties": {KIND: {"const": kind.name}}, "required": [KIND]}
+    return {"if": is_kind, "then": {"description": kind.doc, "properties": fields}}
 
 
 def _points(width: int, counts: range) -> Schema:

@@ -12,11 +12,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from halation.nodes import Plain, Value
+from halation.nodes import ItemSet, Plain, Value
 
 from ..custom_nodes import CustomNode
 from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
+from ..graph.named_items import describe_items
 from ..graph.names import name_fault
 from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
@@ -150,17 +151,29 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
         body = {"path": item.path} if item.path else {"graph": _graph(item.graph)}
         declared = signature(item).values
         converted = {name: _value(id, declared[name], plain) for name, plain in item.values.items() if name in declared}
-        values = {**unknown_values, **item.values, **converted}
+        values = {**unknown_values, **item.values, **converted, **_describe_items(id, graph, item.values)}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
     set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
     units = dict(item.length_units)
     changed = {name: plain for name, plain in set_values.items() if name in units or plain != item.values[name].default}
-    values = {**unknown_values, **changed}
+    values = {**unknown_values, **changed, **_describe_items(id, graph, set_values)}
     type_facts = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.required_package:
         type_facts["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
     unit_facts = {"units": units} if units else {}
     return {"type": item.id} | type_facts | muted | ({"values": values} if values else {}) | unit_facts
+
+
+def _describe_items(id: str, graph: Graph, values: Mapping[str, Plain]) -> Section:
+    """Values with named items as a file holds them, also at their default: so each field differs on its own."""
+    sections: Section = {}
+    for name, items in values.items():
+        if isinstance(items, ItemSet):
+            path = f"nodes.{id}.values.{name}"
+            objects = describe_items(items)
+            kept = {key: graph.extra.get(f"{path}.{key}", {}) for key in objects}
+            sections[name] = {**graph.extra.get(path, {}), **{key: {**kept[key], **objects[key]} for key in objects}}
+    return sections
 
 
 def _value(id: str, value: Value, setting: object) -> Plain:

@@ -9,7 +9,7 @@ from .evaluate_at_frame import animation_fault, evaluate_at_frame, find_key_rang
 from .expressions import Expression
 from .graph import Graph, Group, Item, signature
 from .keys import Extrapolation, Interpolation, Key, Keys
-from .lookup import find_node_output
+from .lookup import find_declaration, find_node_output, list_sockets
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean
 from .problems import Problem, problems
@@ -40,9 +40,11 @@ __all__ = [
     "conversion",
     "did_you_mean",
     "evaluate_at_frame",
+    "find_declaration",
     "find_key_range",
     "find_node_output",
     "is_animated",
+    "list_sockets",
     "make_socket",
     "problems",
     "signature",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from halation.nodes import Kind, Plain, Socket, Value, Vector
+from halation.nodes import Kind, Scalar, Socket, Value, Vector
 
 _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType(
     {
@@ -18,7 +18,7 @@ _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType(
 )
 
 
-def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
+def make_socket(kind: Kind, width: int = 4, default: Scalar | None = None, *, name: str = "", doc: str = "") -> Socket:
     """Make a socket outside of a class body. `width` counts the channels of a Vector."""
     start = float(default) if isinstance(default, int | float) else None if isinstance(default, str) else default
     if kind is Kind.VECTOR:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Literal, Protocol, Self
 
-from .model import Port
+from .model import Input, Output, Port
 from .names import check_name, pick
 from .notes import move_keys, move_layout, rename_key, without
 from .relink import move_links
@@ -43,7 +43,23 @@ def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> di
 
 
 class EndEdits:
-    """The edits of a graph that rename and remove its inputs, outputs and controls."""
+    """The edits of a graph that add, rename and remove its inputs and outputs, and remove its controls."""
+
+    inputs: Mapping[str, Input]
+    outputs: Mapping[str, Output]
+    links: Mapping[Port, Port]
+    ui: Mapping[str, Any]
+    extra: Mapping[str, Mapping[str, Any]]
+
+    def add_input(self, name: str, input: Input) -> Self:
+        """A graph with one more input."""
+        check_name(name, "input", self.inputs)
+        return self._with(inputs={**self.inputs, name: input})
+
+    def add_output(self, name: str, output: Output) -> Self:
+        """A graph with one more output."""
+        check_name(name, "output", self.outputs)
+        return self._with(outputs={**self.outputs, name: output})
 
     def remove_input(self, name: str) -> Self:
         """A graph without an input and its links."""
@@ -66,4 +82,7 @@ class EndEdits:
         return self._move_end("outputs", old, new)
 
     def _move_end(self, section: EndSection, old: str, new: str | None = None) -> Self:
+        return self._with(**move_end(self, section, old, new))
+
+    def _with(self, **changes: Any) -> Self:
         raise NotImplementedError

@@ -6,16 +6,17 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from halation.nodes import Plain, Value
+from halation.nodes import ItemSet, Plain, Scalar, Value
 
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, animation_type_fault
 from .expressions import Expression
 from .graph import Graph, Group
 from .keys import Keys, round_keys
+from .lookup import split_socket
 from .model import Port, Settings
 from .names import did_you_mean
-from .values import coerce, describe_type
+from .scalars import coerce_scalar, describe_type
 from .walk import find_cyclic
 
 _LONG = 4000
@@ -86,14 +87,17 @@ def find_named_value(graph: Graph, name: str) -> tuple[Port, int | None]:
     """
     head, *rest = name.split(".")
     if head in graph.controls and head not in graph.nodes:
-        port = graph.controls[head].target
+        start = graph.controls[head].target
+        item, words = graph.node(start.node), [start.socket, *rest]
     elif rest:
-        port = Port(head, rest.pop(0))
         if head not in graph.nodes:
             raise GraphError(f"there is no node '{head}'{did_you_mean(head, graph.nodes)}")
+        start, item, words = Port(head, ""), graph.node(head), rest
     else:
         names = [*graph.controls, *(f"{node}." for node in graph.nodes)]
         raise GraphError(f"there is no control '{head}'{did_you_mean(head, names)}")
+    socket, rest = split_socket(item, words)
+    port = Port(start.node, socket)
     value = graph.declaration(port)
     if value.type not in ANIMATED:
         raise GraphError(f"'{port}' is a {value.type}, not a number")
@@ -187,13 +191,15 @@ class _ValueEvaluation:
             raise GraphError(f"{port} at frame {self._frame}: {error}", node=port.node) from None
         return fit_to_value(port, value, number, self._frame)
 
-    def _evaluate_name(self, name: str) -> Plain:
+    def _evaluate_name(self, name: str) -> Scalar:
         port, channel = find_named_value(self._graph, name)
         plain = self.evaluate(port)
+        if isinstance(plain, ItemSet):
+            raise GraphError(f"'{port}' holds named items: name a field of one")
         return plain[channel] if channel is not None and isinstance(plain, tuple) else plain
 
 
-def fit_to_value(port: Port, value: Value, computed: Plain, frame: int) -> Plain:
+def fit_to_value(port: Port, value: Value, computed: Scalar, frame: int) -> Scalar:
     """Convert a computed number to the type of a value: rounded for an int, limited to the hard range.
 
     A single number is used for all channels. Raises GraphError if it does not fit.
@@ -204,7 +210,7 @@ def fit_to_value(port: Port, value: Value, computed: Plain, frame: int) -> Plain
         computed = int(round_keys(computed))
     elif value.type == "bool" and isinstance(computed, int | float):
         computed = computed != 0
-    plain = coerce(value, computed)
+    plain = coerce_scalar(value, computed)
     if plain is None:
         raise GraphError(f"{port} at frame {frame} is {computed!r}: it takes {describe_type(value)}", node=port.node)
     if isinstance(plain, bool | str):

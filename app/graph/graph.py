@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from types import MappingProxyType
 from typing import Any, Self
 
@@ -15,11 +15,12 @@ from msgspec import structs
 from ..errors import GraphError
 from .animation import Animation, adapt_animation, animation_type_fault, move_animation
 from .conversion import conversion
-from .ends import EndEdits, EndSection, move_end
+from .ends import EndEdits
 from .followed_types import find_field_outputs, find_type_fault
 from .length_units import choose_length_unit, resolve_unit
 from .method_arguments import check_method_arguments
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, class_signature, freeze
+from .named_items import expand_path, explain_missing_field, find_field, group_settings, join_settings, split_path
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, make_printable, pick
 from .notes import keep_linked_routes, move_keys, move_layout, rename_key, without, without_route
 from .relink import keep_animation, keep_controls, move_links, relink
@@ -93,8 +94,6 @@ class Graph(Wired[Item], EndEdits):
                 object.__setattr__(self, name, frozen)
         object.__setattr__(self, "muted", frozenset(self.muted))
 
-    # --- queries -----------------------------------------------------------------------------------------------
-
     def node(self, id: str) -> Item:
         """The node of an id. Raises GraphError with a suggestion."""
         if id not in self.nodes:
@@ -126,8 +125,8 @@ class Graph(Wired[Item], EndEdits):
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
         declared = face.values if port.socket in face.values else {**face.inputs, **face.values}
-        value = pick(declared, port.socket, f"node '{port.node}' has no input")
-        if not _is_pointwise(item, port.socket):
+        value = find_setting(item, port.socket) or pick(declared, port.socket, f"node '{port.node}' has no input")
+        if "." in port.socket or not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value
 
@@ -206,9 +205,10 @@ class Graph(Wired[Item], EndEdits):
         before, face = self.node(id), signature(item)
         after = self._with(nodes={**self.nodes, id: item})
         links = relink(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
-        controls = keep_controls(self.controls, id, face)
+        find = partial(find_setting, item)
+        controls = keep_controls(self.controls, id, face, find)
         extra = self.extra if type(before) is type(item) else move_keys(self.extra, f"nodes.{id}")
-        animation = keep_animation(self.animation, id, face)
+        animation = keep_animation(self.animation, id, face, find)
         return after._with(links=links, controls=controls, animation=animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
@@ -258,14 +258,14 @@ class Graph(Wired[Item], EndEdits):
     def put_all(self, plains: Mapping[Port, Plain]) -> Self:
         """`put` of many values at once."""
         changed: dict[str, dict[str, Plain]] = {}
-        for port, plain in plains.items():
-            item = self.nodes.get(port.node)
-            if port.socket in (item.graph.controls if isinstance(item, Group) else getattr(item, "values", ())):
-                changed.setdefault(port.node, {})[port.socket] = plain
+        for (id, name), settings in group_settings((port.node, port.socket, plains[port]) for port in plains).items():
+            item = self.nodes.get(id)
+            if item and name in (item.graph.controls if isinstance(item, Group) else getattr(item, "values", ())):
+                changed.setdefault(id, {})[name] = join_settings(settings, partial(_find_value, item, name, id))
         nodes = {
             id: item.with_values(**changed[id]) for id in changed if not isinstance(item := self.nodes[id], Unknown)
         }
-        still = {port: item for port, item in self.animation.items() if port.socket not in changed.get(port.node, ())}
+        still = {port: item for port, item in self.animation.items() if not plains.keys() & (port, port.whole)}
         return self._with(nodes={**self.nodes, **nodes}, animation=still) if changed else self
 
     def animate(self, port: Port, animation: Animation | None) -> Self:
@@ -281,27 +281,23 @@ class Graph(Wired[Item], EndEdits):
         return self.set(pick(self.controls, name, "the graph has no control").target, value)
 
     def override(self, path: str, value: object) -> Self:
-        """A graph where what `path` names is set: `glow` (a control), `a.sigma` or `a.sigma.unit`, `group.a.sigma`."""
+        """A graph where what `path` names is set: `glow` (a control), `a.sigma` or `a.sigma.unit`, `group.a.sigma`.
+
+        A field of a named item is `relight.lights.lamp_3.intensity` or, without the value, `relight.lamp_3.intensity`.
+        """
         head, dot, rest = path.partition(".")
-        if "." not in rest:
-            return self.set(Port(head, rest), value) if dot else self.set_control(path, value)
-        item = self.node(head)
-        if isinstance(item, Node) and rest.endswith(".unit"):
-            item = choose_length_unit(Port(head, rest[:-5]), item, str(value), self.settings)
+        if not dot:
+            return self.set_control(path, value)
+        if head in self.controls and head not in self.nodes:
+            target = self.controls[head].target
+            return self.set(Port(target.node, f"{target.socket}.{rest}"), value)
+        item, (inner, deeper, _) = self.node(head), rest.partition(".")
+        if isinstance(item, Node) and deeper and rest == f"{inner}.unit":
+            item = choose_length_unit(Port(head, inner), item, str(value), self.settings)
             return self._with(nodes={**self.nodes, head: item})
-        if not isinstance(item, Group):
-            raise GraphError(f"'{path}' looks inside '{head}', which is not a group: write {head}.value")
-        return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
-
-    def add_input(self, name: str, input: Input) -> Self:
-        """A graph with one more input."""
-        check_name(name, "input", self.inputs)
-        return self._with(inputs={**self.inputs, name: input})
-
-    def add_output(self, name: str, output: Output) -> Self:
-        """A graph with one more output."""
-        check_name(name, "output", self.outputs)
-        return self._with(outputs={**self.outputs, name: output})
+        if isinstance(item, Group) and deeper and (inner in item.graph.nodes or inner not in item.graph.controls):
+            return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
+        return self.set(Port(head, expand_socket(item, rest)), value)
 
     def add_control(self, name: str, control: Control) -> Self:
         """A graph with one more control."""
@@ -337,9 +333,6 @@ class Graph(Wired[Item], EndEdits):
             return None
         return source if source and source.node != target.node else None
 
-    def _move_end(self, section: EndSection, old: str, new: str | None = None) -> Self:
-        return self._with(**move_end(self, section, old, new))
-
 
 def signature(item: Item) -> Signature:
     """The sockets and values of a node. Those of a group are the inputs, outputs and controls of its body."""
@@ -350,25 +343,41 @@ def control_value(graph: Graph, name: str) -> Value | None:
     """The value that a control points at, with the name of the control and the setting as default; else None."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
-    if item is None or not (value := _find_setting(item, control.target.socket)):
+    if item is None or not (value := find_setting(item, control.target.socket)):
         return None
     value = resolve_unit(value, item, graph.settings)
     return structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
 
 
 def _find_value(item: Item, name: str, id: str) -> Value:
-    """A value of a node, or a control of a group, with its setting as default. Raises GraphError."""
-    if value := _find_setting(item, name):
+    """A value, a control of a group, or a field of a named item, with its setting as default. Raises GraphError."""
+    if value := find_setting(item, name):
         return value
+    head, inner, field = split_path(name)
+    if inner and (value := find_setting(item, head)) and value.items:
+        raise GraphError(explain_missing_field(value, f"{id}.{head}", inner, field))
+    if inner and isinstance(item, Node):
+        raise GraphError(f"'{id}.{name}' looks inside '{id}', which is not a group: write {id}.value")
     raise GraphError(signature(item).explain_missing_value(id, name))
 
 
-def _find_setting(item: Item, name: str) -> Value | None:
+def find_setting(item: Item, name: str) -> Value | None:
+    """What `declaration` gives before units, or None where there is no such value."""
+    head, inner, field = split_path(name)
+    if inner:
+        value = find_setting(item, head)
+        return value and find_field(value, inner, field)
     if isinstance(item, Node) and name in item.values:
         return structs.replace(item.declaration(name), default=item.setting(name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
         return structs.replace(value, default=item.values.get(name, value.default))
     return None
+
+
+def expand_socket(item: Item, socket: str) -> str:
+    """The socket with the value that holds a named item, where the user left it out."""
+    values = (find_setting(item, name) for name, value in signature(item).values.items() if value.items)
+    return expand_path(socket, {value.name: value for value in values if value})
 
 
 def _is_pointwise(item: Item, name: str) -> bool:

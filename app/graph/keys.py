@@ -18,7 +18,7 @@ from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Literal
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 from msgspec import Struct
 from msgspec.structs import force_setattr, replace
 
@@ -41,7 +41,7 @@ class Key(Struct, frozen=True, dict=True):
     """
 
     frame: float
-    value: Plain
+    value: Scalar
     interpolation: Interpolation = "smooth"
     left: tuple[float, ...] = ()
     right: tuple[float, ...] = ()
@@ -86,7 +86,7 @@ class Keys(Struct, frozen=True, dict=True):
         place = bisect_right(self.frames, frame) - 1
         return self.keys[place] if place >= 0 and self.frames[place] == frame else None
 
-    def evaluate(self, frame: float) -> Plain:
+    def evaluate(self, frame: float) -> Scalar:
         """The value at a frame. Raises GraphError if there are no keys."""
         if not self.keys:
             raise GraphError("there are no keys")
@@ -115,7 +115,7 @@ class Keys(Struct, frozen=True, dict=True):
         left = self._segment_handles(place - 1)[1] if place > 0 else ()
         return left, self._segment_handles(place)[0] if place + 1 < len(self.keys) else ()
 
-    def set(self, frame: float, value: Plain, interpolation: Interpolation | None = None) -> Keys:
+    def set(self, frame: float, value: Scalar, interpolation: Interpolation | None = None) -> Keys:
         """The keys with a value set at a frame.
 
         An existing key keeps its interpolation and handles; a new one takes the interpolation of the key before it.
@@ -144,7 +144,7 @@ class Keys(Struct, frozen=True, dict=True):
         """The keys without those at some frames."""
         return replace(self, keys=tuple(key for key in self.keys if key.frame not in frames))
 
-    def move(self, frames: Iterable[float] | None, by: float, lift: Plain = 0.0) -> Keys:
+    def move(self, frames: Iterable[float] | None, by: float, lift: Scalar = 0.0) -> Keys:
         """The keys with those at `frames` (None: all) moved by `by` frames and `lift` added to their values.
 
         A moved key replaces another at its new frame. `lift` is one number, or one per channel.
@@ -203,7 +203,7 @@ class Keys(Struct, frozen=True, dict=True):
         other_keys = [key for key in self.keys if key.frame not in chosen]
         return replace(self, keys=(*other_keys, *(change(key) for key in self.keys if key.frame in chosen)))
 
-    def _interpolate(self, frame: float) -> Plain:
+    def _interpolate(self, frame: float) -> Scalar:
         """The value at a frame; outside of the keys that of the nearest key."""
         place = bisect_right(self.frames, frame) - 1
         if place < 0:
@@ -226,7 +226,7 @@ class Keys(Struct, frozen=True, dict=True):
             )
         )
 
-    def _extrapolate_linearly(self, frame: float) -> Plain:
+    def _extrapolate_linearly(self, frame: float) -> Scalar:
         """The value outside of the keys, in a line along the slope of the nearest end."""
         after = frame > self.frames[-1]
         place, segment = (len(self.keys) - 1, len(self.keys) - 2) if after else (0, 0)
@@ -289,11 +289,11 @@ class Keys(Struct, frozen=True, dict=True):
         width = end.frame - start.frame
         return width, (end.channels[channel] - start.channels[channel]) / width
 
-    def _key_value(self, place: int) -> Plain:
+    def _key_value(self, place: int) -> Scalar:
         key = self.keys[place]
         return self._join_channels(key.channels) if key.channels else key.value
 
-    def _join_channels(self, parts: tuple[float, ...]) -> Plain:
+    def _join_channels(self, parts: tuple[float, ...]) -> Scalar:
         """The value that has these channels: a tuple, or a single number."""
         return parts if isinstance(self.keys[0].value, tuple) else parts[0]
 
@@ -310,7 +310,7 @@ def _sort_keys(keys: Iterable[Key]) -> tuple[Key, ...]:
     return tuple(keys_by_frame[frame] for frame in sorted(keys_by_frame))
 
 
-def _lift_value(key: Key, lift: Plain) -> Plain:
+def _lift_value(key: Key, lift: Scalar) -> Scalar:
     if not key.channels or isinstance(lift, bool | str):
         return key.value
     lifts = lift if isinstance(lift, tuple) else (lift,) * len(key.channels)

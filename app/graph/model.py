@@ -8,7 +8,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, cast
 
-from halation.nodes import ColorSettings, Kind, Missing, Node, Plain, Pointwise, Size, Socket, Value
+from halation.nodes import ColorSettings, Kind, Missing, Node, Pointwise, Scalar, Size, Socket, Value
 from msgspec import Struct
 from msgspec.structs import force_setattr
 
@@ -18,7 +18,10 @@ from .names import did_you_mean
 
 
 class Port(Struct, frozen=True, order=True):
-    """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph."""
+    """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph.
+
+    The socket of a field of a named item has dots: `relight.lights.lamp_3.intensity`.
+    """
 
     node: str
     socket: str
@@ -26,11 +29,16 @@ class Port(Struct, frozen=True, order=True):
     def __str__(self) -> str:
         return f"{self.node}.{self.socket}"
 
+    @property
+    def whole(self) -> Port:
+        """The value that holds the field of a named item; for anything else the port itself."""
+        return Port(self.node, self.socket.partition(".")[0]) if "." in self.socket else self
+
     @classmethod
     def parse(cls, text: str) -> Port:
-        """Read `node.socket`. Raises GraphError."""
+        """Read `node.socket` or `node.value.item.field`. Raises GraphError."""
         node, _, socket = text.partition(".")
-        if not node or not socket or "." in socket:
+        if not node or not all(socket.split(".")) or socket.count(".") not in (0, 2):
             raise GraphError(f"'{text}' is not a socket: write node.socket, such as 'bloom.image'")
         return cls(node, socket)
 
@@ -48,7 +56,7 @@ class Input:
     width: int = 4
     file: str = ""
     layer: str = ""
-    default: Plain | None = None
+    default: Scalar | None = None
     doc: str = ""
     missing: Missing = "error"
     color_space: str = ""

@@ -7,15 +7,16 @@ import re
 from collections.abc import Collection, Iterator, Mapping
 from typing import ClassVar
 
-from halation.nodes import Node, catalogue, plugins
+from halation.nodes import ItemSet, Node, catalogue, plugins
 from msgspec.structs import replace
 
 from ..errors import GraphError
 from ..resources.record import Record
 from . import rules
 from .evaluate_at_frame import animation_fault, find_expression_loops
-from .graph import Graph, Group, Item, signature
+from .graph import Graph, Group, Item, find_setting, signature
 from .model import Input, Port, Unknown
+from .named_items import find_item_faults
 from .names import INPUTS, OUTPUTS, did_you_mean, limit_suggestions, name_fault, pick
 from .rules import Rule, Severity
 from .unmerged import CONFLICTS, find_unmerged
@@ -211,7 +212,11 @@ def _values(id: str, item: Item) -> Iterator[Problem]:
             value = item.declaration(name) if item.length_units else value
         else:
             setting = item.values.get(name, value.default) if isinstance(item, Group) else value.default
-        if setting is not value.default and (fault := value_fault(value, setting)):
+        if value.items:
+            for path, fault in find_item_faults(value, setting) if setting is not value.default else ():
+                place = ".".join((name, *path))
+                yield Problem(id, name, f"{id}.{place}: {fault}", rules.BAD_VALUE, f"nodes.{id}.values.{place}")
+        elif setting is not value.default and (fault := value_fault(value, setting)):
             yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE)
     for name in item.values if isinstance(item, Group) else ():
         if name not in values:
@@ -268,16 +273,28 @@ def _suggest_key(key: str, keys: Collection[str]) -> str:
     return hint if "did you mean" in hint else ""
 
 
+def _suggest_value(item: Item, path: list[str], key: str) -> str:
+    """What an unknown value, or an unknown kind or field of a named item, may mean."""
+    values = signature(item).values
+    value = find_setting(item, path[0]) if path else None
+    if value is None or value.items is None:
+        return did_you_mean(key, values)
+    if len(path) == 1:
+        return f": its kind is none of {', '.join(value.items.by_name)}"
+    named = value.default.get(path[1]) if isinstance(value.default, ItemSet) else None
+    return did_you_mean(key, value.items.by_name[named.kind].fields) if named else ""
+
+
 def _leftovers(graph: Graph) -> Iterator[Problem]:
     """Unknown keys are kept, but whoever mistyped one should hear of it."""
     for path, keys in graph.extra.items():
         parts = path.split(".")
-        item = graph.nodes.get(parts[1]) if len(parts) == 3 and parts[0] == "nodes" else None
+        item = graph.nodes.get(parts[1]) if len(parts) >= 3 and parts[0] == "nodes" else None
         for key in keys if path else keys.keys() - {"$schema", CONFLICTS}:  # the first is for editors of text
             if item is None:
                 hint = _suggest_key(key, _FILE_KEYS if not path else _NODE_KEYS if parts[0] == "nodes" else ())
             else:
-                hint = did_you_mean(key, signature(item).values)
+                hint = _suggest_value(item, parts[3:], key)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""
             if key == "package" and len(parts) == 2 and getattr(graph.nodes.get(parts[1]), "required_package", ""):

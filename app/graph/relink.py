@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from halation.nodes import Value
+
 from .animation import ANIMATED, Animation
 from .model import Control, Port, Signature
+
+Find = Callable[[str], Value | None]
+"""The declaration of a value of the new node, or None."""
 
 Fits = Callable[[Port, Port], bool]
 """True if a link from the first port to the second is valid."""
@@ -43,19 +48,19 @@ def relink(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, 
     return other_links
 
 
-def keep_controls(controls: Mapping[str, Control], id: str, face: Signature) -> dict[str, Control]:
+def keep_controls(controls: Mapping[str, Control], id: str, face: Signature, find: Find) -> dict[str, Control]:
     """All controls, without those of values that node `id` does not have."""
     return {
         name: control
         for name, control in controls.items()
-        if control.target.node != id or face.anything or control.target.socket in face.values
+        if control.target.node != id or face.anything or find(control.target.socket)
     }
 
 
-def keep_animation(animation: Mapping[Port, Animation], id: str, face: Signature) -> dict[Port, Animation]:
+def keep_animation(animation: Mapping[Port, Animation], id: str, face: Signature, find: Find) -> dict[Port, Animation]:
     """All animation, without that of values that node `id` does not have or that cannot be animated."""
     return {
         port: item
         for port, item in animation.items()
-        if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
+        if port.node != id or face.anything or ((value := find(port.socket)) and value.type in ANIMATED)
     }

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from itertools import pairwise
-from typing import Any, cast
+from halation.nodes import Plain, Value
 
-from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, LightKind, Plain, Value
+from .named_items import coerce_items, items_fault
+from .scalars import FLOAT32, coerce_numbers, coerce_scalar, describe_type, scalar_fault, sequence_fault
 
-from ..errors import UsageError
-from .frames import Pattern
-
-_INT32 = 2**31
-_FLOAT32 = 3.4028234663852886e38
+__all__ = ["coerce", "coerce_numbers", "describe_type", "sequence_fault", "value_fault"]
 
 
 def coerce(value: Value, setting: object) -> Plain | None:
@@ -20,148 +15,15 @@ def coerce(value: Value, setting: object) -> Plain | None:
 
     Ranges and choices are not checked: see `value_fault`.
     """
-    match value.type:
-        case "float":
-            return _coerce_number(setting)
-        case "int":
-            return setting if isinstance(setting, int) and not isinstance(setting, bool) else None
-        case "bool":
-            return setting if isinstance(setting, bool) else None
-        case "choice" | "path" | "text":
-            return setting if isinstance(setting, str) else None
-        case "color" | "vector" | "matrix":
-            return coerce_numbers(setting, value.length)
-        case "curve" | "ramp":
-            return _coerce_points(setting, value.length, 2)
-        case "lights":
-            return _coerce_points(setting, value.length, 0)
-
-
-def coerce_numbers(setting: object, length: int) -> tuple[float, ...] | None:
-    """A list or tuple of `length` numbers as floats, else None."""
-    if not isinstance(setting, list | tuple):
-        return None
-    converted = [_coerce_number(part) for part in cast("tuple[Any, ...]", setting)]
-    floats = tuple(part for part in converted if part is not None)
-    return floats if len(floats) == len(converted) == length else None
-
-
-def _coerce_points(setting: object, width: int, least: int) -> tuple[float, ...] | None:
-    """The numbers of at least `least` points of `width` numbers each, or None."""
-    if not isinstance(setting, list | tuple):
-        return None
-    parts = cast("tuple[Any, ...]", setting)
-    return coerce_numbers(parts, len(parts)) if len(parts) >= least * width and len(parts) % width == 0 else None
-
-
-def describe_type(value: Value) -> str:
-    """The settings that a value takes, in words: "a number", "one of a, b"."""
-    match value.type:
-        case "float":
-            return "a number"
-        case "int":
-            return "a whole number"
-        case "bool":
-            return "true or false"
-        case "choice":
-            return f"one of {', '.join(value.choices)}"
-        case "path" | "text":
-            return "a string"
-        case "color" | "vector" | "matrix":
-            return f"a list of {value.length} numbers"
-        case "curve":
-            return "a list of x, y for every point, at least two"
-        case "lights":
-            return f"a list of {LIGHT_NUMBERS} numbers for every light"
-        case "ramp":
-            return "a list of t, red, green, blue, alpha for every stop, at least two"
+    return coerce_items(value, setting) if value.items else coerce_scalar(value, setting)
 
 
 def value_fault(value: Value, setting: object) -> str | None:
     """Why a setting is invalid (type, hard range, choice, not finite), or None."""
     if value.type == "float" and isinstance(setting, float) and _fits(value, setting):
         return None  # the usual case: a graph may have 100,000 of them
-    plain = coerce(value, setting)
-    if plain is None:
-        return f"{setting!r} does not fit: it takes {describe_type(value)}"
-    if isinstance(plain, str):
-        return _text_fault(value, plain)
-    for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
-        if isinstance(part, float) and not math.isfinite(part):
-            return f"{part} is not a finite number"
-        if value.type == "curve" and index % 2 == 0:
-            continue
-        if not value.minimum <= part <= value.maximum:
-            return f"{setting!r} is outside the range {_describe_range(value)}"
-        if abs(part) > (_FLOAT32 if isinstance(part, float) else _INT32 - 1):
-            return f"{setting!r} is too large for 32 bits"
-    return _order_fault(value, plain) if isinstance(plain, tuple) else None
+    return items_fault(value, setting) if value.items else scalar_fault(value, setting)
 
 
 def _fits(value: Value, number: float) -> bool:
-    return value.minimum <= number <= value.maximum and abs(number) <= _FLOAT32
-
-
-def _text_fault(value: Value, text: str) -> str | None:
-    if _is_unknown_choice(value, text):
-        return f"'{text}' is not a choice: it takes {describe_type(value)}"
-    return sequence_fault(text) if value.type == "path" and value.pixels else None
-
-
-def sequence_fault(path: str) -> str | None:
-    """Why the path of a picture cannot stand for a sequence though it has a place for the frame number, or None."""
-    try:
-        Pattern.parse(path)
-    except UsageError as fault:
-        return str(fault)
-    return None
-
-
-def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
-    """Why the points of a curve or ramp are not in order from 0 to 1, or lights are invalid; else None."""
-    if value.type == "lights":
-        return _lights_fault(plain)
-    if value.type not in ("curve", "ramp"):
-        return None
-    places = plain[:: value.length]
-    if len(places) > MAX_POINTS:
-        return f"{len(places)} points are too many: it takes at most {MAX_POINTS}"
-    name = "x" if value.type == "curve" else "t"
-    for place in places:
-        if not 0.0 <= place <= 1.0:
-            return f"{name} = {place:g} is outside the range 0 to 1"
-    for before, after in pairwise(places):
-        if after < before or (after == before and value.type == "curve"):
-            return f"{name} = {after:g} follows {before:g}: list the points from left to right"
-    return None
-
-
-def _lights_fault(plain: tuple[float, ...]) -> str | None:
-    kinds = {float(kind) for kind in LightKind}
-    if len(plain) > MAX_LIGHTS * LIGHT_NUMBERS:
-        return f"{len(plain) // LIGHT_NUMBERS} lights are too many: it takes at most {MAX_LIGHTS}"
-    for place, kind in enumerate(plain[::LIGHT_NUMBERS]):
-        if kind not in kinds:
-            return f"light {place + 1} is of kind {kind:g}: 0 is a point, 1 a spot, 2 a sun, 3 a sphere"
-    return None
-
-
-def _coerce_number(setting: object) -> float | None:
-    if isinstance(setting, bool) or not isinstance(setting, int | float):
-        return None
-    try:
-        return float(setting)
-    except OverflowError:
-        return math.inf if setting > 0 else -math.inf
-
-
-def _is_unknown_choice(value: Value, plain: str) -> bool:
-    return value.type == "choice" and plain not in value.choices
-
-
-def _describe_range(value: Value) -> str:
-    if math.isinf(value.maximum):
-        return f"of {value.minimum:g} and more"
-    if math.isinf(value.minimum):
-        return f"of {value.maximum:g} and less"
-    return f"{value.minimum:g} to {value.maximum:g}"
+    return value.minimum <= number <= value.maximum and abs(number) <= FLOAT32

@@ -23,6 +23,7 @@ from __future__ import annotations
 from .camera import CameraModel, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderStage, ShaderText
+from .items import ItemSet, NamedItem, Scalar, natural_order
 from .kinds import KINDS, Kind, KindFacts
 from .lengths import (
     MAX_REFERENCE_HEIGHT,
@@ -38,7 +39,18 @@ from .lengths import (
     space_pixels,
     unit_factor,
 )
-from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
+from .lights import (
+    LIGHTS,
+    MAX_LIGHTS,
+    Light,
+    LightKind,
+    LightSet,
+    item_of,
+    light_of,
+    lights_of,
+    name_lights,
+    number_lights,
+)
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
@@ -57,9 +69,9 @@ from .values import (
     Fraction,
     Handle,
     Holds,
+    ItemKind,
+    Items,
     Kernel3x3,
-    LightList,
-    Lights,
     Missing,
     OfLayer,
     OfSpace,
@@ -80,7 +92,7 @@ from .values import (
 
 __all__ = [
     "KINDS",
-    "LIGHT_NUMBERS",
+    "LIGHTS",
     "MAX_LIGHTS",
     "MAX_POINTS",
     "MAX_REFERENCE_HEIGHT",
@@ -110,6 +122,9 @@ __all__ = [
     "Handle",
     "Holds",
     "Image",
+    "ItemKind",
+    "ItemSet",
+    "Items",
     "Kernel",
     "Kernel3x3",
     "Kind",
@@ -117,13 +132,13 @@ __all__ = [
     "LengthUnits",
     "Light",
     "LightKind",
-    "LightList",
-    "Lights",
+    "LightSet",
     "LookupFile",
     "Matte",
     "Meaning",
     "Missing",
     "Motion",
+    "NamedItem",
     "Node",
     "Number",
     "OfLayer",
@@ -141,6 +156,7 @@ __all__ = [
     "Reader",
     "Render",
     "RenderPath",
+    "Scalar",
     "Scene",
     "SceneFile",
     "ScenePath",
@@ -169,13 +185,17 @@ __all__ = [
     "format_names",
     "glsl_type",
     "is_length",
+    "item_of",
     "length_unit_fault",
+    "light_of",
     "lights_of",
     "look_at",
     "matte_of",
     "murmur3",
+    "name_lights",
     "name_reference",
-    "numbers_of",
+    "natural_order",
+    "number_lights",
     "orbit_camera",
     "pick_ids",
     "pick_names",

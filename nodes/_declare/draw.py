@@ -13,7 +13,7 @@ from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
 from .sockets import CameraSocket, Edge, Size, Socket
-from .values import Plain, Uniform
+from .values import Scalar, Uniform
 
 
 class Drawn(Protocol):
@@ -32,7 +32,7 @@ Affine = tuple[float, float, float, float, float, float]
 Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
 """The filter for places between pixels. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
 
-Argument = Socket | Drawn | Plain
+Argument = Socket | Drawn | Scalar
 """What a GLSL function is called with: a picture or a value."""
 
 

@@ -1,83 +1,191 @@
-"""Lights as a value: a flat list of numbers, equally many for every light."""
+"""Lights as named items: the kinds of light, and their fields."""
 
 from __future__ import annotations
 
-from enum import IntEnum
+from collections.abc import Iterable, Mapping
+from enum import StrEnum
+from typing import Annotated, Any, cast, get_type_hints
 
 from msgspec import Struct
+from msgspec.structs import fields as fields_of
+from msgspec.structs import replace
+
+from .items import ItemSet, NamedItem
+from .values import Doc, ItemKind, Items, Slider, Swatch, Value, read_value
 
 Triple = tuple[float, float, float]
 
-LIGHT_NUMBERS = 16
 MAX_LIGHTS = 1024
 
+_OLD_NUMBERS = 16
+"""The numbers of a light in files of the first version."""
 
-class LightKind(IntEnum):
-    """What a light is like. Its number is the first of a light's."""
 
-    POINT = 0
-    SPOT = 1
-    SUN = 2
-    SPHERE = 3
+class LightKind(StrEnum):
+    """What a light is like."""
+
+    POINT = "point"
+    SPOT = "spot"
+    SUN = "sun"
+    SPHERE = "sphere"
+
+
+_Place = Annotated[Triple, Slider(-10.0, 10.0, unit="scene", doc="Where it is in the world.")]
+_Way = Annotated[
+    Triple,
+    Slider(-1.0, 1.0, unit="ratio", doc="The direction in which it shines, in the world; its length is of no account."),
+]
+_Reach = Annotated[
+    float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The distance at which it has faded out; 0: no limit.")
+]
 
 
 class Light(Struct, frozen=True):
-    """One light. Places are in the world; `direction` is where a spot or sun shines to.
+    """One light with all of its fields. Places and directions are in the world.
 
-    `intensity` is W/sr for point, spot and sphere (the light at a distance d is intensity / d^2), W/m^2 for a sun;
-    below 0 it takes light away. `reach` is the distance at which it has faded to nothing, 0 for none. `inner` and
-    `outer` are the half angles in degrees within which a spot shines fully and at all. `size` is a sphere's radius.
+    A field that the kind of light does not have is at its default here. Angles are in degrees in files and in the
+    editor, and in radians in `passes`.
     """
 
     kind: LightKind = LightKind.POINT
-    place: Triple = (0.0, 0.0, 2.0)
-    direction: Triple = (0.0, 0.0, -1.0)
-    color: Triple = (1.0, 1.0, 1.0)
-    intensity: float = 10.0
-    reach: float = 0.0
-    inner: float = 20.0
-    outer: float = 30.0
-    size: float = 0.1
-    on: bool = True
+    place: _Place = (0.0, 0.0, 2.0)
+    direction: _Way = (0.0, 0.0, -1.0)
+    color: Annotated[Triple, Swatch(), Doc("Scene-linear. Multiplied by the intensity.")] = (1.0, 1.0, 1.0)
+    intensity: Annotated[
+        float,
+        Slider(
+            -50.0,
+            50.0,
+            unit="scene",
+            doc="How strong it is. In W/sr: the light at a distance d is the intensity / d². Of a sun in W/m², the "
+            "same everywhere. Below 0 it takes light away.",
+        ),
+    ] = 10.0
+    reach: _Reach = 0.0
+    inner: Annotated[
+        float,
+        Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Half the angle of the cone of full intensity."),
+    ] = 20.0
+    outer: Annotated[
+        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Half the angle of the whole cone.")
+    ] = 30.0
+    size: Annotated[
+        float,
+        Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="The radius. A larger one has wider reflections."),
+    ] = 0.1
+    on: Annotated[bool, Doc("Whether it shines.")] = True
+    exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the intensity with each stop.")] = 0.0
+    solo: Annotated[bool, Doc("While any light is solo, only those shine.")] = False
 
     @property
-    def numbers(self) -> tuple[float, ...]:
-        """As a value holds it."""
-        return (
-            float(self.kind),
-            *self.place,
-            *self.direction,
-            *self.color,
-            self.intensity,
-            self.reach,
-            self.inner,
-            self.outer,
-            self.size,
-            float(self.on),
-        )
+    def gain(self) -> float:
+        """The intensity with the exposure."""
+        return self.intensity * 2.0**self.exposure
 
 
-def lights_of(numbers: tuple[float, ...]) -> tuple[Light, ...]:
-    """The lights that a value holds."""
-    return tuple(_light(numbers[at : at + LIGHT_NUMBERS]) for at in range(0, len(numbers), LIGHT_NUMBERS))
+_ORDER = ("on", "solo", "color", "intensity", "exposure", "place", "direction", "size", "inner", "outer", "reach")
+"""The fields in the order of the editor."""
+
+_LOCAL = ("place", "reach")
+_FIELDS: Mapping[LightKind, tuple[str, ...]] = {
+    LightKind.POINT: _LOCAL,
+    LightKind.SPOT: (*_LOCAL, "direction", "inner", "outer"),
+    LightKind.SUN: ("direction",),
+    LightKind.SPHERE: (*_LOCAL, "size"),
+}
+_SHARED = ("color", "intensity", "exposure", "on", "solo")
+_DOCS = {
+    LightKind.POINT: "Shines from one point in all directions.",
+    LightKind.SPOT: "Shines from one point in a cone.",
+    LightKind.SUN: "Shines from far away, everywhere in the same direction.",
+    LightKind.SPHERE: "Shines from the surface of a ball.",
+}
+_DEFAULTS: Mapping[LightKind, Mapping[str, Any]] = {LightKind.SUN: {"intensity": 3.0}}
+"""Defaults that differ from those of `Light`. Below a sun of 3 W/m² a white floor has a luminance of about 1."""
 
 
-def numbers_of(lights: tuple[Light, ...]) -> tuple[float, ...]:
-    """The value that holds these lights."""
-    return tuple(part for light in lights for part in light.numbers)
+def _declare_kinds() -> tuple[ItemKind, ...]:
+    hints = get_type_hints(Light, include_extras=True)
+    declared = {
+        field.name: read_value(field.name, hints[field.name], field.default)
+        for field in fields_of(Light)
+        if field.name != "kind"
+    }
 
+    def declare(kind: LightKind, name: str) -> Value:
+        defaults = _DEFAULTS.get(kind, {})
+        return replace(declared[name], default=defaults[name]) if name in defaults else declared[name]
 
-def _light(numbers: tuple[float, ...]) -> Light:
-    kind, px, py, pz, dx, dy, dz, red, green, blue, intensity, reach, inner, outer, size, on = numbers
-    return Light(
-        LightKind(int(kind)),
-        (px, py, pz),
-        (dx, dy, dz),
-        (red, green, blue),
-        intensity,
-        reach,
-        inner,
-        outer,
-        size,
-        on > 0.5,
+    return tuple(
+        ItemKind(kind.value, tuple(declare(kind, name) for name in _ORDER if name in (*_SHARED, *names)), _DOCS[kind])
+        for kind, names in _FIELDS.items()
     )
+
+
+def name_old_lights(setting: object) -> Mapping[str, Any] | None:
+    """Lights of the first version, 16 numbers each, as `lamp_1`, `lamp_2`, ...; None for what is no such list."""
+    if not isinstance(setting, list | tuple):
+        return None
+    numbers = cast("tuple[Any, ...]", tuple(setting))  # pyright: ignore[reportUnknownArgumentType]
+    if len(numbers) % _OLD_NUMBERS or any(
+        isinstance(part, bool) or not isinstance(part, int | float) for part in numbers
+    ):
+        return None
+    starts = range(0, len(numbers), _OLD_NUMBERS)
+    kinds = tuple(LightKind)
+    if any(numbers[at] not in range(len(kinds)) for at in starts):
+        return None
+    return {
+        f"lamp_{number}": _name_numbers(kinds[int(numbers[at])], numbers[at : at + _OLD_NUMBERS])
+        for number, at in enumerate(starts, 1)
+    }
+
+
+def _name_numbers(kind: LightKind, numbers: tuple[float, ...]) -> dict[str, Any]:
+    _, px, py, pz, dx, dy, dz, red, green, blue, intensity, reach, inner, outer, size, on = numbers
+    fields = {
+        "place": (px, py, pz),
+        "direction": (dx, dy, dz),
+        "color": (red, green, blue),
+        "intensity": intensity,
+        "reach": reach,
+        "inner": inner,
+        "outer": outer,
+        "size": size,
+        "on": on > 0.5,
+    }
+    names = (*_SHARED, *_FIELDS[kind])
+    return {"kind": kind.value, **{name: setting for name, setting in fields.items() if name in names}}
+
+
+LIGHTS = Items(_declare_kinds(), "light", MAX_LIGHTS, name_old_lights)
+"""What a value of lights can hold."""
+
+LightSet = Annotated[ItemSet, LIGHTS]
+
+
+def lights_of(items: ItemSet) -> tuple[Light, ...]:
+    """The lights that a value holds, in the order of their names."""
+    return tuple(light_of(item) for item in items.values())
+
+
+def light_of(item: NamedItem) -> Light:
+    """The light that an item describes."""
+    return Light(LightKind(item.kind), **LIGHTS.settings(item))
+
+
+def item_of(light: Light) -> NamedItem:
+    """The item that describes a light."""
+    kind = LIGHTS.by_name[light.kind]
+    fields = {name: getattr(light, name) for name in kind.fields}
+    return NamedItem.of(light.kind.value, {name: part for name, part in fields.items() if part != kind.defaults[name]})
+
+
+def name_lights(**lights: Light) -> ItemSet:
+    """The value that holds these lights under these names."""
+    return ItemSet({name: item_of(light) for name, light in lights.items()})
+
+
+def number_lights(lights: Iterable[Light]) -> ItemSet:
+    """The value that holds these lights, called `lamp_1`, `lamp_2`, ..."""
+    return name_lights(**{f"lamp_{number}": light for number, light in enumerate(lights, 1)})

@@ -155,6 +155,12 @@ class Node:
         converted: dict[str, Any] = {}
         chosen_units = dict(self.length_units)
         for name, value in self.values.items():
+            if value.items:
+                converted[name] = value.items.to_working_units(
+                    self.setting(name),
+                    lambda field: unit_factor(resolve_length_unit(field.unit, reference_height), scale, height),
+                )
+                continue
             if value.unit is None:
                 continue
             unit = chosen_units.get(name) or resolve_length_unit(value.unit, reference_height)

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from msgspec import Struct
 
 from .curves import MAX_POINTS
-from .lights import LIGHT_NUMBERS
+from .items import ItemSet, NamedItem, Scalar
 from .sockets import glsl_type
 
-Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
+Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene", "K"]
 """The unit of a number.
 
 `px`: pixels at full size, scaled with a proxy. `height`: fraction of the picture's height, which GLSL gets in pixels.
 A graph may give numbers of either in another unit, such as pixels at a height of 1080.
 `deg`: degrees, which GLSL gets in radians. `EV`: photographic stops. `ratio`: a plain factor. `count`: a number of
-things. `s`: seconds. `scene`: the scene's own units (radiance, depth).
+things. `s`: seconds. `scene`: the scene's own units (radiance, depth). `K`: kelvin, of a color temperature.
 """
 
 
@@ -108,8 +110,67 @@ class ColorRamp(Struct, frozen=True):
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, sorted by t: see `ramp_at`."""
 
 
-class Lights(Struct, frozen=True):
-    """The value is a list of lights, 16 numbers each: see `Light`."""
+class ItemKind(Struct, frozen=True, dict=True):
+    """A kind of named items: its name, the declarations of its fields, and a sentence about it."""
+
+    name: str
+    declarations: tuple[Value, ...]
+    doc: str = ""
+
+    @cached_property
+    def fields(self) -> Mapping[str, Value]:
+        """The declarations of the fields by name."""
+        return {value.name: value for value in self.declarations}
+
+    @cached_property
+    def defaults(self) -> Mapping[str, Any]:
+        """The defaults of the fields by name."""
+        return {value.name: value.default for value in self.declarations}
+
+    @cached_property
+    def scaled(self) -> tuple[Value, ...]:
+        """The fields whose working unit is another one than that of files."""
+        return tuple(value for value in self.declarations if value.unit in ("px", "height", "deg"))
+
+    def settings(self, item: NamedItem) -> dict[str, Any]:
+        """All fields of an item of this kind by name, set or at their default."""
+        return {**self.defaults, **item.fields}
+
+
+class Items(Struct, frozen=True, dict=True):
+    """The value is an `ItemSet` of items of these kinds, each called a `noun`, at most `most`.
+
+    `convert` turns what older versions saved in place of it into a mapping of names to objects; None for anything else.
+    """
+
+    kinds: tuple[ItemKind, ...]
+    noun: str = "item"
+    most: int = 1024
+    convert: Callable[[object], Mapping[str, Any] | None] | None = None
+
+    @cached_property
+    def by_name(self) -> Mapping[str, ItemKind]:
+        """The kinds by name."""
+        return {kind.name: kind for kind in self.kinds}
+
+    def settings(self, item: NamedItem) -> dict[str, Any]:
+        """All fields of an item by name, set or at their default."""
+        return self.by_name[item.kind].settings(item)
+
+    def to_working_units(self, items: ItemSet, factor_of: Callable[[Value], float]) -> ItemSet:
+        """The items with all fields that have a unit in working units, multiplied by the factor of each field."""
+        converted: dict[str, NamedItem] = {}
+        for name, item in items.items():
+            fields: dict[str, Scalar] = {}
+            for value in self.by_name[item.kind].scaled:
+                factor, stored = factor_of(value), item.fields.get(value.name, value.default)
+                if isinstance(stored, tuple):
+                    fields[value.name] = tuple(part * factor for part in stored)
+                elif isinstance(stored, int | float):
+                    fields[value.name] = stored * factor
+            if fields:
+                converted[name] = NamedItem.of(item.kind, {**item.fields, **fields})
+        return items.replace(converted)
 
 
 Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0)]
@@ -121,14 +182,13 @@ TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], ColorRamp()]
-LightList = Annotated[tuple[float, ...], Lights()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
 ValueType = Literal[
-    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "lights", "path", "text"
+    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "items", "path", "text"
 ]
-Plain = float | int | bool | str | tuple[float, ...]
-"""The types of values: JSON scalars and flat lists of numbers."""
+Plain = Scalar | ItemSet
+"""The types of values: JSON scalars, flat lists of numbers, and named items."""
 
 Uniform = float | int | bool | tuple[float, ...]
 """The types of uniforms."""
@@ -141,7 +201,7 @@ class Value(Struct, frozen=True):
     type: ValueType
     default: Plain
     length: int = 1
-    """How many numbers: of a curve per point, of a ramp per stop, of lights per light."""
+    """How many numbers: of a curve per point, of a ramp per stop."""
     choices: tuple[str, ...] = ()
     low: float = float("-inf")
     high: float = float("inf")
@@ -170,6 +230,8 @@ class Value(Struct, frozen=True):
     """True for the name of a color space."""
     folded: bool = False
     """True if it belongs to the mask that many nodes have: interfaces show it only where it is used."""
+    items: Items | None = None
+    """What named items it can hold."""
 
     @property
     def glsl(self) -> str | None:
@@ -204,6 +266,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
         facts |= _tuple_type(name, get_args(base), notes)
     elif base is str:
         facts["type"] = "text"
+    elif base is ItemSet:
+        facts["type"] = "items"
     else:
         raise TypeError(f"value '{name}': a value cannot have the type {hint!r}")
     for note in notes:
@@ -230,6 +294,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             facts["turns"] = note.turns
         elif isinstance(note, Curve):
             facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
+        elif isinstance(note, Items):
+            facts["items"] = note
     return Value(**facts)
 
 
@@ -240,6 +306,4 @@ def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> di
     for note in notes:
         if isinstance(note, Curve | ColorRamp):
             return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
-        if isinstance(note, Lights):
-            return {"type": "lights", "length": LIGHT_NUMBERS}
-    raise TypeError(f"value '{name}': a list of any length is a Curve, a ColorRamp or Lights")
+    raise TypeError(f"value '{name}': a list of any length is a Curve or a ColorRamp")

@@ -15,14 +15,14 @@ from .._declare import (
     Image,
     Light,
     LightKind,
-    LightList,
+    LightSet,
     OutputSocket,
     Slider,
     Stops,
     Trait,
     Vector,
     lights_of,
-    numbers_of,
+    name_lights,
     ramp_at,
 )
 from ._coverage import COVERAGE_REACH
@@ -39,13 +39,13 @@ _HERE = dict.fromkeys(("albedo", "material", "occlusion", "normal", "place", "ne
 _BITS = 24
 """Lights to a channel of a texel: as many as a float holds exactly."""
 
-_RIG = (
-    Light(LightKind.SPHERE, (-3.5, -5.0, 4.5), color=(1.0, 0.78, 0.55), intensity=80.0, size=0.6),
-    Light(LightKind.SPOT, (5.0, -3.5, 3.0), (-0.78, 0.55, -0.3), (0.35, 0.6, 1.0), 45.0, inner=12.0, outer=40.0),
-    Light(LightKind.SPHERE, (1.8, 3.2, 3.6), color=(1.0, 0.35, 0.6), intensity=20.0, size=0.3),
-    Light(LightKind.SUN, direction=(0.25, 0.35, -0.9), color=(0.55, 0.7, 1.0), intensity=0.25),
+_RIG = name_lights(
+    key=Light(LightKind.SPHERE, (-3.5, -5.0, 4.5), color=(1.0, 0.78, 0.55), intensity=80.0, size=0.6),
+    kicker=Light(LightKind.SPOT, (5.0, -3.5, 3.0), (-0.78, 0.55, -0.3), (0.35, 0.6, 1.0), 45.0, inner=12.0, outer=40.0),
+    rim=Light(LightKind.SPHERE, (1.8, 3.2, 3.6), color=(1.0, 0.35, 0.6), intensity=20.0, size=0.3),
+    sun=Light(LightKind.SUN, direction=(0.25, 0.35, -0.9), color=(0.55, 0.7, 1.0), intensity=0.25),
 )
-"""A warm key from the left, a cool spot from the right, a rim from behind and the moon."""
+"""A warm key from the left, a cool spot from the right, a rim from behind and moonlight."""
 
 _NEON = (
     0.0,
@@ -95,6 +95,7 @@ class DeferredLighting(Filter):
         "relighting", "normal light", "normality",
     )  # fmt: skip
     traits = (Trait.NEEDS_SCENE_LIGHT,)
+    version = 2
 
     albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
@@ -108,9 +109,9 @@ class DeferredLighting(Filter):
     roughness: Annotated[Fraction, Doc("How wide highlights are: 0 polished, 1 dull.")] = 0.4
     metal: Annotated[Fraction, Doc("1 reflects in the color of the albedo, without diffuse light.")] = 0.0
     specular: Annotated[Fraction, Doc("The reflectance of non-metals: 8 percent at 1, straight on.")] = 0.5
-    lights: Annotated[LightList, Doc("Places are in the world, intensities in W/sr, those of suns in W/m2.")] = (
-        numbers_of(_RIG)
-    )
+    lights: Annotated[
+        LightSet, Doc("Lights by name. Places are in the world, intensities in W/sr, of suns in W/m2.")
+    ] = _RIG
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", doc="Scales all lights, those of the swarm too.")] = 1.0
     ambient: Annotated[RGBA, Doc("Light from everywhere; its alpha scales it.")] = (0.35, 0.5, 0.8, 1.0)
     ambient_intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", doc="How strong it is.")] = 0.06
@@ -164,13 +165,13 @@ class DeferredLighting(Filter):
             overlap=COVERAGE_REACH,
             result=Vector(width=3),
         )
-        lights = [light for light in lights_of(self.lights) if light.on]
-        lights += self._swarm(MAX_LIGHTS - len(lights))
+        lights = self._list_lights()
         texels = max(1, -(-len(lights) // (4 * _BITS)))
         tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
         words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
         table = draw.table(tuple(part for light in lights for part in _pack_light(light, self.intensity)), 3)
-        ambient = tuple(self.ambient_intensity * self.ambient[3] * part for part in self.ambient[:3])
+        ambient_gain = 0.0 if any(light.solo for light in lights) else self.ambient_intensity
+        ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
 
         def lit(scattered: float, mirrored: float) -> Drawn:
             return draw(
@@ -204,6 +205,13 @@ class DeferredLighting(Filter):
             "diffuse": lit(1.0, 0.0),
             "specular_light": lit(0.0, 1.0),
         }
+
+    def _list_lights(self) -> list[Light]:
+        """The lights that shine. Where some are solo, those alone: without the swarm and without ambient light."""
+        lights = [light for light in lights_of(self.lights) if light.on]
+        if solos := [light for light in lights if light.solo]:
+            return solos
+        return [*lights, *self._swarm(MAX_LIGHTS - len(lights))]
 
     def _tiles(self, draw: Draw, place: Drawn, lights: list[Light], texels: int) -> Drawn:
         """Which lights can reach which tile: see the GLSL."""
@@ -256,14 +264,14 @@ def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
     way to the light to a cosine between the cones of a spot.
     """
     kind = light.kind
-    red, green, blue = (gain * light.intensity * part for part in light.color)
+    red, green, blue = (gain * light.gain * part for part in light.color)
     x, y, z = _unit(light.direction)
     window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
     size = max(light.size, 1e-4) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
     cone = (0.0, 0.0, 0.0, 1.0)
     if kind is LightKind.SPOT:
-        outer = math.cos(math.radians(light.outer))
-        scale = 1.0 / max(math.cos(math.radians(min(light.inner, light.outer))) - outer, 1e-4)
+        outer = math.cos(light.outer)
+        scale = 1.0 / max(math.cos(min(light.inner, light.outer)) - outer, 1e-4)
         cone = (-x * scale, -y * scale, -z * scale, -outer * scale)
     place = (-x, -y, -z) if kind is LightKind.SUN else light.place
     return (*place, window, red, green, blue, size, *cone)
@@ -274,8 +282,8 @@ def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float,
     if light.reach <= 0.0 or light.kind is LightKind.SUN:
         return (0.0, 0.0, 0.0, endless)
     along, radius = 0.0, light.reach
-    if light.kind is LightKind.SPOT and light.outer < 90.0:
-        angle = math.radians(light.outer)
+    if light.kind is LightKind.SPOT and light.outer < math.pi / 2:
+        angle = light.outer
         along = radius / (2.0 * math.cos(angle)) if angle < math.pi / 4 else radius * math.cos(angle)
         radius = along if angle < math.pi / 4 else radius * math.sin(angle)
     x, y, z = (place + along * part for place, part in zip(light.place, _unit(light.direction), strict=True))

@@ -107,7 +107,7 @@ def sprinkle(rng: Random, tree: Any, path: tuple[str, ...] = ()) -> None:
         return
     for key, part in list(tree.items()):
         sprinkle(rng, part, () if key == "graph" else (*path, key))
-    is_list_of_names = len(path) == 1 and path[0] != "settings"
+    is_list_of_names = (len(path) == 1 and path[0] != "settings") or (len(path) == 4 and path[2] == "values")
     is_unknown_node = tree.get("type") in ("lens", "gain9")
     if not is_list_of_names and not is_unknown_node and rng.random() < 0.6:
         tree[rng.choice(["later", "x.y", "ä"])] = rng.choice([None, 1, 1.5, [], {"a": {}}, "text", [True, {"b": [1]}]])

@@ -12,7 +12,7 @@ from halation.editor.viewer.dome import flat
 from halation.editor.viewer.ground import depth_at
 from halation.editor.viewer.perspective import project
 from halation.graph import Graph, Output, Port, Settings
-from halation.nodes import CameraModel, Light, LightKind, catalogue, lights_of, numbers_of
+from halation.nodes import CameraModel, Light, LightKind, catalogue, lights_of, number_lights
 from halation.resources.sandbox import UNRESTRICTED
 
 LIGHTS = (
@@ -30,7 +30,7 @@ def path(tmp_path: Path) -> Path:
     """A scene in the light of all kinds of lights."""
     node = catalogue()
     graph = Graph(settings=Settings((320, 180))).add_output("image", Output())
-    graph = graph.add("scene", node["scene"]()).add("lit", node["deferred_lighting"](lights=numbers_of(LIGHTS)))
+    graph = graph.add("scene", node["scene"]()).add("lit", node["deferred_lighting"](lights=number_lights(LIGHTS)))
     for source, target in (("camera", "camera"), ("albedo", "albedo"), ("normal", "normal"), ("depth", "depth")):
         graph = graph.connect(Port("scene", source), Port("lit", target))
     document.save(
@@ -71,19 +71,19 @@ def start(ui) -> int:
 def test_alt_and_the_wheel_move_a_light_in_depth(gui, path: Path) -> None:
     def body(ui) -> None:
         steps, (u, v, depth) = start(ui), seen(ui, LIGHTS[POINT])
-        x, y = ui.at("handle lit.lights 0")
+        x, y = ui.at("handle lit.lights lamp_1")
         height = ui.editor.viewer.panel[1]
         ui.drag((x, y), (x + 30.0, y - 60.0), keys="Alt", release=False)
         far = seen(ui, of(ui)[POINT])
         assert far == pytest.approx((u, v, depth * 2.0 ** (3.0 * 60.0 / height)), rel=0.02)
         ui.shot("light_depth.png")
-        assert "label lit.lights 0" in ui.editor.places
+        assert "label lit.lights lamp_1" in ui.editor.places
         ui.ctx.mouse_up(0)
         ui.wait(3)
         assert len(ui.session.history.steps) == steps + 1
         ui.keys("Ctrl+Z")
         assert of(ui) == LIGHTS
-        ui.move("handle lit.lights 0")
+        ui.move("handle lit.lights lamp_1")
         ui.wait(2)
         for _ in range(2):
             ui.wheel(2)
@@ -97,7 +97,7 @@ def test_a_spot_is_turned_by_what_it_shines_to(gui, path: Path) -> None:
     def body(ui) -> None:
         steps = start(ui)
         spot = LIGHTS[SPOT]
-        ui.drag("goal lit.lights 1", inside(ui, 0.4, 0.8))
+        ui.drag("goal lit.lights lamp_2", inside(ui, 0.4, 0.8))
         ui.settled()
         turned = of(ui)[SPOT]
         assert turned.place == spot.place and turned.intensity == spot.intensity
@@ -106,9 +106,9 @@ def test_a_spot_is_turned_by_what_it_shines_to(gui, path: Path) -> None:
         at, was = project(camera(ui), goal), project(camera(ui), before)
         assert at is not None and was is not None
         assert at[:2] == pytest.approx((0.4, 0.8), abs=5e-3) and at[2] == pytest.approx(was[2], rel=1e-4)
-        assert ui.editor.lights["lit.lights"] == SPOT and len(ui.session.history.steps) == steps + 1
+        assert ui.editor.items["lit.lights"] == "lamp_2" and len(ui.session.history.steps) == steps + 1
         ui.shot("light_spot.png")
-        x, y = ui.at("goal lit.lights 1")
+        x, y = ui.at("goal lit.lights lamp_2")
         ui.drag((x, y), (x, y - 40.0), keys="Alt")
         pushed = of(ui)[SPOT]
         far = project(camera(ui), tuple(a + b for a, b in zip(pushed.place, pushed.direction, strict=True)))
@@ -125,7 +125,7 @@ def test_shift_drops_a_light_before_what_is_under_the_mouse(gui, path: Path) -> 
     def body(ui) -> None:
         steps, at = start(ui), (0.45, 0.55)
         depth = ui.ask(lambda: depth_at(ui.editor, at))
-        ui.drag("handle lit.lights 2", inside(ui, *at), keys="Shift")
+        ui.drag("handle lit.lights lamp_3", inside(ui, *at), keys="Shift")
         u, v, near = seen(ui, of(ui)[SPHERE])
         assert (u, v) == pytest.approx(at, abs=5e-3)
         assert near == pytest.approx(depth * 0.95 - 0.2, rel=0.01)
@@ -141,14 +141,14 @@ def test_the_sun_is_dragged_on_its_dome(gui, path: Path) -> None:
         for x, y in ((0.0, -0.25), (0.4, 0.0), (-0.5, 0.6)):
             box = ui.editor.places["viewer dome"]
             middle, radius = ((box[0] + box[2]) / 2, (box[1] + box[3]) / 2), (box[2] - box[0]) / 2
-            ui.drag("handle lit.lights 3", (middle[0] + x * radius, middle[1] + y * radius))
+            ui.drag("handle lit.lights lamp_4", (middle[0] + x * radius, middle[1] + y * radius))
             assert flat(camera(ui), of(ui)[SUN].direction) == pytest.approx((x, y), abs=0.03)
             assert math.hypot(*of(ui)[SUN].direction) == pytest.approx(1.0, abs=1e-4)
-        assert len(ui.session.history.steps) == steps + 3 and ui.editor.lights["lit.lights"] == SUN
+        assert len(ui.session.history.steps) == steps + 3 and ui.editor.items["lit.lights"] == "lamp_4"
         ui.settled()
         ui.shot("light_sun.png")
-        ui.drag("handle lit.lights 3", (middle[0] + 3.0 * radius, middle[1]), release=False)
-        assert ui.at("handle lit.lights 3")[0] <= middle[0] + radius + 1.0
+        ui.drag("handle lit.lights lamp_4", (middle[0] + 3.0 * radius, middle[1]), release=False)
+        assert ui.at("handle lit.lights lamp_4")[0] <= middle[0] + radius + 1.0
         ui.keys("Escape")
         ui.ctx.mouse_up(0)
         ui.wait(3)
@@ -164,9 +164,9 @@ def test_a_double_click_adds_a_light_and_delete_removes_it(gui, path: Path) -> N
         ui.double_click(inside(ui, *at))
         ui.settled()
         made = of(ui)
-        assert len(made) == 5 and made[1].kind is LightKind.POINT and (made[0], *made[2:]) == LIGHTS
-        assert seen(ui, made[1]) == pytest.approx((*at, 0.95 * depth), rel=0.02)
-        assert ui.editor.lights["lit.lights"] == 1 and len(ui.session.history.steps) == steps + 1
+        assert len(made) == 5 and made[4].kind is LightKind.POINT and made[:4] == LIGHTS
+        assert seen(ui, made[4]) == pytest.approx((*at, 0.95 * depth), rel=0.02)
+        assert ui.editor.items["lit.lights"] == "point_1" and len(ui.session.history.steps) == steps + 1
         ui.keys("Delete")
         assert of(ui) == LIGHTS and "lit" in ui.session.graph.nodes
         ui.keys("Ctrl+Z")
@@ -176,6 +176,6 @@ def test_a_double_click_adds_a_light_and_delete_removes_it(gui, path: Path) -> N
             ui.keys("Delete")
             assert len(of(ui)) == left
         ui.double_click(inside(ui, 0.5, 0.5))
-        assert len(of(ui)) == 1 and ui.editor.lights["lit.lights"] == 0
+        assert len(of(ui)) == 1 and ui.editor.items["lit.lights"] == "point_1"
 
     gui(body, path)

@@ -14,7 +14,7 @@ from halation.authoring.commands import AddInput, AddNode
 from halation.authoring.edits.element_id import ElementId
 from halation.editor.viewer.geometry import Sight
 from halation.graph import Graph, Output, Port, Settings
-from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
+from halation.nodes import Light, LightKind, catalogue, lights_of, number_lights
 from halation.resources.sandbox import UNRESTRICTED
 
 
@@ -54,7 +54,7 @@ def test_a_position_is_dragged_on_the_picture_as_one_step(gui) -> None:
 def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
     node, start = catalogue(), Light(place=(0.0, 0.0, 1.0))
     graph = Graph(settings=Settings((64, 36))).add_output("image", Output())
-    graph = graph.add("lit", node["deferred_lighting"](lights=numbers_of((Light(LightKind.SUN), start))))
+    graph = graph.add("lit", node["deferred_lighting"](lights=number_lights((Light(LightKind.SUN), start))))
     graph = graph.add("camera", node["camera"](eye=(0.0, -5.0, 1.0), target=(0.0, 0.0, 1.0)))
     graph = graph.connect(Port("camera", "camera"), Port("lit", "camera"))
     document.save(
@@ -65,13 +65,13 @@ def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
         ui.session.select([ElementId("lit")])
         ui.settled()
         steps = len(ui.session.history.steps)
-        ui.drag("handle lit.lights 1", inside(ui, 0.7, 0.5))
+        ui.drag("handle lit.lights lamp_2", inside(ui, 0.7, 0.5))
         ui.settled()
         sun, light = lights_of(ui.session.graph.value(Port("lit", "lights")))
         assert sun == Light(LightKind.SUN)
         assert light.place == pytest.approx((0.2 * 5.0 * 36.0 / 50.0, 0.0, 1.0), abs=0.1)
         assert len(ui.session.history.steps) == steps + 1
-        assert "field lit.lights 1 reach" in ui.editor.places
+        assert "field lit.lights.lamp_2.reach" in ui.editor.places
         ui.keys("Ctrl+Z")
         assert lights_of(ui.session.graph.value(Port("lit", "lights")))[1] == start
 

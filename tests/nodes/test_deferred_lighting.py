@@ -7,7 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 from geometry import CAMERA, ball
-from halation.nodes import Light, LightKind, look_at, numbers_of
+from halation.nodes import Light, LightKind, lights_of, look_at, number_lights
 from halation.nodes.light import deferred_lighting as module
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from lighting_formulas import FURNACE, POINT, SPHERE, SPOT, SUN, Array, lit, reflected
@@ -43,7 +43,7 @@ def render(renderer, run):
     """All outputs, lit by these lights alone."""
 
     def made(inputs, lights, camera=True, **values):
-        node = DeferredLighting(**{"lights": numbers_of(tuple(lights)), "ambient_intensity": 0.0} | values)
+        node = DeferredLighting(**{"lights": number_lights(tuple(lights)), "ambient_intensity": 0.0} | values)
         given = inputs | ({"camera": CAMERA} if camera else {})
         return {name: run(node, given, output=name).astype(np.float64) for name in DeferredLighting.outputs}
 
@@ -94,7 +94,7 @@ def strewn(count: int, seed: int) -> tuple[Light, ...]:
     kinds = random.choice([POINT, SPOT, SUN, SPHERE], count, p=[0.5, 0.3, 0.02, 0.18])
     return tuple(
         Light(
-            LightKind(kind),
+            LightKind(str(kind)),
             tuple(random.normal((0.4, 0.3, 1.1), 1.6)),
             tuple(random.normal(size=3)),
             tuple(random.uniform(0, 1, 3)),
@@ -103,7 +103,7 @@ def strewn(count: int, seed: int) -> tuple[Light, ...]:
             random.uniform(0, 10),
             random.uniform(11, 120),
             random.uniform(0.05, 0.5),
-            random.random() < 0.95,
+            on=bool(random.random() < 0.95),
         )
         for kind in kinds
     )
@@ -112,7 +112,7 @@ def strewn(count: int, seed: int) -> tuple[Light, ...]:
 @pytest.mark.parametrize(("count", "size"), [(3, (37, 21)), (25, (50, 33)), (97, (64, 48)), (1024, (33, 17))], ids=str)
 def test_tiles_give_the_same_bits_as_asking_every_light(run, monkeypatch, count, size):
     inputs, lights = scene(*size), strewn(count, count)
-    node, found = DeferredLighting(lights=numbers_of(lights)), []
+    node, found = DeferredLighting(lights=number_lights(lights)), []
     for few in (0, 10**6):
         monkeypatch.setattr(module, "FEW", few)
         found.append(run(node, gbuffer(inputs) | {"camera": CAMERA}))
@@ -125,7 +125,9 @@ def test_tiles_leave_lights_out(renderer, monkeypatch):
     place, there = inputs["position"], inputs["depth"] < 1e9
     kept = lit_by = 0
     for light in lights:
-        middle, radius = np.array(module._ball(light)[:3]), module._ball(light)[3]
+        in_radians = structs.replace(light, inner=np.radians(light.inner), outer=np.radians(light.outer))
+        ball_at = module._ball(in_radians)
+        middle, radius = np.array(ball_at[:3]), ball_at[3]
         fallen, _ = reflected(
             light,
             "ggx",
@@ -171,7 +173,7 @@ def test_ambient_light_is_albedo_times_occlusion(render, run):
             "material": [[[1.0, np.sqrt(alpha)]]],
             "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
         }
-        white = DeferredLighting(lights=(), ambient=(1.0, 1.0, 1.0, 1.0), ambient_intensity=1.0)
+        white = DeferredLighting(lights=number_lights(()), ambient=(1.0, 1.0, 1.0, 1.0), ambient_intensity=1.0)
         assert abs(run(white, given)[0, 0, 0] - share) < 0.02
 
 
@@ -205,7 +207,7 @@ def test_the_background_shows_emission_alone(render):
 def test_bad_pixels_stay_where_they_are(run, monkeypatch, few):
     """NaN, infinity and nonsense in any input, in tiles too: finite, and the other pixels do not change a bit."""
     monkeypatch.setattr(module, "FEW", few)
-    inputs, node = scene(*SIZE), DeferredLighting(lights=numbers_of(strewn(30, 3)))
+    inputs, node = scene(*SIZE), DeferredLighting(lights=number_lights(strewn(30, 3)))
     whole = run(node, inputs | {"camera": CAMERA})
     for name, value in product((*GBUFFER, "emission", "occlusion"), (np.nan, np.inf, -np.inf, 3e38, -5.0)):
         spoiled = inputs | {name: inputs[name].copy()}
@@ -233,5 +235,5 @@ def test_a_swarm_fills_its_box_evenly_in_all_its_colors():
 def test_a_swarm_is_so_many_lights_of_the_list(run):
     inputs = gbuffer(scene(*SIZE)) | {"camera": CAMERA}
     node = DeferredLighting(swarm=40)
-    listed = DeferredLighting(lights=node.lights + numbers_of(tuple(node._swarm(40))))
+    listed = DeferredLighting(lights=number_lights((*lights_of(node.lights), *node._swarm(40))))
     assert run(node, inputs).tobytes() == run(listed, inputs).tobytes()

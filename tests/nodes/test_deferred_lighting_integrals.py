@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import Light, look_at, numbers_of
+from halation.nodes import Light, look_at, number_lights
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from lighting_formulas import FURNACE, SPHERE, SUN, dot, ggx, unit
 
@@ -38,7 +38,7 @@ def test_a_white_furnace_loses_what_single_scattering_loses(run, alpha, mu, shar
         "material": np.array([[[1.0, np.sqrt(alpha)]]]),
         "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
     }
-    found = run(DeferredLighting(lights=numbers_of(suns), ambient_intensity=0.0), inputs)
+    found = run(DeferredLighting(lights=number_lights(suns), ambient_intensity=0.0), inputs)
     assert abs(found[0, 0, 0] - share) < 0.002
 
 
@@ -62,7 +62,7 @@ def test_a_ball_of_light_is_the_integral_over_its_points(run, roughness, size, t
     fresnel = 0.04 + 0.96 * (1.0 - vh) ** 5
     shine = (ggx(n, eye + 0 * ways, ways, np.array([roughness**2])) * fresnel * nl).mean() * radiance * span
     node = DeferredLighting(
-        lights=numbers_of((Light(SPHERE, tuple(middle), intensity=5.0, size=size),)),
+        lights=number_lights((Light(SPHERE, tuple(middle), intensity=5.0, size=size),)),
         roughness=roughness,
         ambient_intensity=0.0,
     )
@@ -87,7 +87,7 @@ def test_a_ball_that_sets_still_lights(run):
         span = 2.0 * np.pi * (1.0 - np.sqrt(1.0 - size**2 / 4.0))
         wanted = np.maximum(up, 0.0).mean() * span / (np.pi * size**2) / np.pi
         node = DeferredLighting(
-            lights=numbers_of((Light(SPHERE, tuple(middle), intensity=1.0, size=size),)), ambient_intensity=0.0
+            lights=number_lights((Light(SPHERE, tuple(middle), intensity=1.0, size=size),)), ambient_intensity=0.0
         )
         inputs = {"albedo": np.ones((1, 1, 4)), "normal": [[[0, 0, 1]]], "position": [[[0, 0, 1e-6]]]}
         assert abs(run(node, inputs, output="diffuse")[0, 0, 0] - wanted) < 2e-4

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import Light, LightKind, look_at, numbers_of
+from halation.nodes import Light, LightKind, look_at, number_lights
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from halation.nodes.light.image_based_light import ImageBasedLight
 from raycast import cast_rays
@@ -69,7 +69,7 @@ def test_lamps_light_each_surface_of_a_pixel(run, scene, alpha):
         Light(LightKind.SUN, direction=tuple(SUN.tolist()), intensity=2.0, color=(1.0, 1.0, 1.0)),
         Light(LightKind.POINT, tuple(LAMP.tolist()), intensity=30.0, color=(1.0, 1.0, 1.0)),
     )
-    node = DeferredLighting(lights=numbers_of(lights), ambient_intensity=0.0, specular=0.0)
+    node = DeferredLighting(lights=number_lights(lights), ambient_intensity=0.0, specular=0.0)
     inputs = {name: scene[name] for name in ("albedo", "normal", "depth")}
     if alpha:
         inputs["albedo"] = inputs["albedo"].copy()

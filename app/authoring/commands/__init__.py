@@ -26,6 +26,7 @@ from .linking import (
     ToggleCollapse,
     ToggleMute,
 )
+from .named_items import AddItem, DuplicateItem, RemoveItem, RenameItem
 from .settings import SetCanvasSize, SetColorSettings, SetFrameRange, SetFrameRate, SetPreroll, SetReferenceHeight
 from .values import (
     ConvertLength,
@@ -48,6 +49,7 @@ __all__ = [
     "AddFrame",
     "AddGroupFile",
     "AddInput",
+    "AddItem",
     "AddMatte",
     "AddNode",
     "AddOutput",
@@ -68,6 +70,7 @@ __all__ = [
     "Disconnect",
     "DisconnectAll",
     "DropFiles",
+    "DuplicateItem",
     "DuplicateSelection",
     "EditCommand",
     "EditComment",
@@ -90,9 +93,11 @@ __all__ = [
     "PlaceElement",
     "RemoveDot",
     "RemoveEnd",
+    "RemoveItem",
     "RemoveKey",
     "RenameControl",
     "RenameEnd",
+    "RenameItem",
     "RenameNode",
     "ReplaceDocument",
     "ReplaceGraph",

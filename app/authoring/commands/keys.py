@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 
 from ...errors import GraphError
 from ...graph import Animation, Expression, Graph, Key, Keys, Port
@@ -35,11 +35,11 @@ class SetKey(EditCommand[None]):
             raise GraphError(f"{self.port} follows an expression: bake it into keys, or remove it first")
         keys = before or Keys()
         if self.value is not None:
-            keys = keys.set(document.time.frame, _to_plain(self.value))
+            keys = keys.set(document.time.frame, to_scalar(self.value))
         elif keys.keys:
             keys = keys.insert(document.time.frame)
         else:
-            keys = keys.set(document.time.frame, document.time.evaluate(self.port))
+            keys = keys.set(document.time.frame, to_scalar(document.time.evaluate(self.port)))
         return Edited(f"Key {self.port}", None, document.graph.animate(self.port, keys), merge=self.merge)
 
 
@@ -126,7 +126,7 @@ class BakeKeys(EditCommand[None]):
         frames = list_range(first, last) if self.frames is None else tuple(self.frames)
         if not frames:
             raise GraphError(f"{self.port}: there are no frames to bake")
-        values = {frame: document.time.evaluate(self.port, frame) for frame in frames}
+        values = {frame: to_scalar(document.time.evaluate(self.port, frame)) for frame in frames}
         keys = (
             Key(frame, plain, "constant" if isinstance(plain, bool) else "linear") for frame, plain in values.items()
         )
@@ -139,7 +139,7 @@ def add_key(document: OpenDocument, port: Port, value: object) -> Keys | None:
     before = document.graph.animation.get(port)
     if isinstance(before, Expression):
         raise GraphError(f"{port} follows an expression: edit it, or remove it first")
-    return before and before.set(document.time.frame, _to_plain(value))
+    return before and before.set(document.time.frame, to_scalar(value))
 
 
 def check_not_animated_outside(document: OpenDocument, port: Port) -> None:
@@ -161,7 +161,8 @@ def _animate(document: OpenDocument, graph: Graph, port: Port, animation: Animat
         return graph.animate(port, None)
 
 
-def _to_plain(value: object) -> Plain:
+def to_scalar(value: object) -> Scalar:
+    """A value as a key holds it. Raises GraphError for a value that keys cannot have."""
     if isinstance(value, list | tuple):
         return tuple(float(part) for part in value)
     if isinstance(value, bool | int | float | str):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Container
 from pathlib import Path
 
-from ...graph import Graph, Port, Unknown, signature
+from ...graph import Graph, Port, Unknown, find_declaration
 from ...graph.names import name_fault
 from .element_id import ElementId
 
@@ -32,8 +32,9 @@ def name_copy(name: str, used_names: Container[str], kind: str = "") -> str:
 def value_label(graph: Graph, port: Port) -> str:
     """A value for the user: its label, else its name."""
     item = graph.nodes.get(port.node)
-    value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
-    return (value.label if value else "") or port.socket.replace("_", " ")
+    value = None if item is None or isinstance(item, Unknown) else find_declaration(item, port.socket)
+    words = port.socket.partition(".")[2] or port.socket
+    return (value.label if value else "") or words.replace(".", " ").replace("_", " ")
 
 
 def describe_elements(elements: Collection[ElementId]) -> str:

@@ -7,14 +7,26 @@ from dataclasses import replace
 from halation.nodes import Node
 
 from ...errors import GraphError
-from ...graph import ANIMATED, Expression, Graph, Group, Port, animation_fault, signature
+from ...graph import (
+    ANIMATED,
+    Expression,
+    Graph,
+    Group,
+    Port,
+    animation_fault,
+    find_declaration,
+    list_sockets,
+    signature,
+)
 
 
 def animatable_values(graph: Graph, id: str) -> tuple[Port, ...]:
     """The values of a node that can change over time."""
     if id not in graph.nodes:
         return ()
-    return tuple(Port(id, name) for name, value in signature(graph.nodes[id]).values.items() if value.type in ANIMATED)
+    item = graph.nodes[id]
+    sockets = (socket for name in signature(item).values for socket in list_sockets(item, name))
+    return tuple(Port(id, socket) for socket in sockets if can_animate(graph, Port(id, socket)))
 
 
 def can_animate(graph: Graph, port: Port) -> bool:
@@ -43,7 +55,7 @@ def is_default(graph: Graph, port: Port) -> bool:
 def fit_color(graph: Graph, port: Port, value: object) -> object:
     """A color as the value takes it: pickers give four numbers, one too many for a color without alpha."""
     item = graph.nodes.get(port.node)
-    declaration = None if item is None else signature(item).values.get(port.socket)
+    declaration = None if item is None else find_declaration(item, port.socket)
     is_rgb = declaration is not None and declaration.type == "color" and declaration.length == 3
     return value[:3] if is_rgb and isinstance(value, tuple) and len(value) == 4 else value
 
@@ -53,6 +65,9 @@ def reset_value(graph: Graph, port: Port) -> Graph:
     graph.value(port)
     graph = graph.animate(port, None) if port in graph.animation else graph
     item = graph.node(port.node)
+    declaration = find_declaration(item, port.socket)
+    if port != port.whole and declaration:
+        return graph.put(port, declaration.default)
     if isinstance(item, Group):
         values = {name: plain for name, plain in item.values.items() if name != port.socket}
         return replace(graph, nodes={**graph.nodes, port.node: replace(item, values=values)})

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from halation.nodes import Plain, Value
+from halation.nodes import ItemSet, Scalar, Value
 
-from ...graph import Graph, signature
+from ...graph import Graph, find_declaration
 from .affine import Knob
 
 _ODD = re.compile(r"[^A-Za-z0-9]+")
@@ -25,7 +25,7 @@ class IsfControl:
     entry: Section
     knobs: tuple[Knob, ...]
 
-    def value_at(self, point: Mapping[str, float]) -> Plain:
+    def value_at(self, point: Mapping[str, float]) -> Scalar:
         """The value of the control at a point."""
         parts = tuple(point.get(knob.name, knob.rest) for knob in self.knobs)
         if self.value.length > 1:
@@ -50,8 +50,9 @@ def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfCont
     for name, control in graph.controls.items():
         target = control.target
         item = graph.nodes.get(target.node)
-        value = signature(item).values.get(target.socket) if item else None
-        if value is None or item is None:
+        value = find_declaration(item, target.socket) if item else None
+        rest = graph.value(target) if value else None
+        if value is None or rest is None or isinstance(rest, ItemSet):
             continue
         fits = value.type in ("float", "int", "bool", "color") or (value.type == "vector" and value.length == 2)
         if not fits:
@@ -62,13 +63,11 @@ def find_controls(graph: Graph, used_names: Iterable[str]) -> tuple[list[IsfCont
             continue
         shader_name = make_identifier(name, names)
         names.add(shader_name)
-        controls.append(
-            _make_control(shader_name, name, control.label or value.label or name, value, graph.value(target))
-        )
+        controls.append(_make_control(shader_name, name, control.label or value.label or name, value, rest))
     return controls, notes
 
 
-def _make_control(shader_name: str, name: str, label: str, value: Value, rest: Plain) -> IsfControl:
+def _make_control(shader_name: str, name: str, label: str, value: Value, rest: Scalar) -> IsfControl:
     parts = list(rest) if isinstance(rest, tuple) else [float(rest)]
     low, high = _find_range(value, parts)
     entry: Section = {"NAME": shader_name, "LABEL": label}

@@ -24,9 +24,9 @@ from halation.nodes import (
     Node,
     Overlap,
     Pixels,
-    Plain,
     Reach,
     Render,
+    Scalar,
     Scene,
     ShaderText,
     Size,
@@ -388,6 +388,6 @@ def find_choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
     return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
 
 
-def _check_plain(item: Plain) -> float | int | bool | tuple[float, ...]:
+def _check_plain(item: Scalar) -> float | int | bool | tuple[float, ...]:
     assert not isinstance(item, str)
     return item

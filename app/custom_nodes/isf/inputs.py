@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 from collections.abc import Iterable, Mapping
 
-from halation.nodes import Field, Image, Plain, Socket, Uniform, Value
+from halation.nodes import Field, Image, Scalar, Socket, Uniform, Value
 
 from .header import IsfInput
 
@@ -99,7 +99,7 @@ def make_isf_value(entry: IsfInput, name: str) -> Value:
     return Value(name, "float", first[0], low=low, high=high, unit="ratio", label=label)
 
 
-def make_uniform(entry: IsfInput, plain: Plain, display: bool) -> Uniform:
+def make_uniform(entry: IsfInput, plain: Scalar, display: bool) -> Uniform:
     """What the shader is given for a value of the node."""
     if entry.choices:
         return next(number for number, label in entry.choices if label == plain)

@@ -8,7 +8,7 @@ from hashlib import blake2b
 from pathlib import PurePath
 from typing import Any
 
-from halation.nodes import Draw, Drawn, Filter, OutputSocket, Plain, ShaderText, Size, Temporal, Uniform, Value, Vector
+from halation.nodes import Draw, Drawn, Filter, OutputSocket, Scalar, ShaderText, Size, Temporal, Uniform, Value, Vector
 
 from ...errors import GraphError
 from ...glsl import parse, words
@@ -196,7 +196,7 @@ class _ShaderDrawing:
                 raise GraphError(f"the {side} of the buffer '{buffer.name}', '{text}': {fault}") from None
         return sizes[0], sizes[1]
 
-    def _find_setting(self, name: str) -> Plain:
+    def _find_setting(self, name: str) -> Scalar:
         return self.node.setting(self.shader.names[name])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 
-from ...graph import Graph, Group, Port, signature
+from ...graph import Graph, Group, Port, find_declaration, signature
 from ...graph.walk import find_loops
 from .parts import PartPath
 
@@ -37,8 +37,7 @@ def find_merge_faults(merge: Graph, ours: Graph, theirs: Graph, at: PartPath = (
 def _is_gone(graph: Graph, port: Port) -> bool:
     """True if a port is not a value of a node; a node of an unknown type may have any value."""
     item = graph.nodes.get(port.node)
-    face = None if item is None else signature(item)
-    return face is None or not (face.anything or port.socket in face.values)
+    return item is None or not (signature(item).anything or find_declaration(item, port.socket))
 
 
 def _links_in_loops(merge: Graph, ours: Graph) -> Iterator[Port]:

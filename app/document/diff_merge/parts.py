@@ -137,6 +137,8 @@ def is_whole(at: PartPath, *versions: Any) -> bool:
         return True
     if len(here) == 2 and here[0] == "nodes":
         return len({_kind(item) for item in present}) > 1
+    if is_named_item(here):
+        return len({str(item.get("kind")) for item in present}) > 1
     return len(here) == 2 and here[0] == "animation" and len({"keys" in item for item in present}) > 1
 
 
@@ -153,6 +155,11 @@ def path_text(at: PartPath) -> str:
 def conflict_key(at: Any) -> str:
     """The key that identifies a conflict: the path that it is about."""
     return json.dumps(at)
+
+
+def is_named_item(here: PartPath) -> bool:
+    """True for an item of a value that holds named items: versions of two kinds have other fields."""
+    return len(here) == 5 and here[0] == "nodes" and here[2] == "values"
 
 
 def _kind(node: Tree) -> tuple[str, ...]:

@@ -9,7 +9,19 @@ from typing import Any, Final, Literal
 
 from ...graph import Graph
 from .difference import GraphDifference, compare_graphs
-from .parts import ABSENT, CONFLICTS, PartPath, Tree, equals, is_list, is_tree, local_path, path_text, sort_keys
+from .parts import (
+    ABSENT,
+    CONFLICTS,
+    PartPath,
+    Tree,
+    equals,
+    is_list,
+    is_named_item,
+    is_tree,
+    local_path,
+    path_text,
+    sort_keys,
+)
 from .wording import animation_text, change_text, end_text, item_text, key_text, value_at, value_text
 
 Sign = Literal["+", "-", "~"]
@@ -100,13 +112,17 @@ class _PartDescription:
     def describe_whole(self, part: Any) -> Iterator[DifferenceLine]:
         """The lines for a part that exists."""
         here = local_path(self.at)
-        if len(here) != 2 or here[0] != "nodes":
+        if is_tree(part) and self.value and self.value.items:
+            for name, fields in sorted(part.items()):
+                for field, plain in sorted(fields.items()):
+                    yield from self._child(name, field).describe_whole(plain)
+        elif len(here) != 2 or here[0] != "nodes":
             yield DifferenceLine(
                 "+", self._entry(part) or f"{self._kind()}{self.name}: {value_text(part, self.value, self.exact)}"
             )
-            return
-        yield DifferenceLine("+", f"node {self.name}: {item_text(part)}")
-        yield from self._describe_parts(part, lambda inner, item: inner.describe_whole(item))
+        else:
+            yield DifferenceLine("+", f"node {self.name}: {item_text(part)}")
+            yield from self._describe_parts(part, lambda inner, item: inner.describe_whole(item))
 
     def _describe_parts(
         self, node: Tree, each: Callable[[_PartDescription, Any], Iterator[DifferenceLine]]
@@ -159,6 +175,13 @@ class _PartDescription:
             if len(here) == 4 and is_tree(part):
                 return f"key of {self._parent().name} at {here[3]:g}: {key_text(part, self.value, self.exact)}"
             return ""
+        if is_tree(part) and is_named_item(here) and (holder := self._parent().value) and holder.items:
+            fields = [
+                f"{name} {value_text(plain, self._child(name).value)}"
+                for name, plain in sorted(part.items())
+                if name != "kind"
+            ]
+            return f"{holder.items.noun} {self.name}: {', '.join([str(part.get('kind')), *fields])}"
         if not is_tree(part) or len(here) != 2:
             return ""
         if here[0] == CONFLICTS:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any, Final, cast
 
 from halation.nodes import Value
 
-from ...graph import Graph, Group, signature
+from ...graph import Graph, Group, find_declaration
 from .parts import ABSENT, PartPath, Tree, is_list, is_tree, to_document
 
 _PLAIN: Final = ("ratio", "count")
@@ -71,6 +72,8 @@ def value_text(part: Any, value: Value | None = None, exact: bool = False) -> st
     """A value with its unit; one that is absent is the default."""
     if part is ABSENT:
         return "not set" if value is None else f"{value_text(value.default, value, exact)} (default)"
+    if isinstance(part, Mapping) and value and value.items and not exact:
+        return _shorten(", ".join(cast("Mapping[str, object]", part)))
     unit = f" {value.unit}" if value and value.unit and value.unit not in _PLAIN else ""
     if isinstance(part, bool) or part is None:
         return json.dumps(part)
@@ -93,13 +96,13 @@ def value_at(graph: Graph, at: PartPath) -> Value | None:
             return None
         graph, at = item.graph, at[3:]
     if len(at) >= 4 and at[0] == "nodes" and at[2] == "values":
-        node, name = str(at[1]), str(at[3])
+        node, name = str(at[1]), ".".join(map(str, at[3:]))
     elif len(at) >= 2 and at[0] == "animation":
         node, _, name = str(at[1]).partition(".")
     else:
         return None
     item = graph.nodes.get(node)
-    return None if item is None else signature(item).values.get(name)
+    return None if item is None else find_declaration(item, name)
 
 
 def _shorten(words: str, whole: bool = False) -> str:

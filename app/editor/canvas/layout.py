@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Literal
 
-from halation.nodes import Kind, Node, Plain, Socket, Value
+from halation.nodes import ItemSet, Kind, Node, Plain, Socket, Value
 
 from ...authoring.edits.coding import LANGUAGES
 from ...authoring.edits.element_id import ElementId
 from ...custom_nodes import CustomNode
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Signature, Unknown, signature
-from ..fields.lights import describe_count
+from ..fields.item_facts import describe_count
 from ..fields.numbers import bar, format_number, unit_suffix
 from ..shared.entries import spell_out
 from .geometry import Rect
@@ -335,8 +335,8 @@ def _make_field_texts(value: Value, plain: Plain) -> tuple[FieldText, ...]:
         return (FieldText(PurePath(str(plain)).name),)
     if value.type in ("choice", "text"):
         return (FieldText(spell_out(str(plain))),)
-    if value.type == "lights" and isinstance(plain, tuple):
-        return (FieldText(describe_count(plain)),)
+    if value.items and isinstance(plain, ItemSet):
+        return (FieldText(describe_count(plain, value.items.noun)),)
     if value.type in ("vector", "matrix") and isinstance(plain, tuple):
         return tuple(FieldText(format_number(part, value), bar(part, value)) for part in plain)
     if value.type in ("float", "int") and isinstance(plain, int | float):

@@ -11,7 +11,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 from msgspec.structs import replace
 
 from ...graph import Animation, Extrapolation, Interpolation, Key, Keys, Port
@@ -250,7 +250,7 @@ def _lift_key(key: Key, which: Collection[int], lift: float, low: float, high: f
     return replace(key, value=_change_value(key, which, lambda part: min(max(part + lift, low), high)))
 
 
-def _change_value(key: Key, which: Collection[int], change: Callable[[float], float]) -> Plain:
+def _change_value(key: Key, which: Collection[int], change: Callable[[float], float]) -> Scalar:
     """The value of a key with other numbers in some channels; a switch is on from a half."""
     if isinstance(key.value, bool):
         return change(float(key.value)) >= 0.5

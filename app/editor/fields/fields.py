@@ -85,15 +85,13 @@ class Fields:
     stops: float = 0.0
     """The intensity that the open color picker shows, in EV."""
     before: Plain = 0.0
-    """The curve, ramp or lights before the drag."""
+    """The curve or ramp before the drag."""
     point: tuple[str, int] = ("", -1)
     """The curve or ramp field with a selected point, and the index of the point."""
-    lights: dict[str, int] = field(default_factory=dict[str, int])
-    """The selected light by its field, shared with the window."""
-    lights_shown: dict[str, int] = field(default_factory=dict[str, int])
-    """The light that each field has scrolled to."""
-    lights_gesture: str = ""
-    """The merge token of the drag of lights to which `before` belongs."""
+    items: dict[str, str] = field(default_factory=dict[str, str])
+    """The name of the selected item of each value with named items, shared with the window."""
+    items_shown: dict[str, str] = field(default_factory=dict[str, str])
+    """The item that each list has scrolled to."""
     filter: str = ""
     """The search text of the open choice list."""
     gesture: int = 0

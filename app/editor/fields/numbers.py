@@ -205,7 +205,7 @@ def describe_default(declaration: Value) -> str:
             return "on" if default else "off"
         case "choice" | "text" | "path":
             return str(default)
-        case "curve" | "ramp" | "lights":
+        case "curve" | "ramp" | "items":
             return ""
         case _:
             assert isinstance(default, tuple)

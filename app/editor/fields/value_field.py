@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
@@ -9,22 +11,30 @@ from .choice_field import choice_field, toggle_field
 from .color_field import color_field
 from .curve_field import curve_field
 from .fields import Edit, Fields
-from .lights_field import lights_field
 from .number_field import matrix_field, number_field, vector_field
 from .ramp_field import ramp_field
 from .text_field import text_field
 
 
 def value_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+    fields: Fields,
+    id: str,
+    value: Plain,
+    declaration: Value,
+    width: float,
+    *,
+    label: str = "",
+    mixed: bool = False,
+    suffix: str | None = None,
 ) -> Edit | None:
     """Draw the field of a value at the cursor; returns its edit.
 
     `id` is unique in the window. `label` stands inside the field, `mixed` shows that several values differ.
+    `suffix` is a unit in place of that of the declaration.
     """
     match declaration.type:
         case "float" | "int":
-            draw = number_field
+            draw = partial(number_field, suffix=suffix)
         case "bool":
             draw = toggle_field
         case "choice":
@@ -39,10 +49,10 @@ def value_field(
             draw = curve_field
         case "ramp":
             draw = ramp_field
-        case "lights":
-            draw = lights_field
         case "path" | "text":
             draw = text_field
+        case "items":
+            return None  # they have rows of their own in the inspector
     imgui.begin_group()
     edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)
     imgui.end_group()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from halation.nodes import REFERENCE_HEIGHT, Node, Plain, Value, is_length, name_reference
+from halation.nodes import REFERENCE_HEIGHT, ItemSet, Node, Plain, Value, is_length, name_reference
 
 from ...authoring.commands import ReplaceGraph, ResetValue, SetValue, SetValues
 from ...errors import GraphError, UsageError
-from ...graph import Graph, Port, Unknown, signature
+from ...graph import Graph, Port, Unknown, find_declaration, signature
+from ...graph.named_items import describe_items
 from ..fields.fields import Edit
 from ..fields.numbers import parse_number
 
@@ -41,7 +42,8 @@ def reset(session: Session, ports: Ports) -> None:
 
 def default_of(graph: Graph, port: Port) -> Plain:
     """The default of a value: its number in a new node."""
-    return declare(graph, port, signature(graph.node(port.node)).values[port.socket]).default
+    declaration = find_declaration(graph.node(port.node), port.socket)
+    return graph.value(port) if declaration is None else declare(graph, port, declaration).default
 
 
 def declare(graph: Graph, port: Port, declaration: Value) -> Value:
@@ -80,18 +82,18 @@ def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
 
 def as_text(value: Plain) -> str:
     """A value for the clipboard."""
-    return json.dumps(value)
+    return json.dumps(describe_items(value) if isinstance(value, ItemSet) else value)
 
 
-def from_text(text: str) -> Plain:
-    """A value from the clipboard. Raises UsageError."""
+def from_text(text: str) -> Any:
+    """A value from the clipboard, as JSON holds it. Raises UsageError."""
     try:
         parsed = json.loads(text)
     except ValueError:
         return text.strip()
     if isinstance(parsed, list):
         parsed = tuple(parsed)
-    if not isinstance(parsed, int | float | bool | str | tuple):
+    if not isinstance(parsed, int | float | bool | str | tuple | dict):
         raise UsageError("the clipboard holds no value: copy one first")
     return parsed
 

@@ -32,8 +32,8 @@ class InspectorContext(PanelContext):
     timeline: Player
     renders: RenderOverviews
     coloring: ColorFallback
-    lights: dict[str, int]
-    """The light that is selected, by the value that lists it."""
+    items: dict[str, str]
+    """The name of the selected item of each value with named items, such as lights."""
 
     @classmethod
     def compose(
@@ -53,5 +53,5 @@ class InspectorContext(PanelContext):
             timeline,
             services.renders,
             services.coloring,
-            services.lights,
+            services.items,
         )

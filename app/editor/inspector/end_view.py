@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, get_args
 
-from halation.nodes import Kind, Missing, Plain, Value
+from halation.nodes import Kind, Missing, Scalar, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -133,7 +133,7 @@ class EndView:
         channels = end.socket().channels
         if end.default is None:
             if imgui.button(f"None##{key}", (width, 0.0)):
-                start: Plain = 0.0 if channels == 1 else (0.0,) * channels
+                start: Scalar = 0.0 if channels == 1 else (0.0,) * channels
                 rows.act(lambda: session.apply(SetInput(name, default=start)))
             tip("No default: link something, bind or choose a file. Click to set a default")
             return None

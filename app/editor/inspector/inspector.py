@@ -35,7 +35,7 @@ class Inspector:
     def draw(self) -> None:
         """Draw into the current window."""
         fields = self._fields
-        fields.palette, fields.places, fields.lights = self._context.palette, self._context.places, self._context.lights
+        fields.palette, fields.places, fields.items = self._context.palette, self._context.places, self._context.items
         self._values.begin()
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))

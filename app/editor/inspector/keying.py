@@ -11,6 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import AnimateValues, BakeKeys, SetExpression, ToggleKey
+from ...authoring.commands.keys import to_scalar
 from ...authoring.edits.values import find_expression_fault
 from ...document.animation import describe_animation, read_animation
 from ...errors import GraphError, UsageError
@@ -86,7 +87,7 @@ def toggle(session: Session, ports: Ports) -> None:
         if removes:
             animations[port] = keys and keys.remove(session.time.frame)
         else:
-            animations[port] = (keys or Keys()).set(session.time.frame, session.time.evaluate(port))
+            animations[port] = (keys or Keys()).set(session.time.frame, to_scalar(session.time.evaluate(port)))
     session.apply(
         AnimateValues(animations, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
     )

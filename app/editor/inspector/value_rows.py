@@ -7,16 +7,18 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
-from halation.nodes import Node, Plain, Value
+from halation.nodes import ItemSet, Node, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.commands import ConvertLength, Disconnect, ExposeValue, HideControl, RenameControl
 from ...authoring.edits.element_id import ElementId
 from ...authoring.edits.values import can_animate, find_control
-from ...graph import INPUTS, Graph, Port, signature
+from ...graph import INPUTS, Graph, Port, find_declaration, signature
+from ...graph.named_items import split_path
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
+from ..fields.item_facts import find_unit
 from ..fields.numbers import describe_default, describe_value
 from ..fields.value_field import value_field
 from ..shared.render_facts import convention_words, first_words, use_of
@@ -36,8 +38,8 @@ from .applying import (
 )
 from .color_rows import space_field
 from .file_field import FileField
+from .item_rows import ItemRows
 from .keying import WIDTH, Keying, spoken, value_now
-from .light_rows import light_rows
 
 if TYPE_CHECKING:
     from .context import InspectorContext
@@ -73,7 +75,7 @@ class ValueRows:
         control = find_control(session.graph, port) if len(ports) == 1 else None
         rows.name(
             key,
-            label or declaration.label or port.socket,
+            label or declaration.label or declaration.name,
             doc=_tip(declaration, control),
             changed=changed,
             color=color,
@@ -131,7 +133,7 @@ class ValueRows:
             _crosshair(rows, key)
         if control:
             self._mark(rows, port, control)
-        return released and declaration.type not in ("curve", "ramp", "lights")
+        return released and declaration.type not in ("curve", "ramp", "items")
 
     def _draw_notes(self, rows: Rows, ports: Ports, declaration: Value, value: Plain) -> None:
         """Draw what belongs below a field: the file of a path, a color space, the selected light."""
@@ -140,8 +142,20 @@ class ValueRows:
             self.files.about(rows, value, declaration, _layer_of(session.graph, port, declaration))
         if declaration.space and isinstance(value, str):
             self._about_space(rows, port, value)
-        if declaration.type == "lights" and isinstance(value, tuple):
-            light_rows(rows, str(port), value, lambda edit: apply(session, ports, declaration, edit))
+        if len(ports) == 1 and (items := self._item_rows(rows, port, declaration, value)):
+            items.draw_fields()
+
+    def _item_rows(self, rows: Rows, port: Port, declaration: Value, value: Plain) -> ItemRows | None:
+        """The rows of a value that holds named items; None for any other."""
+        if declaration.items is None or not isinstance(value, ItemSet):
+            return None
+
+        def draw_field(end: Port) -> None:
+            field = find_declaration(rows.context.session.graph.node(end.node), end.socket)
+            if field:
+                self.draw(rows, (end,), field)
+
+        return ItemRows(rows, port, declaration.items, value, draw_field)
 
     def take_abandoned(self, context: InspectorContext, abandoned: tuple[str, Edit]) -> None:
         """Apply text that was typed in a field before the selection changed."""
@@ -191,7 +205,31 @@ class ValueRows:
         file = _file_of(graph, port)
         if file is not None and isinstance(value, str):
             return self.files.layer(rows, str(port), file, value, width)
-        return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
+        if declaration.items:
+            items = self._item_rows(rows, port, declaration, value)
+            self._draw_items(rows, items, width, len(rows.context.session.selection))
+            return None
+        unit = self._find_unit(graph, port)
+        return value_field(self.fields, str(port), value, declaration, width, mixed=mixed, suffix=unit)
+
+    def _draw_items(self, rows: Rows, items: ItemRows | None, width: float, count: int) -> None:
+        """Draw the list of named items; only that of one node can be edited."""
+        imgui.begin_group()
+        if items and count == 1:
+            items.draw_list(width)
+        else:
+            rows.note("Select one node to edit this list.")
+        imgui.end_group()
+
+    def _find_unit(self, graph: Graph, port: Port) -> str | None:
+        """The unit of a field of a named item, where it is not a unit of values."""
+        value, item, field = split_path(port.socket)
+        if not item:
+            return None
+        declaration, items = find_declaration(graph.node(port.node), value), graph.value(Port(port.node, value))
+        if declaration is None or declaration.items is None or not isinstance(items, ItemSet):
+            return None
+        return find_unit(declaration.items, items[item].kind, field)
 
     def _about_space(self, rows: Rows, port: Port, value: str) -> None:
         """Draw the color space of the file that a node reads."""

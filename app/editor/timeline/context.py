@@ -24,8 +24,8 @@ class TimelineContext(PanelContext):
     timeline: TimelineState
     preview: Preview
     actions: Actions
-    lights: dict[str, int]
-    """The light that is selected, by the value that lists it."""
+    items: dict[str, str]
+    """The name of the selected item of each value with named items, such as lights."""
 
     @property
     def session(self) -> Session:
@@ -42,5 +42,5 @@ class TimelineContext(PanelContext):
             timeline,
             services.preview,
             services.actions,
-            services.lights,
+            services.items,
         )

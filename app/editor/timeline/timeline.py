@@ -45,7 +45,7 @@ class Timeline:
     def draw(self) -> None:
         """Draw into the current window."""
         fields, scale = self._fields, ui_scale()
-        fields.palette, fields.places, fields.lights = self._context.palette, self._context.places, self._context.lights
+        fields.palette, fields.places, fields.items = self._context.palette, self._context.places, self._context.items
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         start, size = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()

@@ -55,8 +55,8 @@ class Services:
     commands: WindowCommands = field(default_factory=WindowCommands)
     faults: dict[str, str] = field(default_factory=dict[str, str])
     """Panels that failed, with the traceback: shown in Problems."""
-    lights: dict[str, int] = field(default_factory=dict[str, int])
-    """The light that is selected, by the value that lists it: the inspector shows it, the viewer marks it."""
+    items: dict[str, str] = field(default_factory=dict[str, str])
+    """The name of the selected item of each value with named items: the inspector shows it, the viewer marks it."""
 
     @property
     def session(self) -> Session:

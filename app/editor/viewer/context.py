@@ -41,8 +41,8 @@ class ViewerContext(PanelContext):
     code: ReportedFault
     renders: RenderOverviews
     coloring: ColorFallback
-    lights: dict[str, int]
-    """The light that is selected, by the value that lists it."""
+    items: dict[str, str]
+    """The name of the selected item of each value with named items, such as lights."""
 
     @property
     def session(self) -> Session:
@@ -71,5 +71,5 @@ class ViewerContext(PanelContext):
             code,
             services.renders,
             services.coloring,
-            services.lights,
+            services.items,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from halation.nodes import CameraModel, Node
+from halation.nodes import LIGHTS, CameraModel, Node
 
 from ...graph import Port
 from .focus import focuses
@@ -32,7 +32,7 @@ def depths(context: ViewerContext) -> dict[str, Port]:
     if context.viewer.orbits and (scene := scene_at(context)) is not None and "depth" in scene.outputs:
         ports[SCENE] = Port(context.viewer.scene, "depth")
     item = session.graph.nodes.get(session.active)
-    if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
+    if isinstance(item, Node) and (focuses(item) or any(value.items is LIGHTS for value in item.values.values())):
         linked = {DEPTH: session.graph.links.get(Port(session.active, "depth"))}
         if not focuses(item):
             linked[PLACE] = session.graph.links.get(Port(session.active, "position"))

@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
-from msgspec import structs
-
 from ...authoring.commands import SetValue, SetValues
 from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_grip, drag_box, order_box, wipe_angle, wipe_grip
@@ -151,7 +149,7 @@ class MouseHold:
             grip = next(grip.at for grip in aim.gizmo.grips if grip.part == aim.part)
             held_point = grip[0] / sight.picture[0], grip[1] / sight.picture[1]
         if aim.lamp is not None:
-            held_point, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
+            held_point, context.items[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.name
             if aim.kind in ("goal", "goal depth") and aim.lamp.aims:
                 held_point, hold.depth = aim.lamp.aims
             elif aim.kind == "sun":
@@ -242,7 +240,7 @@ class MouseHold:
             case "sun":
                 knob = at[0] + self.offset[0], at[1] + self.offset[1]
                 direction = direction_at(sight, self.scale, lamp.camera, knob)
-                change_light(self.context, lamp, structs.replace(lamp.light, direction=direction))
+                change_light(self.context, lamp, direction=direction)
             case _:
                 pass
 

@@ -9,7 +9,6 @@ from halation.nodes import Light, LightKind
 from imgui_bundle import imgui
 
 from ..fields.colors import swatch
-from ..fields.lights import light_title
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from .dome import RADIUS, knob_of, middle_of
@@ -44,9 +43,9 @@ def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) ->
             _goal(context, lines, sight, lamp, ring, near=math.dist(at_mouse, sight.place(lamp.aims[0])) <= reach)
         _knob(lines, at, lamp.light, ring)
         if near or (lamp.chosen and context.interface.dragging and context.viewer.hovered):
-            words = f"{light_title(lamp.light, lamp.index)}  depth {lamp.depth:.4g}"
-            context.places[f"label {lamp.port} {lamp.index}"] = draw_label(lines, (at[0], at[1] + 2.0 * reach), words)
-        context.places[f"handle {lamp.port} {lamp.index}"] = around(at, 0.6 * reach)
+            words = f"{lamp.name}  depth {lamp.depth:.4g}"
+            context.places[f"label {lamp.port} {lamp.name}"] = draw_label(lines, (at[0], at[1] + 2.0 * reach), words)
+        context.places[f"handle {lamp.port} {lamp.name}"] = around(at, 0.6 * reach)
 
 
 def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
@@ -67,8 +66,8 @@ def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> 
             lines.add_line(at, middle, u32(WHITE), 1.5 * scale)
         _knob(lines, at, sun.light, CHOSEN if near or sun.chosen else WHITE)
         if near:
-            draw_label(lines, (at[0], at[1] - 20.0 * scale), light_title(sun.light, sun.index))
-        context.places[f"handle {sun.port} {sun.index}"] = around(at, 6.0 * scale)
+            draw_label(lines, (at[0], at[1] - 20.0 * scale), sun.name)
+        context.places[f"handle {sun.port} {sun.name}"] = around(at, 6.0 * scale)
     context.places["viewer dome"] = around(middle, RADIUS * scale)
 
 
@@ -93,9 +92,9 @@ def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: L
     lines.add_circle(end, 5.0 * scale, u32(BLACK, SHADE), 0, 3.5 * scale)
     lines.add_circle(end, 5.0 * scale, u32(color), 0, 2.0 * scale)
     if near:
-        words = f"{light_title(lamp.light, lamp.index)} shines here  depth {depth:.4g}"
-        context.places[f"label goal {lamp.port} {lamp.index}"] = draw_label(lines, (end[0], end[1] + 20 * scale), words)
-    context.places[f"goal {lamp.port} {lamp.index}"] = around(end, 6.0 * scale)
+        words = f"{lamp.name} shines here  depth {depth:.4g}"
+        context.places[f"label goal {lamp.port} {lamp.name}"] = draw_label(lines, (end[0], end[1] + 20 * scale), words)
+    context.places[f"goal {lamp.port} {lamp.name}"] = around(end, 6.0 * scale)
 
 
 def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:

@@ -6,12 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from halation.nodes import CameraModel, Kind, Light, LightKind, lights_of
-from msgspec import structs
+from halation.nodes import LIGHTS, CameraModel, ItemSet, Kind, Light, LightKind, light_of
 
-from ...authoring.commands import ReplaceGraph, SetValue
+from ...authoring.commands import AddItem, RemoveItem, SetValues
 from ...graph import Port, Unknown, signature
-from ..fields.lights import count_lights, insert_light, light_at, make_light, remove_light, replace_light
+from ...graph.named_items import join_path
+from ..fields.item_facts import choose_item, neighbor_of
 from .geometry import Point
 from .ground import surface_at
 from .perspective import Place, dot, move_place, project, unit, unproject
@@ -36,13 +36,13 @@ _DEFAULT_DEPTH = 5.0
 
 @dataclass(frozen=True)
 class Lamp:
-    """A light before the camera: its value, its number there, and where it is as a fraction of the picture.
+    """A light before the camera: its value, its name there, and where it is as a fraction of the picture.
 
     A sun is everywhere: `at` is the middle of the picture, and the depth 0.
     """
 
     port: Port
-    index: int
+    name: str
     light: Light
     camera: CameraModel
     at: Point
@@ -82,37 +82,34 @@ def suns(context: ViewerContext) -> tuple[Lamp, ...]:
 def _list_lamps(context: ViewerContext) -> tuple[Lamp, ...]:
     camera, found_lamps = _camera(context), list[Lamp]()
     for port in lists(context) if camera else ():
-        numbers = _numbers(context, port)
-        chosen = _find_chosen_index(context, port)
-        few = count_lights(numbers) <= MOST
-        for index, light in enumerate(lights_of(numbers)) if few else ((chosen, light_at(numbers, chosen)),):
+        items = _items(context, port)
+        chosen = choose_item(context.items, str(port), items)
+        names = tuple(items) if len(items) <= MOST else (chosen,)
+        for name in names:
             assert camera is not None
+            light = light_of(items[name])
             projection = (0.5, 0.5, 0.0) if light.kind is LightKind.SUN else project(camera, light.place)
             if projection is not None:
-                found_lamps.append(Lamp(port, index, light, camera, projection[:2], projection[2], index == chosen))
+                found_lamps.append(Lamp(port, name, light, camera, projection[:2], projection[2], name == chosen))
     return tuple(sorted(found_lamps, key=lambda lamp: lamp.chosen))
 
 
 def lists(context: ViewerContext) -> tuple[Port, ...]:
-    """The light lists of the active node that are not linked; none while handles are hidden."""
+    """The values of the active node that hold lights; none while handles are hidden."""
     session = context.session
     if not context.viewer.has_gizmos:
         return ()
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
-    ports = (Port(session.active, name) for name, value in signature(item).values.items() if value.type == "lights")
-    return tuple(port for port in ports if session.graph.links.get(port) is None)
+    ports = (Port(session.active, name) for name, value in signature(item).values.items() if value.items is LIGHTS)
+    return tuple(ports)
 
 
-def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
-    value = context.session.graph.value(port)
-    return value if isinstance(value, tuple) else ()
-
-
-def _find_chosen_index(context: ViewerContext, port: Port) -> int:
-    """The index of the selected light; -1 if there is none."""
-    return min(max(context.lights.get(str(port), 0), 0), count_lights(_numbers(context, port)) - 1)
+def _items(context: ViewerContext, port: Port) -> ItemSet:
+    """The items of a value at the current frame."""
+    items = context.session.time.evaluated_graph.value(port)
+    return items if isinstance(items, ItemSet) else ItemSet()
 
 
 def _camera(context: ViewerContext) -> CameraModel | None:
@@ -134,7 +131,7 @@ def _camera(context: ViewerContext) -> CameraModel | None:
 def place_light(context: ViewerContext, lamp: Lamp, to: Point, depth: float | None = None) -> None:
     """Move a light to a point of the picture, at its depth or at another one."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
-    change_light(context, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
+    change_light(context, lamp, place=unproject(lamp.camera, u, v, depth or lamp.depth))
 
 
 def drop_light(context: ViewerContext, lamp: Lamp, to: Point) -> None:
@@ -143,7 +140,7 @@ def drop_light(context: ViewerContext, lamp: Lamp, to: Point) -> None:
     if place is None:
         place_light(context, lamp, to)
     else:
-        change_light(context, lamp, structs.replace(lamp.light, place=place))
+        change_light(context, lamp, place=place)
 
 
 def turn_spot(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
@@ -152,24 +149,22 @@ def turn_spot(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> No
     direction = move_place(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
     x, y, z = (round(part, 5) for part in direction)
     if any((x, y, z)):
-        change_light(context, lamp, structs.replace(lamp.light, direction=(x, y, z)))
+        change_light(context, lamp, direction=(x, y, z))
 
 
-def change_light(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
-    """Replace a light; consecutive changes are one undo step."""
-    numbers = _numbers(context, lamp.port)
-    if lamp.index >= count_lights(numbers):
+def change_light(context: ViewerContext, lamp: Lamp, **fields: object) -> None:
+    """Set fields of a light, or keys of those that have some; consecutive changes are one undo step."""
+    if lamp.name not in _items(context, lamp.port):
         return
-    value = replace_light(numbers, lamp.index, light)
+    values = {Port(lamp.port.node, join_path(lamp.port.socket, lamp.name, name)): part for name, part in fields.items()}
     context.interface.dragging = True
-    context.log.attempt(
-        lambda: context.session.apply(SetValue(lamp.port, value, merge=merge or make_merge_token(lamp)))
-    )
+    label = f"Move {lamp.name}"
+    context.log.attempt(lambda: context.session.apply(SetValues(values, label, merge=make_merge_token(lamp))))
 
 
 def make_merge_token(lamp: Lamp) -> str:
     """The merge token of changes of a light."""
-    return f"light {lamp.port} {lamp.index}"
+    return f"light {lamp.port} {lamp.name}"
 
 
 def can_add(context: ViewerContext) -> bool:
@@ -182,40 +177,36 @@ def add_light(context: ViewerContext, to: Point) -> None:
     ports, camera = lists(context), _camera(context)
     if not ports or camera is None:
         return
-    port, light = ports[0], make_light(LightKind.POINT)
-    numbers, chosen = _numbers(context, port), _find_chosen_index(context, port)
+    port = ports[0]
     depths = [lamp.depth for lamp in lamps(context)]
     deep = depths[-1] if depths else _DEFAULT_DEPTH
-    place = _over(context, camera, to, light) or unproject(camera, *to, deep)
-    new_numbers, at = insert_light(numbers, chosen, structs.replace(light, place=place))
-    if new_numbers == numbers:
-        context.log.add("there is no room for another light")
-        return
-    context.lights[str(port)] = at
-    context.log.attempt(
-        lambda: context.session.apply(
-            ReplaceGraph(f"Add light to {port.node}", context.session.graph.set(port, new_numbers))
-        )
-    )
+    place = _over(context, camera, to, Light()) or unproject(camera, *to, deep)
+
+    def add() -> None:
+        command = AddItem(port, LightKind.POINT.value, {"place": place})
+        context.items[str(port)] = context.session.apply(command)
+
+    context.log.attempt(add)
 
 
 def can_remove(context: ViewerContext) -> bool:
     """True if a light is selected."""
-    return any(_find_chosen_index(context, port) >= 0 for port in lists(context))
+    return any(_items(context, port) for port in lists(context))
 
 
 def remove_chosen_light(context: ViewerContext) -> None:
     """Remove the selected light."""
-    session = context.session
-    port = next((port for port in lists(context) if _find_chosen_index(context, port) >= 0), None)
-    if port is not None:
-        remaining_numbers, at = remove_light(_numbers(context, port), _find_chosen_index(context, port))
-        context.lights[str(port)] = max(at, 0)
-        context.log.attempt(
-            lambda: session.apply(
-                ReplaceGraph(f"Remove light of {port.node}", session.graph.set(port, remaining_numbers))
-            )
-        )
+    port = next((port for port in lists(context) if _items(context, port)), None)
+    if port is None:
+        return
+    items = _items(context, port)
+    name = choose_item(context.items, str(port), items)
+
+    def remove() -> None:
+        context.session.apply(RemoveItem(port, name))
+        context.items[str(port)] = neighbor_of(items, name)
+
+    context.log.attempt(remove)
 
 
 def _over(context: ViewerContext, camera: CameraModel, to: Point, light: Light) -> Place | None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 
 from ...errors import GraphError
 from .fault import ExpressionError
@@ -24,7 +24,7 @@ class Scope(NamedTuple):
     frame: float
     time: float
     rate: float
-    value: Callable[[str], Plain]
+    value: Callable[[str], Scalar]
 
 
 Evaluator = Callable[[Scope], ExpressionResult]

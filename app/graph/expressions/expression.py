@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from halation.nodes import Plain
+from halation.nodes import Scalar
 from msgspec import Struct
 
 from .fault import ExpressionError
@@ -26,7 +26,7 @@ class Expression(Struct, frozen=True, dict=True):
 
     text: str
 
-    def evaluate(self, frame: float, time: float, rate: float, value: Callable[[str], Plain]) -> Plain:
+    def evaluate(self, frame: float, time: float, rate: float, value: Callable[[str], Scalar]) -> Scalar:
         """The result at a time; `value` returns that of a name. Raises ExpressionError, and what `value` raises."""
         from .evaluate import Scope
 

@@ -20,11 +20,11 @@ from halation.nodes import (
     Image,
     Light,
     LightKind,
-    LightList,
+    LightSet,
     catalogue,
     lights_of,
     look_at,
-    numbers_of,
+    number_lights,
 )
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -38,7 +38,7 @@ class Lit(Filter):
 
     image = Image()
     camera = CameraSocket(0.0)
-    lights: LightList = numbers_of((MIDDLE, BEHIND, Light(LightKind.SUN), SIDE))
+    lights: LightSet = number_lights((MIDDLE, BEHIND, Light(LightKind.SUN), SIDE))
 
 
 @pytest.fixture
@@ -47,7 +47,7 @@ def editor() -> Any:
         session=Session({**catalogue(), "lamps": Lit}, sandbox=UNRESTRICTED),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
-        lights={},
+        items={},
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act(), add=lambda text: None),
     )
@@ -101,7 +101,7 @@ def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
 def lit(editor: Any, *lights: Light) -> Port:
     """A node with lights that a camera is linked to, selected."""
     session = editor.session
-    graph = session.graph.add("lamps", Lit(lights=numbers_of(lights)) if lights else Lit())
+    graph = session.graph.add("lamps", Lit(lights=number_lights(lights)) if lights else Lit())
     graph = graph.add("camera", catalogue()["camera"]()).connect(Port("camera", "camera"), Port("lamps", "camera"))
     session.apply(ReplaceGraph("Add", graph))
     session.select([ElementId("lamps")])
@@ -110,15 +110,15 @@ def lit(editor: Any, *lights: Light) -> Port:
 
 def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
     port = lit(editor)
-    assert [(lamp.index, lamp.at) for lamp in lamps(editor)] == [
-        (3, pytest.approx((0.7, 0.5))),
-        (0, pytest.approx((0.5, 0.5))),
+    assert [(lamp.name, lamp.at) for lamp in lamps(editor)] == [
+        ("lamp_4", pytest.approx((0.7, 0.5))),
+        ("lamp_1", pytest.approx((0.5, 0.5))),
     ]
     steps = editor.session.history.position
     assert drag(editor, (561.0, 201.0), (401.0, 101.0)) == "light"
     light = lights_of(editor.session.graph.value(port))[3]
     assert light.place == pytest.approx((0.0, 0.0, 0.625), abs=1e-4) and editor.interface.dragging
-    assert editor.lights == {"lamps.lights": 3} and lamps(editor)[-1].chosen
+    assert editor.items == {"lamps.lights": "lamp_4"} and lamps(editor)[-1].chosen
     assert editor.session.history.position == steps + 1
     editor.session.undo()
     assert lights_of(editor.session.graph.value(port))[3] == SIDE
@@ -137,11 +137,11 @@ def test_without_a_camera_lights_have_no_handles(editor: Any) -> None:
 
 def test_of_many_lights_the_selected_one_has_a_handle(editor: Any) -> None:
     lit(editor, *(MIDDLE,) * MOST, SIDE)
-    assert [lamp.index for lamp in lamps(editor)] == [0]
-    editor.lights["lamps.lights"] = MOST
-    assert [lamp.index for lamp in lamps(editor)] == [MOST]
+    assert [lamp.name for lamp in lamps(editor)] == ["lamp_1"]
+    editor.items["lamps.lights"] = f"lamp_{MOST + 1}"
+    assert [lamp.name for lamp in lamps(editor)] == [f"lamp_{MOST + 1}"]
     lit_port = Port("lamps", "lights")
-    editor.session.apply(SetValue(lit_port, ()))
+    editor.session.apply(SetValue(lit_port, {}))
     assert lamps(editor) == ()
 
 

@@ -27,6 +27,7 @@ from halation.editor.viewer.lights import (
 )
 from halation.editor.viewer.perspective import project
 from halation.editor.viewer.state import ViewerState
+from halation.errors import GraphError
 from halation.graph import Port
 from halation.nodes import (
     MAX_LIGHTS,
@@ -36,12 +37,12 @@ from halation.nodes import (
     Image,
     Light,
     LightKind,
-    LightList,
+    LightSet,
     Vector,
     catalogue,
     lights_of,
     look_at,
-    numbers_of,
+    number_lights,
 )
 from halation.resources.sandbox import UNRESTRICTED
 
@@ -62,7 +63,7 @@ class Lit(Filter):
     depth = Field(0.0)
     position = Vector(0.0, width=3)
     camera = CameraSocket(0.0)
-    lights: LightList = numbers_of((POINT, SPOT, SUN, BALL))
+    lights: LightSet = number_lights((POINT, SPOT, SUN, BALL))
 
 
 @pytest.fixture
@@ -73,7 +74,7 @@ def editor() -> Any:
         session=Session({**catalogue(), "lamps": Lit}, sandbox=UNRESTRICTED),
         viewer=ViewerState(),
         interface=SimpleNamespace(dragging=False),
-        lights={},
+        items={},
         said=said,
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act(), add=said.append),
@@ -132,7 +133,7 @@ def test_shift_drops_before_a_surface(editor: Any) -> None:
     see(editor, "depth", 10.0)
     assert drag(editor, (400.0, 200.0), (500.0, 200.0), shift=True) == "light drop"
     assert project(CAMERA, of(editor)[0].place) == pytest.approx((0.625, 0.5, 9.5), abs=1e-4)
-    at = SIGHT.place(next(lamp.at for lamp in lamps(editor) if lamp.index == 3))
+    at = SIGHT.place(next(lamp.at for lamp in lamps(editor) if lamp.name == "lamp_4"))
     drag(editor, at, (400.0, 200.0), shift=True)
     assert of(editor)[3].place == pytest.approx((0.0, 4.0, 0.0), abs=1e-4)
     see(editor, "depth", 1e10)
@@ -149,7 +150,7 @@ def test_places_in_the_world_are_surfaces_where_they_are_seen(editor: Any) -> No
 
 
 def test_a_spot_shines_to_where_its_end_is_dragged(editor: Any) -> None:
-    spot = next(lamp for lamp in lamps(editor) if lamp.index == 1)
+    spot = next(lamp for lamp in lamps(editor) if lamp.name == "lamp_2")
     assert spot.aims is not None
     (u, v), depth = spot.aims
     assert (u, v, depth) == pytest.approx(project(CAMERA, (1.0, 0.0, -1.0)))
@@ -168,14 +169,14 @@ def test_a_spot_shines_to_where_its_end_is_dragged(editor: Any) -> None:
 )
 def test_what_a_spot_shines_to_can_be_seen(direction: Any, depth: float) -> None:
     light = Light(LightKind.SPOT, (1.0, 0.0, 0.0), direction)
-    lamp = Lamp(PORT, 0, light, CAMERA, (0.7, 0.5), 5.0, True)
+    lamp = Lamp(PORT, "lamp_1", light, CAMERA, (0.7, 0.5), 5.0, True)
     assert lamp.aims is not None and lamp.goal is not None
     assert lamp.aims[1] == pytest.approx(depth) and math.dist(lamp.goal, light.place) >= 0.5
-    assert Lamp(PORT, 0, POINT, CAMERA, (0.5, 0.5), 5.0, True).aims is None
+    assert Lamp(PORT, "lamp_1", POINT, CAMERA, (0.5, 0.5), 5.0, True).aims is None
 
 
 def test_a_cone_is_as_wide_as_its_angle() -> None:
-    lamp = Lamp(PORT, 0, SPOT, CAMERA, (0.7, 0.5), 5.0, True)
+    lamp = Lamp(PORT, "lamp_1", SPOT, CAMERA, (0.7, 0.5), 5.0, True)
     rim = np.subtract(cone(lamp, 30.0), SPOT.place)
     cosines = rim @ np.array(SPOT.direction) / np.linalg.norm(rim, axis=1)
     np.testing.assert_allclose(np.degrees(np.arccos(cosines)), 30.0)
@@ -203,24 +204,25 @@ def test_a_sun_is_dragged_on_the_dome(editor: Any) -> None:
     assert drag(editor, (x + 2.0, y), (x + 2.0 + 23.0, y)) == "sun"
     assert of(editor)[2].direction == pytest.approx((-1.0, 0.0, 0.0), abs=1e-5)
     assert direction_at(SIGHT, 1.0, CAMERA, (x + 500.0, y)) == pytest.approx((0.0, -1.0, 0.0), abs=1e-5)
-    assert editor.lights == {"lamps.lights": 2} and of(editor)[2].intensity == SUN.intensity
+    assert editor.items == {"lamps.lights": "lamp_3"} and of(editor)[2].intensity == SUN.intensity
 
 
 def test_lights_are_added_and_removed(editor: Any) -> None:
     assert can_add(editor) and can_remove(editor)
-    editor.lights["lamps.lights"] = 1
+    editor.items["lamps.lights"] = "lamp_2"
     add_light(editor, (0.7, 0.5))
-    assert [light.kind.name for light in of(editor)] == ["POINT", "SPOT", "POINT", "SUN", "SPHERE"]
-    assert of(editor)[2].place == pytest.approx((1.0, 0.0, 0.0)) and editor.lights["lamps.lights"] == 2
+    assert [light.kind.name for light in of(editor)] == ["POINT", "SPOT", "SUN", "SPHERE", "POINT"]
+    assert of(editor)[4].place == pytest.approx((1.0, 0.0, 0.0)) and editor.items["lamps.lights"] == "point_1"
     see(editor, "depth", 10.0)
     add_light(editor, (0.5, 0.5))
-    assert of(editor)[3].place == pytest.approx((0.0, 4.5, 0.0))
+    assert of(editor)[5].place == pytest.approx((0.0, 4.5, 0.0))
     for left in (5, 4, 3, 2, 1, 0):
         remove_chosen_light(editor)
         assert len(of(editor)) == left
     assert not can_remove(editor) and len(editor.session.history.steps) == 11
-    editor.session.apply(SetValue(PORT, numbers_of((POINT,) * MAX_LIGHTS)))
-    add_light(editor, (0.5, 0.5))
-    assert len(of(editor)) == MAX_LIGHTS and editor.said
+    editor.session.apply(SetValue(PORT, number_lights((POINT,) * MAX_LIGHTS)))
+    with pytest.raises(GraphError, match="there is no room for another light"):
+        add_light(editor, (0.5, 0.5))
+    assert len(of(editor)) == MAX_LIGHTS
     editor.session.apply(Disconnect(Port("lamps", "camera")))
     assert not can_add(editor) and can_remove(editor) and suns(editor) == ()

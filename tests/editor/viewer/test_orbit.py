@@ -35,7 +35,7 @@ def editor() -> Any:
         session=Session(catalogue(), sandbox=UNRESTRICTED),
         viewer=ViewerState(picture=(400, 200)),
         interface=SimpleNamespace(dragging=False),
-        lights={},
+        items={},
         preview=SimpleNamespace(camera=lambda port: None, find_whole_image=lambda name: None),
         log=SimpleNamespace(attempt=lambda act: act()),
     )

@@ -1,0 +1,90 @@
+"""Commands for named items, such as lights: add, duplicate, remove, rename. Fields are set like values."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from halation.nodes import NamedItem
+
+from ...errors import GraphError
+from ...graph import Port
+from ...graph.scalars import coerce_scalar
+from ..edits.elements import clean_text
+from ..edits.named_items import (
+    copy_animation,
+    drop_item,
+    find_item,
+    find_items,
+    fresh_item_name,
+    insert_item,
+    rename_item,
+)
+from ..state.open_document import OpenDocument
+from .command import EditCommand, Edited
+
+
+@dataclass(frozen=True)
+class AddItem(EditCommand[str]):
+    """Add a named item of a kind to a value; gives its name, by default the kind and a number."""
+
+    port: Port
+    kind: str
+    fields: Mapping[str, object] = field(default_factory=dict[str, object])
+    name: str = ""
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        declared, items = find_items(document.graph, self.port)
+        if self.kind not in declared.by_name:
+            raise GraphError(f"'{self.kind}' is no kind of {declared.noun}: it takes {', '.join(declared.by_name)}")
+        name = clean_text(self.name) or fresh_item_name(self.kind, items)
+        graph = insert_item(document.graph, self.port, name, NamedItem(self.kind))
+        graph = graph.put_all(
+            {
+                Port(self.port.node, f"{self.port.socket}.{name}.{part}"): plain
+                for part, declaration in declared.by_name[self.kind].fields.items()
+                if part in self.fields and (plain := coerce_scalar(declaration, self.fields[part])) is not None
+            }
+        )
+        return Edited(f"Add {declared.noun} {name}", name, graph)
+
+
+@dataclass(frozen=True)
+class DuplicateItem(EditCommand[str]):
+    """Add a copy of a named item, with its keys; gives its name."""
+
+    port: Port
+    name: str
+
+    def apply(self, document: OpenDocument) -> Edited[str]:
+        declared, items = find_items(document.graph, self.port)
+        copied, copy = find_item(document.graph, self.port, self.name), fresh_item_name(self.name, items)
+        graph = insert_item(document.graph, self.port, copy, copied)
+        graph = copy_animation(graph, self.port, self.name, copy)
+        return Edited(f"Duplicate {declared.noun} {self.name}", copy, graph)
+
+
+@dataclass(frozen=True)
+class RemoveItem(EditCommand[None]):
+    """Remove a named item, its keys and the controls of its fields."""
+
+    port: Port
+    name: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        declared, _ = find_items(document.graph, self.port)
+        graph = drop_item(document.graph, self.port, self.name)
+        return Edited(f"Remove {declared.noun} {self.name}", None, graph)
+
+
+@dataclass(frozen=True)
+class RenameItem(EditCommand[None]):
+    """Give a named item another name; keys, expressions and controls follow."""
+
+    port: Port
+    old: str
+    new: str
+
+    def apply(self, document: OpenDocument) -> Edited[None]:
+        graph = rename_item(document.graph, self.port, self.old, clean_text(self.new).strip())
+        return Edited(f"Rename {self.old} to {self.new}", None, graph)

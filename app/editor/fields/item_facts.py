@@ -1,0 +1,61 @@
+"""Named items as text: names, numbers and icons of their rows. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+from halation.nodes import Items, ItemSet
+from imgui_bundle import icons_fontawesome_6 as icons
+
+ICONS: Mapping[str, str] = MappingProxyType(
+    {
+        "point": icons.ICON_FA_LIGHTBULB,
+        "spot": icons.ICON_FA_BULLSEYE,
+        "sun": icons.ICON_FA_SUN,
+        "sphere": icons.ICON_FA_CIRCLE,
+    }
+)
+"""The icons of kinds of items, by their name; other kinds have a plain one."""
+
+
+def icon_of(kind: str) -> str:
+    """The icon of a kind of items."""
+    return ICONS.get(kind, icons.ICON_FA_SHAPES)
+
+
+def choose_item(chosen: Mapping[str, str], id: str, items: ItemSet) -> str:
+    """The name of the selected item of a value: the one chosen last, else the first; "" if there is none."""
+    name = chosen.get(id, "")
+    return name if name in items else next(iter(items), "")
+
+
+def neighbor_of(items: ItemSet, name: str) -> str:
+    """The item that is selected when one is removed: that after it, else that before; "" if there is none."""
+    names = list(items)
+    place = names.index(name)
+    return next(iter((*names[place + 1 : place + 2], *names[max(place - 1, 0) : place])), "")
+
+
+def describe_count(items: ItemSet, noun: str) -> str:
+    """The number of items in words: `no lights`, `1 light`, `3 lights`."""
+    count = len(items)
+    return f"no {noun}s" if not count else f"1 {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def describe_strength(fields: Mapping[str, Any]) -> str:
+    """The intensity of an item as a short text, with its exposure in stops if it has one; "" without an intensity."""
+    if "intensity" not in fields:
+        return ""
+    intensity, exposure = float(fields["intensity"]), float(fields.get("exposure", 0.0))
+    size = abs(intensity)
+    number = f"{intensity:.0f}" if 1e3 <= size < 1e6 else f"{intensity:.3g}"
+    return f"{number} {exposure:+.3g} EV" if exposure else number
+
+
+def find_unit(declared: Items, kind: str, field: str) -> str | None:
+    """The unit behind a number, if it is not a unit of values: a light's intensity is W/sr, a sun's W/m²."""
+    if field != "intensity" or declared.noun != "light":
+        return None
+    return "W/m²" if kind == "sun" else "W/sr"
