@@ -81,7 +81,7 @@ def convert_length(plain: Plain, unit: str | None, new_unit: str | None, height:
     factor = unit_factor(unit, 1.0, height) / unit_factor(new_unit, 1.0, height)
     if isinstance(plain, tuple):
         return tuple(part * factor for part in plain)
-    return plain if isinstance(plain, str) else plain * factor
+    return plain * factor if isinstance(plain, int | float) else plain
 
 
 def declare_in_unit(value: Value, unit: str) -> Value:
@@ -96,9 +96,9 @@ def declare_in_unit(value: Value, unit: str) -> Value:
     converted: Plain = (
         tuple(part * factor for part in default)
         if isinstance(default, tuple)
-        else default
-        if isinstance(default, str)
         else default * factor
+        if isinstance(default, int | float)
+        else default
     )
     limits = {name: getattr(value, name) * factor for name in ("low", "high", "minimum", "maximum")}
     return structs.replace(value, unit=unit, default=converted, **limits)

@@ -208,8 +208,8 @@ def _list_lengths(active: _ActiveNode) -> list[Gizmo]:
         if not _is_length(value) or name in taken or value.type not in ("float", "vector"):
             continue
         unit, numbers = unit_factor(value.unit, 1.0, active.frame.size[1]), active.numbers[name]
-        if isinstance(numbers, tuple):
-            if len(numbers) == 2:
+        if not isinstance(numbers, int | float):
+            if isinstance(numbers, tuple) and len(numbers) == 2:
                 place = (numbers[0], numbers[1])
                 limits = value.minimum, value.maximum
                 gizmos.append(PlaceGizmo(active.port(name), place, (unit, unit), center, *limits, "size"))
