@@ -26,7 +26,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 import numpy as np
 from devices import open_renderer
 from halation import document
-from halation.cli.specimen import name_specimen, show_on_sample
+from halation.cli.specimen import drawable_outputs, name_specimen, show_on_sample
 from halation.graph import Graph
 from halation.nodes import catalogue
 from halation.presets import paths, sample
@@ -194,7 +194,8 @@ def main() -> int:
                 np.save(options.draw / f"{name}.npy", picture)
         (options.draw / "words.json").write_text(json.dumps(words), "utf-8")
         return 0
-    nodes = catalogue() if options.nodes is None else filter(None, options.nodes.split(","))
+    drawable = [id for id, node in catalogue().items() if drawable_outputs(node)]
+    nodes = drawable if options.nodes is None else filter(None, options.nodes.split(","))
     presets = [path.stem for path in paths()] if options.presets is None else filter(None, options.presets.split(","))
     names = [*(f"node.{id}" for id in nodes), *(f"preset.{name}" for name in presets)]
     chosen = [driver for driver in DRIVERS[1:] if not options.drivers or driver.name in options.drivers]

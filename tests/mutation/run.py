@@ -109,12 +109,13 @@ def try_mutant(tree: Path, mutant: Mutant) -> Trial:
     path = tree / mutant.path
     source = path.read_text("utf-8")
     path.write_text(mutant.apply(source), "utf-8")
-    slow = [f"--deselect={name}" for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
+    slow = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
+    quick = [*tests, *(f"--deselect={name}" for name in slow)]
     words = ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no"]
     try:
         # Quick tests first: most faults are noticed by one of them.
-        for selection in (slow, []) if slow else ([],):
-            ended = run_in_tree(tree, *words, *selection, *tests, timeout=LIMIT)
+        for selection in (quick, slow) if slow else (quick,):
+            ended = run_in_tree(tree, *words, *selection, timeout=LIMIT)
             if ended.returncode not in (0, 5):  # 5: all tests of the files are slow
                 lines = [line for line in ended.stdout.splitlines() if line.startswith(("FAILED", "ERROR"))]
                 return Trial(mutant, room, True, " ".join(lines[:1]) or f"exit code {ended.returncode}")

@@ -88,3 +88,32 @@ def test_bloom_picks_the_same_light(run, hdr):
     values = {"threshold": 0.7, "knee": 0.4, "limit": 9.0}
     found = run(Bloom(radius=0.0, **values), {"image": picture}, output="glow")
     np.testing.assert_allclose(found, run(BrightPass(**values), {"image": picture}), rtol=1e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("values", "passed"),
+    [
+        # Learn OpenGL, "Bloom": all of the light above the threshold, by Rec. 709 luminance, and nothing of other light.
+        ({"mode": "hard"}, (0.0, 0.0, 0.0, 1.5, 3.0)),
+        # Unity's post processing, QuadraticThreshold with a knee of 0.5: a parabola from 0.5 to 1.5, then a line.
+        ({"mode": "soft", "knee": 0.5}, (0.0, 0.03125, 0.125, 0.5, 2.0)),
+        # 1 - 1/e of the light at the threshold.
+        ({"mode": "exponential", "power": 1.0}, (0.19673467, 0.39572508, 0.63212056, 1.16530476, 2.85063879)),
+        ({"mode": "power", "power": 2.0}, (0.125, 0.421875, 1.0, 3.375, 27.0)),
+    ],
+    ids=lambda part: part["mode"] if isinstance(part, dict) else "",
+)
+def test_grays_by_hand(run, values, passed):
+    light = np.array([0.5, 0.75, 1.0, 1.5, 3.0])
+    picture = np.stack([light, light, light, np.ones(5)], -1)[None]
+    found = run(BrightPass(threshold=1.0, limit=100.0, **values), {"image": picture})[0, :, 1]
+    np.testing.assert_allclose(found, passed, rtol=2e-5, atol=1e-6)
+
+
+def test_colors_pass_by_their_weight_in_rec_709(run):
+    """Green of 1.5 has a luminance of 1.07, blue of 10 one of 0.72; the largest channel of both is above 1."""
+    picture = np.array([[[0.0, 1.5, 0.0, 1.0], [0.0, 0.0, 10.0, 1.0]]])
+    node = BrightPass(mode="hard", threshold=1.0, limit=100.0, measure="luminance")
+    np.testing.assert_allclose(run(node, {"image": picture})[0, :, :3], [[0.0, 1.5, 0.0], [0.0, 0.0, 0.0]], rtol=1e-6)
+    node = BrightPass(mode="hard", threshold=1.0, limit=100.0, measure="maximum")
+    np.testing.assert_allclose(run(node, {"image": picture})[..., :3], picture[..., :3], rtol=1e-6)

@@ -60,3 +60,15 @@ def test_a_spark_goes(run):
 
 def test_no_radius_changes_nothing():
     assert Oil(radius=0.5).identity() == "image"
+
+
+def test_a_pixel_by_hand(run):
+    """Of a cross of five pixels three have tones of the middle third, 0.45, 0.5 and 0.55: their mean takes the place.
+
+    The code 0.5 of sRGB is the light 0.214041 (IEC 61966-2-1). Corners are farther away than the radius.
+    """
+    codes = np.array([[0.4, 0.45, 0.4], [0.5, 0.1, 0.9], [0.4, 0.55, 0.4]])
+    picture = np.ones((3, 3, 4))
+    picture[..., :3] = decoded(codes)[..., None]
+    found = run(Oil(radius=1.0, levels=3), {"image": picture})[1, 1]
+    np.testing.assert_allclose(found, [0.214041, 0.214041, 0.214041, 1.0], rtol=1e-5)

@@ -87,3 +87,13 @@ def test_coverage_does_not_change_the_color(run, hdr):
     picture = hdr(21, 17, opaque=True)
     whole = run(OverExposure(), {"image": picture})
     assert np.abs(run(OverExposure(), {"image": picture * 0.5}) - whole * 0.5).max() < 1e-5
+
+
+def test_grays_by_hand(run):
+    """From half of white on the rest of the way to white is gone exponentially: 1 - 1/e of it at twice the start."""
+    light = np.array([0.25, 0.5, 1.0, 1.5, 50.0])
+    picture = np.stack([light, light, light, np.ones(5)], -1)[None]
+    found = run(OverExposure(stops=0.0, white=1.0, shoulder=0.5, bleach=0.0), {"image": picture})[0, :, 2]
+    np.testing.assert_allclose(found, [0.25, 0.5, 0.81606028, 0.93233236, 1.0], rtol=1e-6)
+    stops = run(OverExposure(stops=1.0, white=1.0, shoulder=0.5, bleach=0.0), {"image": picture})[0, :3, 2]
+    np.testing.assert_allclose(stops, [0.5, 0.81606028, 0.97510647], rtol=1e-6)

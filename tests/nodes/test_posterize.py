@@ -75,3 +75,19 @@ def test_coverage_does_not_change_the_color_and_a_mask_mixes(run, hdr):
     expected = picture + (whole - picture) * mask[..., None]
     assert (np.abs(out - expected) / np.maximum(expected, 1.0)).max() < 2e-6
     assert Posterize(amount=0.0).identity() == "image"
+
+
+def test_pixels_by_hand(run):
+    """Five levels of light are quarters; half of the codes of sRGB is the light 0.21404 (IEC 61966-2-1)."""
+    light = np.array([0.0, 0.12, 0.13, 0.374, 0.376, 0.62, 0.63, 1.12, 1.13])
+    picture = np.stack([light, light, light, np.ones(9)], -1)[None]
+    for channels in ("luminance", "separate"):
+        found = run(Posterize(levels=5, space="linear", channels=channels), {"image": picture})[0, :, 1]
+        np.testing.assert_allclose(found, [0.0, 0.0, 0.25, 0.25, 0.5, 0.5, 0.75, 1.0, 1.25], atol=1e-6)
+    dark, bright = np.full((1, 1, 4), 0.2139), np.full((1, 1, 4), 0.2142)
+    dark[..., 3] = bright[..., 3] = 1.0
+    found = [run(Posterize(levels=2, space="display"), {"image": image})[0, 0, 0] for image in (dark, bright)]
+    np.testing.assert_allclose(found, [0.0, 1.0], atol=1e-6)
+    one = np.array([[[0.3, 0.6, 0.9, 1.0]]])
+    found = run(Posterize(levels=3, space="linear", channels="separate"), {"image": one})[0, 0]
+    np.testing.assert_allclose(found, [0.5, 0.5, 1.0, 1.0], atol=1e-6)

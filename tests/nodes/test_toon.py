@@ -65,3 +65,14 @@ def test_hues_stay(run, hdr):
     np.testing.assert_allclose(
         found / found.sum(-1, keepdims=True), picture[..., :3] / picture[..., :3].sum(-1, keepdims=True), rtol=1e-4
     )
+
+
+def test_tones_by_hand(run):
+    """Winnemoeller, Olsen and Gooch 2006: half a step of tanh around the middle, here scaled to reach the levels.
+
+    Of five levels 0.3 lies 0.075 below the middle 0.375: tanh(0.6) / tanh(1) = 0.537050 / 0.761594 = 0.705165 of half a
+    step of 0.25 is 0.088146.
+    """
+    tones = np.array([0.3, 0.375, 0.45, 0.5])
+    found = run(Toon(levels=5.0, sharpness=2.0), {"image": gray(tones)})[0, :, 0]
+    np.testing.assert_allclose(found, decoded(np.array([0.286854, 0.375, 0.463146, 0.5])), rtol=1e-5)

@@ -54,3 +54,19 @@ def test_the_picture_is_the_value(run):
 def test_it_shrinks_with_the_proxy(run):
     full, half = (run(Worley(size=40.0), size=(96, 64), scale=s, output="value")[..., 0] for s in (1.0, 0.5))
     assert np.abs(half - full.reshape(32, 2, 48, 2).mean((1, 3))).max() < 0.02
+
+
+@pytest.mark.parametrize("metric", ["euclidean", "manhattan", "chebyshev"])
+def test_distances_are_distances(run, metric):
+    """One step of a pixel changes a distance by no more than that step, and the second point is no nearer than the
+    first: a wrong order, a point that is missed or a wrong metric makes jumps."""
+    values = {"size": 16.0, "evolution": 0.4, "seed": 3, "jitter": 0.5, "metric": metric}
+    first, second, gap = (
+        run(Worley(feature=feature, **values), size=(160, 120), output="value")[..., 0]
+        for feature in ("f1", "f2", "f2-f1")
+    )
+    assert (second >= first).all() and np.abs(second - first - gap).max() < 1e-6
+    for distance in (first, second):
+        steps = [np.abs(np.diff(distance, axis=axis)) for axis in (0, 1)]
+        assert max(step.max() for step in steps) <= 1.0 / 16.0 + 1e-5
+        assert min(step.max() for step in steps) > 0.9 / 16.0
