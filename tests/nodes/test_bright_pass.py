@@ -93,7 +93,7 @@ def test_bloom_picks_the_same_light(run, hdr):
 @pytest.mark.parametrize(
     ("values", "passed"),
     [
-        # Learn OpenGL, "Bloom": all of the light above the threshold, by Rec. 709 luminance, and nothing of other light.
+        # Learn OpenGL, "Bloom": light above the threshold whole, by Rec. 709 luminance, and no other.
         ({"mode": "hard"}, (0.0, 0.0, 0.0, 1.5, 3.0)),
         # Unity's post processing, QuadraticThreshold with a knee of 0.5: a parabola from 0.5 to 1.5, then a line.
         ({"mode": "soft", "knee": 0.5}, (0.0, 0.03125, 0.125, 0.5, 2.0)),
