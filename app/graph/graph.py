@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from types import MappingProxyType
@@ -309,16 +309,6 @@ class Graph(Wired[Item], EndEdits):
         """A graph where a control has another name; expressions follow."""
         after = self._move_end("controls", old, new)
         return after if old in self.nodes else after._with(animation=move_animation(self.animation, old, new))
-
-    def _classify_link(self, source: Port, target: Port) -> Hashable:
-        """The classes of both nodes and their sockets; the ids of nodes that are more than their class says."""
-        start, end = self.nodes.get(source.node), self.nodes.get(target.node)
-        return (
-            type(start) if isinstance(start, Node) else source.node,
-            source.socket,
-            type(end) if isinstance(end, Node) else target.node,
-            target.socket,
-        )
 
     def _with(self, **changes: Any) -> Self:
         if "links" in changes and "routes" in self.ui:

@@ -8,6 +8,8 @@ from graphlib import CycleError, TopologicalSorter
 from types import MappingProxyType
 from typing import Generic, TypeVar
 
+from halation.nodes import Node
+
 from ..errors import GraphError
 from .model import Port
 from .names import INPUTS, OUTPUTS
@@ -144,8 +146,16 @@ class Wired(Generic[T]):
         raise NotImplementedError
 
     def _classify_link(self, source: Port, target: Port) -> Hashable:
-        """What decides about a link: if one can be, so can all of the same class."""
-        raise NotImplementedError
+        """What decides whether a link can be: the classes of both nodes, or their ids where a class does not say all
+        about a node, and their sockets.
+        """
+        start, end = self.nodes.get(source.node), self.nodes.get(target.node)
+        return (
+            type(start) if isinstance(start, Node) else source.node,
+            source.socket,
+            type(end) if isinstance(end, Node) else target.node,
+            target.socket,
+        )
 
     @cached_property
     def link_faults(self) -> Mapping[Port, str]:
