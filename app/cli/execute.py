@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..errors import UsageError
 from . import parsing
 from .options import open_graph, report_problems, resolve_inputs
-from .outcome import flush_output, print_json, print_note, report_failure, write_count
+from .outcome import print_json, print_note, write_count
 from .progress import progress_reporter
 from .watchdog import can_fork, needs_watchdog, run_forked
 
@@ -41,19 +41,10 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
     if job.processes == 1 and needs_watchdog(graph) and can_fork():
-        return run_forked(lambda: _execute_forked(job, graph, progress, as_json, started), job.timeout, job.memory)
+        return run_forked(
+            lambda: _execute_opened(job, graph, progress, as_json, started), job.timeout, job.memory, as_json
+        )
     return _execute_opened(job, graph, progress, as_json, started)
-
-
-def _execute_forked(
-    job: RenderJob, graph: Graph, progress: Literal["bar", "json"], as_json: bool, started: float
-) -> int:
-    """Run a render job in a process that does nothing else."""
-    try:
-        code = _execute_opened(job, graph, progress, as_json, started)
-    except (Exception, KeyboardInterrupt) as fault:
-        code = report_failure(fault, as_json)
-    return flush_output(code)
 
 
 def _execute_opened(

@@ -63,21 +63,28 @@ def _is_loading_extension(frame: FrameType | None) -> bool:
 
 
 @contextmanager
-def relay_requests(process: int) -> Iterator[list[int]]:
+def relay_requests(process: int, *, is_copy: bool = False) -> Iterator[list[int]]:
     """Leave signals that ask this process to end to another one; the list that is given holds those that came.
 
-    An interrupt is not passed on, because a terminal sends it to both processes.
+    An interrupt is not passed on, because a terminal sends it to both processes. A copy of this process ignores those
+    (`ignore_interrupts`), and is asked to end instead: an interrupt may also come from a program, to this one alone.
     """
     received: list[int] = []
 
     def relay(number: int, _: object) -> None:
         received.append(number)
-        if number != signal.SIGINT:
+        if number != signal.SIGINT or is_copy:
             with contextlib.suppress(OSError):
-                os.kill(process, number)
+                os.kill(process, signal.SIGTERM if number == signal.SIGINT else number)
 
     with redirect_interrupts(relay):
         yield received
+
+
+def ignore_interrupts() -> None:
+    """Leave interrupts from a terminal to the process that this one is a copy of: it passes them on."""
+    if callable(signal.getsignal(signal.SIGTERM)):
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def end_with_parent_thread() -> None:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json, print_note
+from .watchdog import Timeout, run_session
 
 if TYPE_CHECKING:
+    from ..regression.case_runner import RunOptions
     from ..regression.cases import Case
     from ..regression.results import Outcome
 
@@ -57,6 +60,7 @@ def test(
         ),
     ] = True,
     as_json: AsJson = False,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     *,
     sandbox: Sandbox,
 ) -> int:
@@ -70,32 +74,58 @@ def test(
     cases = select_cases(load_suites(suites or [Path()], sandbox), select)
     if listed:
         return _list_cases(cases, as_json)
-    from ..regression.case_runner import RunOptions
+    reports = _ReportFiles(report, junit, as_json)
+
+    def work() -> int:
+        from ..regression.case_runner import RunOptions
+
+        options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
+        return _run_and_report(cases, options, jobs, stop_early, reports)
+
+    # The processes of -j could not be told apart by one that watches, so these only try programs.
+    return work() if jobs > 1 else run_session(work, timeout, as_json)
+
+
+class _ReportFiles(NamedTuple):
+    """Where the results go."""
+
+    page: Path | None
+    junit: Path | None
+    as_json: bool
+
+
+def _run_and_report(
+    cases: tuple[Case, ...], options: RunOptions, jobs: int, stop_early: bool, files: _ReportFiles
+) -> int:
+    """Run cases, write all reports, and return the exit code."""
     from ..regression.junit import write_junit
     from ..regression.parallel import run_cases
     from ..regression.report import check_report, write_report
     from ..regression.results import as_json as for_machines
 
-    check_report(report, junit, sandbox=sandbox)
-    options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
+    check_report(files.page, files.junit, sandbox=options.sandbox)
     session = run_cases(
         cases,
         options,
         jobs=jobs,
         stop_early=stop_early,
-        report_outcome=None if as_json else lambda outcome: print(_format_outcome(outcome)),
+        report_outcome=None if files.as_json else _print_outcome,
     )
-    if report is not None:
-        write_report(session, report, sandbox=sandbox)
-    if junit is not None:
-        write_junit(session, junit, sandbox=sandbox)
-    if as_json:
+    if files.page is not None:
+        write_report(session, files.page, sandbox=options.sandbox)
+    if files.junit is not None:
+        write_junit(session, files.junit, sandbox=options.sandbox)
+    if files.as_json:
         print_json(for_machines(session))
     else:
         print_note(f"{session.device or 'nothing was rendered'}{'; deterministic' if session.deterministic else ''}")
         for sentence in filter(None, (session.remark, session.summary)):
             print_note(sentence)
     return 1 if session.count("failed") else 0
+
+
+def _print_outcome(outcome: Outcome) -> None:
+    print(_format_outcome(outcome), flush=True)  # should the process be ended, nothing of this is lost
 
 
 def _list_cases(cases: tuple[Case, ...], as_json: bool) -> int:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 import sys
 import time
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..errors import HalationError, UsageError
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from . import parsing
 from .options import (
@@ -27,11 +29,13 @@ from .options import (
     resolve_inputs,
 )
 from .outcome import INTERRUPTED, print_note, write_count
+from .watchdog import Timeout, run_session
 
 if TYPE_CHECKING:
     from ..graph import Graph
+    from ..renderer import Renderer
     from ..renderer.jobs.job import JobProgress, JobReport
-    from ..watch.rerendering import WatchReport
+    from ..watch.rerendering import ContinuousRenderer, WatchReport
 
 _LISTED = 3
 """Changed files that a line names. Chosen by judgement: a line stays short."""
@@ -53,6 +57,7 @@ def watch(
     view: Annotated[str, typer.Option(help="OpenColorIO view of files that are not EXR.")] = "",
     compression: Annotated[str, typer.Option(help="EXR compression, as for render.")] = "zip",
     as_json: Annotated[bool, typer.Option("--json", help="Print a line with a JSON object for every render.")] = False,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     *,
     sandbox: Sandbox,
 ) -> int:
@@ -60,26 +65,23 @@ def watch(
 
     Watches the graph and its groups, code, pictures and shaders. After an error it waits for the next change.
     """
-    from ..graph.frames import list_range
-    from ..inputs.lazy_provider import LazyResourceProvider
-    from ..renderer import Renderer, RenderRequest, open_device
-    from ..renderer.jobs.job import OutputSettings, run_job
-    from ..watch.rerendering import ContinuousRenderer
-
     if str(graph) == "-":
         raise UsageError("-: standard input cannot be watched: name a graph file")
     parsed_precision = parsing.parse_precision(precision)
     canvas, proxy = parsing.parse_size(size), parsing.parse_scale(scale)
     destinations, named_frames = parsing.parse_destinations(output), parsing.parse_frame_options(frame, frames)
-    renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
-    print_note(renderer.device.description)
 
     def load_graph() -> Graph:
         graph_now = open_graph(graph, parsing.parse_sets(sets), sandbox=sandbox)
         report_problems(graph, graph_now)
         return graph_now
 
-    def render(graph_now: Graph, progress: JobProgress) -> JobReport:
+    def render(renderer: Renderer, graph_now: Graph, progress: JobProgress) -> JobReport:
+        from ..graph.frames import list_range
+        from ..inputs.lazy_provider import LazyResourceProvider
+        from ..renderer import RenderRequest
+        from ..renderer.jobs.job import OutputSettings, run_job
+
         bindings, targets = (
             resolve_inputs(graph_now, parsing.parse_inputs(inputs)),
             parsing.find_targets(graph_now, node),
@@ -96,12 +98,29 @@ def watch(
             progress=progress,
         )
 
-    continuous_renderer = ContinuousRenderer(
-        graph, lambda graph_now: resolve_inputs(graph_now, parsing.parse_inputs(inputs)), load_graph, render, sandbox
-    )
+    def work() -> int:
+        from ..renderer import Renderer, open_device
+        from ..watch.rerendering import ContinuousRenderer
+
+        renderer = Renderer(open_device(sandbox=sandbox), sandbox=sandbox)
+        print_note(renderer.device.description)
+        continuous_renderer = ContinuousRenderer(
+            graph,
+            lambda graph_now: resolve_inputs(graph_now, parsing.parse_inputs(inputs)),
+            load_graph,
+            partial(render, renderer),
+            sandbox,
+        )
+        return _follow(continuous_renderer, as_json)
+
+    return run_session(work, timeout, as_json)
+
+
+def _follow(reports: ContinuousRenderer, as_json: bool) -> int:
+    """Print what each render says until Ctrl-C."""
     has_rendered = False
     try:
-        for report in continuous_renderer:
+        for report in reports:
             if isinstance(report.fault, UsageError) and not has_rendered:
                 raise report.fault  # waiting cannot mend the command line
             has_rendered = True
@@ -111,7 +130,7 @@ def watch(
             raise
         print_note("halation: interrupted; no unfinished file is left")  # the usual end of this command
     finally:
-        continuous_renderer.close()
+        reports.close()
     return INTERRUPTED
 
 

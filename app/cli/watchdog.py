@@ -20,7 +20,8 @@ import typer
 
 from ..errors import DeviceError, HalationError, RenderError, describe_owner
 from ..resources.machine import has_memory_limit, machine_memory, resident_memory
-from .signals import end_with_parent_thread, relay_requests
+from .outcome import flush_output, report_failure
+from .signals import end_with_parent_thread, ignore_interrupts, relay_requests
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -50,10 +51,11 @@ class Watchdog:
     """Watches the heartbeat of one process.
 
     `timeout` is how many seconds code may run, 0 for no limit; `memory` how many bytes the process may grow by then.
+    With `tries_first` it tries programs in a third process, as it would unwatched: more than one render ends with it.
     """
 
-    def __init__(self, file: Path, timeout: float, memory: int = 0) -> None:
-        self._file, self._timeout = file, timeout
+    def __init__(self, file: Path, timeout: float, memory: int = 0, tries_first: bool = False) -> None:
+        self._file, self._timeout, self._tries_first = file, timeout, tries_first
         self._memory = (memory or machine_memory() / 2) + OWN_MEMORY
         self._beat, self._since, self._idle_memory = "", time.monotonic(), 0
         file.touch()
@@ -61,9 +63,9 @@ class Watchdog:
     @property
     def environment(self) -> dict[str, str]:
         """The environment variables that tell the process where to write its heartbeat."""
-        from ..renderer.execution.progress_beacon import BEACON_FILE
+        from ..renderer.execution.progress_beacon import BEACON_FILE, BEACON_TRIALS
 
-        return {BEACON_FILE: str(self._file)}
+        return {BEACON_FILE: str(self._file), BEACON_TRIALS: "1" if self._tries_first else ""}
 
     def check(self, process: int) -> DeviceError | None:
         """The error to raise if code has run for too long, or takes too much memory, else None."""
@@ -122,26 +124,38 @@ def can_fork() -> bool:
     return len(list(Path("/proc/self/task").iterdir())) == 1
 
 
-def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
-    """Do the work in a copy of this process, and return its exit code; this one watches.
+def run_session(work: Callable[[], int], timeout: float, as_json: bool) -> int:
+    """Do work that renders many times in a copy of this process that this one watches, where there can be a copy."""
+    from ..renderer.execution.progress_beacon import BEACON_FILE
 
-    A copy has loaded all that this one has, so it costs a few milliseconds instead of a start. `work` raises
-    nothing. Raises DeviceError for code that takes too long, takes too much memory, or ends its process.
+    if os.environ.get(BEACON_FILE) or not can_fork():
+        return work()
+    return run_forked(work, timeout, 0, as_json, tries_first=True)
+
+
+def run_forked(
+    work: Callable[[], int], timeout: float, memory: int, as_json: bool, *, tries_first: bool = False
+) -> int:
+    """Do the work in a copy of this process, report what it raises, and return its exit code; this one watches.
+
+    A copy has loaded all that this one has, so it costs a few milliseconds instead of a start. Raises DeviceError for
+    code that takes too long, takes too much memory, or ends its process.
     """
     import tempfile  # few graphs have such code
 
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        watchdog = Watchdog(Path(folder, "heartbeat"), timeout, memory)
+        watchdog = Watchdog(Path(folder, "heartbeat"), timeout, memory, tries_first)
         sys.stdout.flush()
         sys.stderr.flush()
         process = os.fork()
         if process == 0:
             os.environ.update(watchdog.environment)
             end_with_parent_thread()
-            os._exit(work())
+            ignore_interrupts()
+            os._exit(_finish(work, as_json))
         handle = os.pidfd_open(process)
         try:
-            with relay_requests(process) as requests:
+            with relay_requests(process, is_copy=True) as requests:
                 while not select.select([handle], [], [], CHECK_INTERVAL)[0]:
                     if fault := watchdog.check(process):
                         os.kill(process, signal.SIGKILL)
@@ -153,6 +167,15 @@ def run_forked(work: Callable[[], int], timeout: float, memory: int) -> int:
         if code < 0:
             raise KeyboardInterrupt if requests else watchdog.explain_signal(-code)
         return code
+
+
+def _finish(work: Callable[[], int], as_json: bool) -> int:
+    """Do the last work of a process, and return the exit code. Nothing is raised."""
+    try:
+        code = work()
+    except (Exception, KeyboardInterrupt) as fault:
+        code = report_failure(fault, as_json)
+    return flush_output(code)
 
 
 def run_limited(work: Callable[[], int]) -> int:

@@ -158,3 +158,18 @@ def _heartbeat_of(process: str) -> str:
     return next(
         (entry.partition(b"=")[2].decode() for entry in entries if entry.startswith(b"HALATION_HEARTBEAT=")), ""
     )
+
+
+@pytest.mark.parametrize("command", ["test", "watch"])
+def test_commands_that_render_many_times_are_watched_too(tmp_path: Path, command: str) -> None:
+    """They had no limit, and never ended: what is tried on a few pixels is quick there."""
+    path = graph(tmp_path, ENDLESS)
+    suite = tmp_path / "s.suite.toml"
+    suite.write_text('[cases.user]\ngraph = "graph.json"\ngolden = ""\n')
+    words = (suite,) if command == "test" else (path, "-o", tmp_path / "out.exr")
+    ended = subprocess.run(
+        [*HALATION, command, *map(str, words), "--timeout", "1"], capture_output=True, text=True, timeout=100
+    )
+    assert ended.returncode == 5, ended.stderr
+    sentence = ended.stderr.splitlines()[-1]
+    assert sentence.startswith("halation: node 'user': its code has not ended after 1 seconds")

@@ -116,7 +116,7 @@ class Executor:
 
     def begin_trial(self, plan: Plan, render_pass: Pass) -> Future[DeviceError | None] | None:
         """Begin to try the program of a pass in another process, where it has code of users and is not known."""
-        if self._trials is None or not render_pass.writers or self._beacon.is_watched:
+        if self._trials is None or not render_pass.writers or self._beacon.replaces_trials:
             return None
         return None if render_pass.shader in self.programs else self._trials.begin(plan, render_pass)
 

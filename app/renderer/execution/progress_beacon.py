@@ -12,6 +12,10 @@ BEACON_FILE = "HALATION_HEARTBEAT"
 """The environment variable with the path of the file."""
 
 
+BEACON_TRIALS = "HALATION_TRIALS"
+"""The environment variable that is not empty where a watched process tries programs in another one all the same."""
+
+
 class ProgressBeacon:
     """Writes to a file when code of the user begins to run, and when it has ended; nothing if no process watches.
 
@@ -26,6 +30,11 @@ class ProgressBeacon:
     def is_watched(self) -> bool:
         """True if a process watches the file."""
         return bool(self._path)
+
+    @property
+    def replaces_trials(self) -> bool:
+        """True if little is lost when the process that watches ends this one: then nothing is tried before."""
+        return self.is_watched and not os.environ.get(BEACON_TRIALS)
 
     @contextmanager
     def announce(self, nodes: Sequence[str]) -> Iterator[None]:
