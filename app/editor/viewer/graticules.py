@@ -23,7 +23,7 @@ def is_dark(palette: Palette) -> bool:
 
 def back(palette: Palette) -> RGB:
     """Draw the background of a scope."""
-    return palette.border if is_dark(palette) else palette.field
+    return min(palette.border, palette.window) if is_dark(palette) else palette.field
 
 
 def level_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float, high: float) -> None:

@@ -1,0 +1,45 @@
+"""Runs the editor on the display, as `halation edit` does, and writes where things are to a file.
+
+`python tests/display_editor.py GRAPH REPORT`: REPORT gets, in JSON, the places of the last frame and what a test asks
+for. Whoever moves the mouse from outside has to know where to move it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+from halation.editor.window.opening import run
+from halation.editor.window.window import Window
+from halation.resources.atomic_write import write_text_atomically
+from halation.resources.sandbox import UNRESTRICTED
+
+
+def main(graph: Path, report: Path, state: Path) -> None:
+    """Open a graph until the window is closed."""
+    window = Window(graph, {}, UNRESTRICTED, version=(4, 5), state=state, size=(1200, 700))
+    window.params.ini_disable = True
+    before = window.params.callbacks.post_new_frame
+
+    def frame() -> None:
+        places = {name: tuple(map(float, place)) for name, place in window.editor.places.items()}
+        before()
+        editor = window.editor
+        facts = {
+            "frame": window.frames,
+            "places": places,
+            "zoom": editor.viewer.zoom,
+            "path": str(editor.session.path),
+            "steps": list(editor.session.history.steps),
+            "selection": [element.name for element in editor.session.selection],
+            "sentences": [entry.sentence for entry in editor.log.entries],
+        }
+        write_text_atomically(report, json.dumps(facts), sandbox=UNRESTRICTED)
+
+    window.params.callbacks.post_new_frame = frame
+    run(window)
+
+
+if __name__ == "__main__":
+    main(*map(Path, sys.argv[1:4]))
