@@ -16,6 +16,7 @@ from .._declare import (
     Trait,
     Vector,
 )
+from ._coverage import COVERAGE_REACH
 from ._denoise import LIGHT, SPREAD, denoise, prefilter
 from ._march import surfaces
 
@@ -136,6 +137,17 @@ class ScreenReflections(Filter):
             roughness=self.roughness,
         )
         light = self._trace(draw, all_surfaces, normal, rough, rows, rays)
+        if draw.is_linked(self.normal):
+            near = draw("screen_reflections_near", surfaces=all_surfaces, result=Field())
+            light, normal = draw.several(
+                "screen_reflections_shared",
+                (LIGHT, Vector(width=3)),
+                self.normal,
+                near=near,
+                facing=normal,
+                light=light,
+                overlap=COVERAGE_REACH,
+            )
         shading: dict[str, Any] = {
             "light": light,
             "normal": normal,

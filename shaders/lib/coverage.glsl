@@ -12,6 +12,7 @@ const int COVERAGE_REACH = 2;           // pixels: how far away a surface is loo
 const ivec2 COVERAGE_SELF = ivec2(0);   // the offset of the pixel itself
 const float COVERAGE_WHOLE = 0.998;     // shorter normals may be means; curved surfaces shorten normals a little too
 const float COVERAGE_NOTHING = 0.004;   // a normal of one sample among 256
+const float COVERAGE_LACK = 0.03;       // a pixel of which another surface covers so much counts as wholly in one
 const float COVERAGE_IMPURE = 100.0;    // weight of a lack in length against squared pixels: 0.98 is 1.4 pixels away
 const float COVERAGE_STEEP = 8.0;       // depth that differs by 1 / 8 counts as a different surface
 const float COVERAGE_CONTRAST = 10.0;   // squared pixels: so much farther may a surface lie that differs by 1
@@ -93,6 +94,25 @@ Coverage coverage_of(vec3 stored) {
 
 // True for a pixel that two surfaces share.
 bool coverage_is_mixed(Coverage shares) { return shares.front != shares.back; }
+
+// True for a pixel that two surfaces share, where its depth is that of one of them, and beside which each of them covers
+// a pixel wholly. Things thinner than two pixels cover none.
+bool coverage_is_sure(Coverage shares) {
+    if (!coverage_is_mixed(shares)) return false;
+    float front = length(finite(normal_at(shares.front))), back = length(finite(normal_at(shares.back)));
+    float lack = near_at(shares.back) > 0.0 ? 1.0 - back : back;
+    vec2 apart = abs(near_at(pixel) - vec2(near_at(shares.front), near_at(shares.back)));
+    bool fits = COVERAGE_STEEP * min(apart.x, apart.y) <= near_at(pixel);
+    return fits && max(abs(1.0 - front), abs(lack)) < COVERAGE_LACK;
+}
+
+// The same surfaces, where the pixel itself stands for the one that its depth shows: light that was measured at every
+// pixel changes fast toward a rim. Only one surface where that is not sure.
+Coverage coverage_seen(Coverage shares) {
+    if (!coverage_is_sure(shares)) return Coverage(1.0, pixel, pixel);
+    bool front = abs(near_at(pixel) - near_at(shares.front)) < abs(near_at(pixel) - near_at(shares.back));
+    return Coverage(shares.front_share, front ? pixel : shares.front, front ? shares.back : pixel);
+}
 
 // The normal of the front surface alone. Where it covers little, its own normal helps against noise.
 vec3 coverage_front(Coverage shares) {

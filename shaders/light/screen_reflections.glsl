@@ -1,5 +1,6 @@
 #include "lib/alpha.glsl"
 #include "lib/brdf.glsl"
+#include "lib/coverage.glsl"
 #include "lib/denoise.glsl"
 #include "lib/march.glsl"
 #include "lib/occlusion.glsl"
@@ -137,6 +138,15 @@ void screen_reflections_scattered(
     if (sharp) return;
     float reach = 2.0 * alpha * away / shines * depth / pixel_pitch(rays, depth, vec2(extent));
     spread = finite(vec3(squares / total, reach, rough));
+}
+
+float screen_reflections_near() { return surfaces_at(pixel).x; }
+
+// Pixels that two surfaces share: the light of both by their coverage, and the normal of the one that covers more.
+void screen_reflections_shared(out vec4 light, out vec3 normal) {
+    Coverage shares = coverage_seen(coverage_of(coverage_found()));
+    light = mix(light_at(shares.back), light_at(shares.front), shares.front_share);
+    normal = facing_at(shares.front_share > 0.5 ? shares.front : shares.back);
 }
 
 // The Fresnel reflectance (Schlick 1994), reduced for rough surfaces at grazing angles (Lagarde 2011).

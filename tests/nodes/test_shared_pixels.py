@@ -7,6 +7,7 @@ import pytest
 from halation.nodes import Light, LightKind, look_at, number_lights
 from halation.nodes.light.deferred_lighting import DeferredLighting
 from halation.nodes.light.image_based_light import ImageBasedLight
+from halation.nodes.light.screen_reflections import ScreenReflections
 from raycast import cast_rays
 from scipy.ndimage import binary_dilation, maximum_filter, minimum_filter
 
@@ -88,6 +89,19 @@ def test_surroundings_light_each_surface_of_a_pixel(run, scene, deep):
     inputs = {name: scene[name] for name in names} | {"camera": CAMERA}
     inside, edges, largest = errors(scene, run(ImageBasedLight(specular=0.0), inputs, output="diffuse"), "sky")
     assert inside < 1e-3 and edges < 6e-3 and largest < 0.03
+
+
+def test_reflections_are_divided_by_coverage(run, scene):
+    """Against the same mirrors at 4 x 4 pixels for each, which are not filtered."""
+    times, node = 4, ScreenReflections(reflectance=0.6, roughness=0.0, sky=False, thickness=2.0)
+    fine = cast_rays(CAMERA, WIDTH * times, HEIGHT * times)
+    surface = np.where(fine.normal[..., 2] == 1.0, 1, np.where(fine.normal[..., 1] == -1.0, 2, 3)) * fine.hit
+    image = np.dstack([COLORS[surface], np.ones(surface.shape)])
+    sharp = {"image": image, "normal": fine.normal, "depth": np.where(fine.hit, fine.depth, 1e10), "camera": CAMERA}
+    expected = run(node, sharp, output="reflection").reshape(HEIGHT, times, WIDTH, times, 4).mean((1, 3))
+    inputs = {"image": scene["albedo"], "normal": scene["normal"], "depth": scene["depth"], "camera": CAMERA}
+    error = np.abs(run(node, inputs, output="reflection") - expected)[..., :3].max(-1)
+    assert np.sqrt((error[scene["edges"]] ** 2).mean()) < 0.085
 
 
 def test_hard_edges_stay_hard(run, scene):
