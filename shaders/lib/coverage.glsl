@@ -95,8 +95,8 @@ Coverage coverage_of(vec3 stored) {
 // True for a pixel that two surfaces share.
 bool coverage_is_mixed(Coverage shares) { return shares.front != shares.back; }
 
-// True for a pixel that two surfaces share, where its depth is that of one of them, and beside which each of them covers
-// a pixel wholly. Things thinner than two pixels cover none.
+// True for a pixel that two surfaces share, where its depth is that of one of them, and each of them covers a pixel
+// beside it wholly. Things thinner than two pixels cover none.
 bool coverage_is_sure(Coverage shares) {
     if (!coverage_is_mixed(shares)) return false;
     float front = length(finite(normal_at(shares.front))), back = length(finite(normal_at(shares.back)));
