@@ -136,7 +136,7 @@ def _find_tables(config: Any) -> Iterator[str]:
     transforms += [look.getInverseTransform() for look in config.getLooks()]
     transforms += [view.getTransform(way) for view in config.getViewTransforms() for way in views]
     transforms += [transform.getTransform(way) for transform in named_transforms for way in ways]
-    for source in dict.fromkeys(source for one in transforms for source in _find_sources(api, one)):
+    for source in dict.fromkeys(source for transform in transforms for source in _find_sources(api, transform)):
         try:
             yield context.resolveFileLocation(source)
         except (api.Exception, api.ExceptionMissingFile):

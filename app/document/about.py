@@ -60,7 +60,7 @@ def _parse(facts: object) -> About:
     """What is readable; a file that somebody else wrote may hold anything there."""
     if not isinstance(facts, Mapping):
         return About()
-    known = cast("Mapping[str, object]", facts)
-    doc, tags = known.get("doc", ""), known.get("tags", ())
+    keys = cast("Mapping[str, object]", facts)
+    doc, tags = keys.get("doc", ""), keys.get("tags", ())
     texts = cast("Sequence[object]", tags) if isinstance(tags, list | tuple) else ()
     return About(doc if isinstance(doc, str) else "", tuple(text for text in texts if isinstance(text, str)))

@@ -87,8 +87,8 @@ def find_shader_faults(node: type[Node]) -> Iterator[str]:
     ):
         parameters = [f"{type} {name}" for type, name in declared]
         parameters += [f"out {type} {name}" for type, name in zip(results, node.outputs, strict=False)]
-        wanted = f"{result} {node.function}({', '.join(parameters)})"
-        yield f"its shader does not fit the class, which needs: {wanted}"
+        declaration = f"{result} {node.function}({', '.join(parameters)})"
+        yield f"its shader does not fit the class, which needs: {declaration}"
 
 
 def find_file_faults(name: str, names: Iterable[str]) -> Iterator[str]:

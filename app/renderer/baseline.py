@@ -67,10 +67,10 @@ def compare_with_baseline(bench: Benchmark, path: Path, sandbox: Sandbox) -> Bas
     }
     ratios = [_make_ratio((), (), bench.median, bench.fastest, baseline)]
     timings_by_name = dict(zip(identify_passes(bench.passes), bench.passes, strict=True))
-    for name, one in timings_by_name.items():
+    for name, timing in timings_by_name.items():
         then = before.get(name)
-        if then and max(one.median / bench.median, then["median"] / baseline["median"]) >= MIN_JUDGED_SHARE:
-            ratios.append(_make_ratio(one.nodes, one.functions, one.median, one.fastest, then))
+        if then and max(timing.median / bench.median, then["median"] / baseline["median"]) >= MIN_JUDGED_SHARE:
+            ratios.append(_make_ratio(timing.nodes, timing.functions, timing.median, timing.fastest, then))
     return BaselineComparison(
         tuple(ratios),
         len(before.keys() - timings_by_name.keys()),
@@ -89,8 +89,8 @@ def _read_baseline(path: Path, sandbox: Sandbox) -> dict[str, Any]:
     try:
         baseline: Any = json.loads(read_bytes(path, sandbox))
         times = [entry[key] for entry in (baseline, *baseline["passes"]) for key in ("median", "fastest")]
-        for one in baseline["passes"]:
-            _ = tuple(one["nodes"]), tuple(one["functions"]), int(one["number"])
+        for timing in baseline["passes"]:
+            _ = tuple(timing["nodes"]), tuple(timing["functions"]), int(timing["number"])
         if not all(isinstance(item, int | float) and item > 0.0 for item in times) or len(baseline["size"]) != 2:
             raise ValueError
         return {**baseline, "device": str(baseline["device"])}

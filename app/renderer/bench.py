@@ -153,10 +153,10 @@ def group_by_nodes(passes: Iterable[PassTiming]) -> tuple[NodeShare, ...]:
         NodeShare(
             nodes,
             len(timings),
-            median(map(sum, zip(*(one.seconds for one in timings), strict=True))),
-            min(map(sum, zip(*(one.seconds for one in timings), strict=True))),
-            sum(one.bytes_read for one in timings),
-            sum(one.bytes_written for one in timings),
+            median(map(sum, zip(*(timing.seconds for timing in timings), strict=True))),
+            min(map(sum, zip(*(timing.seconds for timing in timings), strict=True))),
+            sum(timing.bytes_read for timing in timings),
+            sum(timing.bytes_written for timing in timings),
         )
         for nodes, timings in timings_by_nodes.items()
     )
@@ -179,7 +179,7 @@ def load_frame_inputs(renderer: Renderer, frame_renderer: FrameRenderer, frame: 
     plan, runner = frame_renderer.plan_frame(frame), renderer.runner
     lease, outputs_lease = runner.create_lease(), runner.create_lease()
     written = {number for render_pass in plan.passes for number in render_pass.targets}
-    inputs = [number for one in plan.passes for number in one.textures if number not in written]
+    inputs = [number for render_pass in plan.passes for number in render_pass.textures if number not in written]
     uploads = {item.surface for item in plan.uploads}
     try:
         for run in frame_renderer.start_runs(frame, outputs_lease):
@@ -204,7 +204,7 @@ def _merge_frames(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Pass
         plan = plans[frame]
         for run_timings in turns:
             for name, (render_pass, seconds) in zip(
-                identify_passes(one for one, _ in run_timings), run_timings, strict=True
+                identify_passes(timed_pass for timed_pass, _ in run_timings), run_timings, strict=True
             ):
                 before = merged[name].seconds if name in merged else ()
                 read = sum(plan.surfaces[number].nbytes for number in render_pass.textures)

@@ -128,7 +128,7 @@ def migrate_graph(graph: Graph, types: Types | None = None) -> Graph:
     extra = {key: keys for key, keys in graph.extra.items() if not any(_is_of(key, id) for id in changed)}
     for part in changed.values():
         extra |= part.extra
-    return replace(graph, nodes={**graph.nodes, **{id: found.nodes[id] for id, found in changed.items()}}, extra=extra)
+    return replace(graph, nodes={**graph.nodes, **{id: part.nodes[id] for id, part in changed.items()}}, extra=extra)
 
 
 def _migrate_node(graph: Graph, id: str, item: Item, types: Types) -> Graph | None:

@@ -126,7 +126,9 @@ class FileWatcher:
         with self._lock:
             self._watched = watch_list
             self._known |= fresh
-            self._news = {key: one for key, one in self._news.items() if key in _select_watched(watch_list, self._news)}
+            self._news = {
+                key: state for key, state in self._news.items() if key in _select_watched(watch_list, self._news)
+            }
         self._wake.changed.set()
 
     @property
@@ -227,7 +229,7 @@ class FileWatcher:
     def _settle(self, is_whole: bool = True) -> None:
         """Compare until every file has been at rest; without folders if it is not `is_whole`."""
         self._compare(is_whole)
-        while not self._wake.is_set() and not all(one.rests for one in self._known.values()):
+        while not self._wake.is_set() and not all(state.rests for state in self._known.values()):
             self._wait(_REST_SECONDS)
             self._compare()
 
@@ -237,8 +239,8 @@ class FileWatcher:
             watched, before, listed = self._watched, dict(self._known), self._listed
         folders = watched.folders if is_whole else ()
         inside = {key: folder for folder in folders for key in _files_inside(folder)}
-        gone = [key for key in before if is_whole and key not in inside]
-        removed = [key for key in gone if key in _select_watched(watched, (key,))]
+        unlisted = [key for key in before if is_whole and key not in inside]
+        removed = [key for key in unlisted if key in _select_watched(watched, (key,))]
         nothing = _FileState(None, b"", 0.0, True)
         # A file that a folder did not have when it was first looked at is news; all others are known from then on.
         old = {key: before.get(key) or (nothing if folder in listed else None) for key, folder in inside.items()}
@@ -250,9 +252,9 @@ class FileWatcher:
             self._known = states if is_whole else {**before, **states}
             self._listed = frozenset(watched.folders) if is_whole else listed
             self._news |= {
-                key: one
-                for key, one in states.items()
-                if (before_state := old[key]) and before_state.content != one.content
+                key: state
+                for key, state in states.items()
+                if (before_state := old[key]) and before_state.content != state.content
             }
 
 

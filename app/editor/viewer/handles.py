@@ -202,10 +202,10 @@ def _list_dials(active: _ActiveNode) -> list[Gizmo]:
 
 def _list_lengths(active: _ActiveNode) -> list[Gizmo]:
     """Lengths in the picture: circles; pairs of them across and down."""
-    taken = _FRAME if _is_transform(active) else ()
+    frame_names = _FRAME if _is_transform(active) else ()
     center, gizmos = _find_center(active), list[Gizmo]()
     for name, value in active.values.items():
-        if not _is_length(value) or name in taken or value.type not in ("float", "vector"):
+        if not _is_length(value) or name in frame_names or value.type not in ("float", "vector"):
             continue
         unit, numbers = unit_factor(value.unit, 1.0, active.frame.size[1]), active.numbers[name]
         if not isinstance(numbers, int | float):

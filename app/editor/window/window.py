@@ -326,8 +326,8 @@ class Window:
             self._restore_panels()  # else the panel would be below the one that fills the window
         if commands.panels:
             docks = {docked.title: docked.dock for docked in DOCKED}
-            taken = {docks[title] for title in commands.panels}
-            others = (title for title in self._front_again if docks[title] not in taken)
+            new_docks = {docks[title] for title in commands.panels}
+            others = (title for title in self._front_again if docks[title] not in new_docks)
             self._front_again = (*others, *commands.panels)
         for title in commands.panels:
             docking.dockable_window_of_name(title).is_visible = True

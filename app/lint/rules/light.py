@@ -40,7 +40,7 @@ def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
         if item is None or isinstance(item, CustomNode):
             continue
         pictures = [source for source in _list_image_sources(sheet, id) if source]
-        made = {maker[source] for source in pictures if source in maker}
+        makers = {maker[source] for source in pictures if source in maker}
         if has_trait(item, Trait.NEEDS_SCENE_LIGHT) and pictures and pictures[0] in maker:
             name, by = next(iter(item.inputs)), maker[pictures[0]]
             sentence = f"'{id}' works with light, but '{by}' has made its picture ready for the display: put it before"
@@ -48,9 +48,9 @@ def find_display_light(sheet: GraphFacts) -> Iterator[Problem]:
         for name in _list_display_outputs(sheet, id):
             maker[Port(id, name)] = id
         keeps = not isinstance(item, Group) and not has_trait(item, Trait.NEEDS_SCENE_LIGHT, Trait.CHANGES_ENCODING)
-        if keeps and made and all(source in maker for source in pictures):
+        if keeps and makers and all(source in maker for source in pictures):
             outputs = signature(item).outputs
-            maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
+            maker |= {Port(id, name): min(makers) for name, output in outputs.items() if output.kind is Kind.IMAGE}
 
 
 def find_clipped_light(sheet: GraphFacts) -> Iterator[Problem]:

@@ -44,10 +44,10 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
         for name, value in signature(item).values.items():
             if value.type != "path":  # most are none, and a graph may have 100,000 nodes
                 continue
-            given = item.setting(name) if isinstance(item, Node) else ""
-            given = item.values.get(name, "") if isinstance(item, Group) else given
-            if isinstance(given, str) and given:
-                yield id, name, f"nodes.{id}.values.{name}", given
+            path = item.setting(name) if isinstance(item, Node) else ""
+            path = item.values.get(name, "") if isinstance(item, Group) else path
+            if isinstance(path, str) and path:
+                yield id, name, f"nodes.{id}.values.{name}", path
 
 
 def is_absolute(path: str) -> bool:

@@ -69,5 +69,5 @@ def _load() -> None:
 
 def _function(egl: ctypes.CDLL, name: bytes, *types: Any) -> Any:
     """A function of an EGL extension by what it returns and takes; None if the driver does not have it."""
-    found = egl.eglGetProcAddress(name)
-    return ctypes.CFUNCTYPE(*types)(found) if found else None
+    address = egl.eglGetProcAddress(name)
+    return ctypes.CFUNCTYPE(*types)(address) if address else None
