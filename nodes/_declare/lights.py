@@ -74,6 +74,18 @@ class Light(Struct, frozen=True):
         Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="The radius. A larger one has wider reflections."),
     ] = 0.1
     on: Annotated[bool, Doc("Whether it shines.")] = True
+    temperature: Annotated[
+        float,
+        Slider(
+            0.0,
+            12000.0,
+            unit="K",
+            minimum=0.0,
+            maximum=15000.0,
+            doc="The color of a lamp in kelvin, which is multiplied by the color: candle 1850, bulb 2850, noon 5500, "
+            "shade 8000. 0: the color alone.",
+        ),
+    ] = 0.0
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the intensity with each stop.")] = 0.0
     solo: Annotated[bool, Doc("While any light is solo, only those shine.")] = False
 
@@ -83,7 +95,10 @@ class Light(Struct, frozen=True):
         return self.intensity * 2.0**self.exposure
 
 
-_ORDER = ("on", "solo", "color", "intensity", "exposure", "place", "direction", "size", "inner", "outer", "reach")
+_ORDER = (
+    "on", "solo", "color", "temperature", "intensity", "exposure",
+    "place", "direction", "size", "inner", "outer", "reach",
+)  # fmt: skip
 """The fields in the order of the editor."""
 
 _LOCAL = ("place", "reach")
@@ -93,7 +108,7 @@ _FIELDS: Mapping[LightKind, tuple[str, ...]] = {
     LightKind.SUN: ("direction",),
     LightKind.SPHERE: (*_LOCAL, "size"),
 }
-_SHARED = ("color", "intensity", "exposure", "on", "solo")
+_SHARED = ("color", "temperature", "intensity", "exposure", "on", "solo")
 _DOCS = {
     LightKind.POINT: "Shines from one point in all directions.",
     LightKind.SPOT: "Shines from one point in a cone.",

@@ -25,6 +25,7 @@ from .._declare import (
     name_lights,
     ramp_at,
 )
+from ._blackbody import blackbody_rec709
 from ._coverage import COVERAGE_REACH
 
 TILE = 16
@@ -86,8 +87,8 @@ class DeferredLighting(Filter):
     specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe
     (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis 2013). Light falls off
     with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights, those with a
-    reach are fast. A swarm adds many small lights at once. Nothing casts shadows. `out` is diffuse and specular light
-    and emission.
+    reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights at once.
+    Nothing casts shadows. `out` is diffuse and specular light and emission.
     """
 
     aliases = (
@@ -169,7 +170,7 @@ class DeferredLighting(Filter):
         texels = max(1, -(-len(lights) // (4 * _BITS)))
         tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
         words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
-        table = draw.table(tuple(part for light in lights for part in _pack_light(light, self.intensity)), 3)
+        table = self._pack_lights(draw, lights)
         ambient_gain = 0.0 if any(light.solo for light in lights) else self.ambient_intensity
         ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
 
@@ -205,6 +206,21 @@ class DeferredLighting(Filter):
             "diffuse": lit(1.0, 0.0),
             "specular_light": lit(0.0, 1.0),
         }
+
+    def _pack_lights(self, draw: Draw, lights: list[Light]) -> Drawn:
+        """What the GLSL reads of all lights. Temperatures become colors there, as only GLSL knows the working space."""
+        table = draw.table(tuple(part for light in lights for part in _pack_light(light, self.intensity)), 3)
+        if not any(light.temperature for light in lights):
+            return table
+        colors = [blackbody_rec709(light.temperature) if light.temperature else (1.0,) * 3 for light in lights]
+        return draw(
+            "deferred_lighting_tint",
+            table=table,
+            tints=draw.table(tuple(part for color in colors for part in (*color, 1.0)), 1),
+            heated=draw.table(tuple(part for light in lights for part in (float(light.temperature > 0.0),) * 4), 1),
+            size=(3, len(lights)),
+            result=Vector(width=4),
+        )
 
     def _list_lights(self) -> list[Light]:
         """The lights that shine. Where some are solo, those alone: without the swarm and without ambient light."""

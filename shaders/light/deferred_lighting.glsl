@@ -5,6 +5,7 @@
 #include "lib/coverage.glsl"
 #include "lib/finite.glsl"
 #include "lib/geometry.glsl"
+#include "lib/working.glsl"
 
 const int DEFERRED_LIGHTING_TILE = 16;            // pixels along each side
 const int DEFERRED_LIGHTING_BITS = 24;            // lights per channel: the bits that a float holds exactly
@@ -33,6 +34,14 @@ float deferred_lighting_nearness(vec4 place) { return place.w; }
 vec3 deferred_lighting_coverage() { return coverage_found(); }
 
 vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(rows); }
+
+// A texel of the table of lights: the color of a light with a temperature is multiplied by that of a black body.
+vec4 deferred_lighting_tint() {
+    vec4 texel = table_at(pixel);
+    ivec2 light = ivec2(0, pixel.y);
+    if (pixel.x != 1 || heated_at(light).x == 0.0) return texel;
+    return vec4(texel.rgb * from_rec709(tints_at(light).rgb), texel.a);
+}
 
 // --- tiles ---------------------------------------------------------------------------------------------------------
 

@@ -31,6 +31,7 @@ _UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType(
         "h": ("height", 1.0),
         "height": ("height", 1.0),
         "x": ("ratio", 1.0),
+        "k": ("K", 1.0),
     }
 )
 _WORDS: Mapping[str, str] = MappingProxyType(
@@ -43,6 +44,7 @@ _WORDS: Mapping[str, str] = MappingProxyType(
         "count": "whole numbers",
         "s": "seconds (s)",
         "scene": "scene units",
+        "K": "kelvin (K)",
     }
 )
 _FAULTS = (ZeroDivisionError, OverflowError)

@@ -25,6 +25,7 @@ SUFFIX: Mapping[str | None, str] = MappingProxyType(
         "ratio": "",
         "count": "",
         "scene": "",
+        "K": "K",
     }
 )
 """The suffix of a number, by unit."""
@@ -40,6 +41,7 @@ MEANING: Mapping[str | None, str] = MappingProxyType(
         "count": "a whole number",
         None: "",
         "scene": "scene units",
+        "K": "kelvin",
     }
 )
 
