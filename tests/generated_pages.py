@@ -15,9 +15,10 @@ import api_reference
 import node_reference
 from command_reference import fill_tables
 from halation.cli import manual
+from halation.cli.facts import format_value
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.lint.checking import RULES
-from halation.nodes import built_in_nodes
+from halation.nodes import LIGHTS, built_in_nodes
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = MappingProxyType(
@@ -63,6 +64,26 @@ def fill_rules(text: str) -> str:
     return fill_table(text, "| rule | severity | what is wrong | what to do |\n|---|---|---|---|", rows)
 
 
+def fill_light_fields(text: str) -> str:
+    """docs/lighting.md with the fields of lights."""
+    names = ["kind", *dict.fromkeys(value.name for kind in LIGHTS.kinds for value in kind.declarations)]
+    head = "| field | kinds | default | unit | |\n|---|---|---|---|---|"
+    return fill_table(text, head, (_describe_light_field(name) for name in names))
+
+
+def _describe_light_field(name: str) -> tuple[str, ...]:
+    """A row of the table of fields: the kinds of light that have it, its default, its unit and its words."""
+    if name == "kind":
+        words = " ".join(f"`{kind.name}`: {kind.doc[0].lower()}{kind.doc[1:]}" for kind in LIGHTS.kinds)
+        return "`kind`", "all", f"`{LIGHTS.kinds[0].name}`", "", words
+    kinds = [kind for kind in LIGHTS.kinds if name in kind.fields]
+    value = kinds[0].fields[name]
+    defaults = {kind.name: format_value(kind.fields[name].default) for kind in kinds}
+    others = [f"{default} ({kind})" for kind, default in defaults.items() if default != defaults[kinds[0].name]]
+    which = "all" if len(kinds) == len(LIGHTS.kinds) else ", ".join(kind.name for kind in kinds)
+    return f"`{name}`", which, ", ".join([defaults[kinds[0].name], *others]), value.unit or "", value.doc
+
+
 WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
     {
         "docs/api.md": api_reference.write_reference,
@@ -76,6 +97,7 @@ PARTS: Mapping[str, Callable[[str], str]] = MappingProxyType(
     {
         "docs/checking.md": fill_rules,
         "docs/command-line.md": fill_tables,
+        "docs/lighting.md": fill_light_fields,
         "docs/time.md": fill_functions,
         "pyproject.toml": fill_packages,
     }
