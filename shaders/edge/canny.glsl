@@ -6,12 +6,13 @@ const float canny_tan22 = 0.41421356;  // tan(22.5 degrees): the border between 
 float canny_tone(vec4 image) { return display_tone(image); }
 
 // The Sobel gradient, scaled so that a step of 1 along a row or column gives 1.
-vec2 canny_gradient() {
-    float falling = tone_at(pixel + ivec2(1, 1)) - tone_at(pixel - ivec2(1, 1));
-    float rising = tone_at(pixel + ivec2(1, -1)) - tone_at(pixel + ivec2(-1, 1));
-    return vec2(
-        2.0 * (tone_at(pixel + ivec2(1, 0)) - tone_at(pixel - ivec2(1, 0))) + falling + rising,
-        2.0 * (tone_at(pixel + ivec2(0, 1)) - tone_at(pixel - ivec2(0, 1))) + falling - rising
+vec2 canny_gradient(int spacing, float gain) {
+    ivec2 right = ivec2(spacing, 0), down = ivec2(0, spacing);
+    float falling = tone_at(pixel + right + down) - tone_at(pixel - right - down);
+    float rising = tone_at(pixel + right - down) - tone_at(pixel - right + down);
+    return gain * vec2(
+        2.0 * (tone_at(pixel + right) - tone_at(pixel - right)) + falling + rising,
+        2.0 * (tone_at(pixel + down) - tone_at(pixel - down)) + falling - rising
     ) / 4.0;
 }
 
@@ -52,7 +53,18 @@ float canny_follow() {
     return (strong[3] >> 3u & 1u) == 1u ? canny_strong : canny_weak;
 }
 
-float canny_lines(float state) { return state == canny_strong ? 1.0 : 0.0; }
+float canny_lines(float state, float cover) { return state == canny_strong ? cover : 0.0; }
+
+// Lines `width` pixels wide, along one axis.
+float canny_wide(ivec2 along, int width) {
+    float most = 0.0;
+    for (int i = 0; i < width; ++i) most = max(most, thin_at(pixel + (i - width / 2) * along));
+    return most;
+}
+
+float canny_columns(int width) { return canny_wide(ivec2(0, 1), width); }
+
+float canny_rows(int width) { return canny_wide(ivec2(1, 0), width); }
 
 vec4 canny(vec4 image, float lines) {
     float alpha = finite(image.a);
