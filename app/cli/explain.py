@@ -54,8 +54,9 @@ def explain(
 ) -> int:
     """Print the passes that a graph compiles to.
 
-    Prints their nodes, texture formats and slots, bytes and the peak of memory. Needs no OpenGL, except for
-    --form device, which also prints which form of passes the device of this machine needs, and why.
+    Prints their nodes, texture formats and slots, bytes and the peak of memory, and how many pixels each length is.
+    Needs no OpenGL, except for --form device, which also prints which form of passes the device of this machine needs,
+    and why.
     """
     from msgspec.structs import replace
 
@@ -82,12 +83,19 @@ def explain(
     # Planned as for one EXR file per output.
     request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, provider, target=target, precision=parsed_precision)
+    lengths = () if dot else compiler.resolve_lengths(opened_graph, request, provider)
     if as_json:
-        print_json(compiler.plan_as_json(plan))
+        listed = [
+            {"value": str(item.port), "number": item.number, "unit": item.unit, "pixels": item.pixels}
+            for item in lengths
+        ]
+        print_json({**compiler.plan_as_json(plan), "lengths": listed})
+    elif dot:
+        print(compiler.write_dot(plan))
     else:
-        print(
-            compiler.write_dot(plan) if dot else compiler.explain(plan, _describe_views(opened_graph, plan, provider))
-        )
+        print(compiler.explain(plan, _describe_views(opened_graph, plan, provider)))
+        for item in lengths:
+            print(f"length    {item}")
     return 0
 
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from .areas import Region, scale_size
 from .explain import explain, plan_as_json, write_dot
 from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
+from .lengths import ResolvedLength, resolve_lengths
 from .library import Library, load_library
 from .lowering.references import find_named_files
 from .lowering.upstream import UpstreamHashes
@@ -38,6 +39,7 @@ __all__ = [
     "Ref",
     "Region",
     "Request",
+    "ResolvedLength",
     "Shader",
     "StoredResult",
     "Surface",
@@ -54,6 +56,7 @@ __all__ = [
     "load_library",
     "plan_as_json",
     "plan_tile",
+    "resolve_lengths",
     "scale_size",
     "write_dot",
 ]

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import msgspec
-from halation.nodes import MAX_POINTS, ItemKind, Items, ItemSet, Node, Value
+from halation.nodes import MAX_POINTS, ItemKind, Items, ItemSet, Node, Value, is_length
 
 from ..custom_nodes import Language
 from ..graph import INPUTS, OUTPUTS
@@ -26,6 +26,7 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 _PORT: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+$"}
 _NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
+_LENGTH_UNIT: Schema = {"type": "string", "pattern": r"^(px|height|px@[1-9]\d{0,4})$"}
 _NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
 
 _DOCS = {
@@ -164,7 +165,15 @@ def _node(kind: type[Node]) -> Schema:
         "properties": {name: _value(value) for name, value in kind.values.items()},
     }
     version = {"type": "integer", "minimum": 1, "maximum": kind.version, "default": 1}
-    node_schema = _record(records.NodeRecord, version=version, **({"values": values} if kind.version == 1 else {}))
+    lengths = [name for name, value in kind.values.items() if is_length(value)]
+    units: Schema = {
+        "type": "object",
+        "properties": dict.fromkeys(lengths, _LENGTH_UNIT),
+        "additionalProperties": False,
+    }
+    node_schema = _record(
+        records.NodeRecord, version=version, units=units, **({"values": values} if kind.version == 1 else {})
+    )
     if kind.version > 1:
         present: Schema = {"properties": {"version": {"const": kind.version}}, "required": ["version"]}
         node_schema |= {"if": present, "then": {"properties": {"values": values}}}

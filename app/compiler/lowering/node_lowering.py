@@ -125,8 +125,8 @@ class NodeLowering:
         self._fit_all(inputs, size)
         before = inputs.inputs.get(masks.IMAGE)
         reference = self._context.flat.find_reference_height(path)
-        height = self._choose_height(node, reference, size, step)
-        scaled_node = node.to_working_units(self._context.request.scale, height, reference)
+        step.length_height = self._choose_height(node, reference, size, step)
+        scaled_node = node.to_working_units(self._context.request.scale, step.length_height, reference)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
@@ -270,7 +270,7 @@ class NodeLowering:
         parameters = tuple(
             Parameter(glsl, inputs.inputs[name])
             if value is None
-            else self._make_value_parameter(inputs, node, value, glsl, size, step)
+            else self._make_value_parameter(inputs, node, value, glsl, step)
             for name, glsl, value in form.arguments
         )
         shapes = tuple(replace(shape, data=True) for shape in form.shapes) if inputs.narrow else form.shapes
@@ -309,14 +309,12 @@ class NodeLowering:
             raise ShaderError(path, library.file_name(node.shader), function.line, fault)
 
     def _make_value_parameter(
-        self, inputs: NodeInputs, node: Node, value: Value, glsl: str, size: Size, step: LoweringStep
+        self, inputs: NodeInputs, node: Node, value: Value, glsl: str, step: LoweringStep
     ) -> Parameter:
         wire = inputs.wires.get(value.name)
         if wire is not None:
-            reference_height = self._context.flat.find_reference_height(inputs.path)
-            value = node.declaration(value.name, reference_height)
-            height = self._choose_height(node, reference_height, size, step)
-            factor = unit_factor(value.unit, self._context.request.scale, height)
+            value = node.declaration(value.name, self._context.flat.find_reference_height(inputs.path))
+            factor = unit_factor(value.unit, self._context.request.scale, step.length_height)
             if isinstance(wire, UniformConstant):
                 return Parameter(glsl, constants.limit_wire(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)

@@ -47,6 +47,8 @@ class LoweringStep(Struct):
     """True if a file or a memory of an earlier frame decided what it added: these may differ the next time."""
     reads_frame: bool = False
     """True if the number of the frame decided what it added."""
+    length_height: float = 0.0
+    """The height that lengths of the node are fractions of, in pixels; 0 for a node that changes nothing."""
     whole_height: float = 0.0
     """The height of the picture that the result was cut out of, in pixels of the result; 0 if it is whole."""
 
