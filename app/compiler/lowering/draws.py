@@ -254,8 +254,9 @@ class Recorder:
         )
 
     def pad(self, image: Pixels, margin: tuple[int, int], edge: Edge = "clamp") -> Drawn:
-        source = self._find_pixels(image).ref
-        return self._wrap(padding.pad(self._builder, self._library, self._owner, source, margin, edge))
+        picture = self._find_pixels(image)
+        padded = padding.pad(self._builder, self._library, self._owner, picture.ref, margin, edge)
+        return self._wrap(padded, picture.is_narrow)
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
         picture = self._find_pixels(image)

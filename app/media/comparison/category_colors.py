@@ -35,6 +35,7 @@ DARK_CATEGORIES = _parse_all(
         "lens": "5b5378",
         "distort": "4a6b4a",
         "edge": "2f6b6b",
+        "matte": "5f6a3a",
         "geometry": "3d5378",
         "merge": "5a4a7a",
         "channel": "4f5560",

@@ -1,0 +1,28 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, OutputSocket, Slider
+
+
+class EdgeMatte(Filter):
+    """Make a matte of the edge of another one: 1 on the edge, falling to 0 on both sides.
+
+    It is `4 s (1 - s)` of the blurred matte s. Use it to grade, blur or grain an edge alone.
+    """
+
+    aliases = ("edge detect matte", "matte edge", "edge mask", "border mask", "rim matte", "edge blur mask", "inline")
+
+    matte = Field(doc="A matte, 0..1.")
+    width: Annotated[
+        float,
+        Slider(0.25, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="How wide the edge is, where it is above 0.2."),
+    ] = 8.0
+    side: Annotated[Literal["both", "inside", "outside"], Doc("Which side of the edge is seen.")] = "both"
+    gain: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="Factor before it is cut off at 1.")] = 1.0
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    out = OutputSocket(Field(doc="1 on the edge, 0 away from it."))
+
+    def passes(self, draw: Draw) -> Drawn:
+        # 4 s (1 - s) of a Gaussian edge falls to 0.2 at 1.617 sigma on either side.
+        soft = draw.blur(self.matte, self.width / (2.0 * 1.617), self.edge)
+        return draw.point("edge_matte", self.matte, soft=soft, side=self.side, gain=self.gain, result=Field())
