@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .._declare import Draw, Drawn, Image, Pixels, Size, Vector
 
 LIGHT = Vector(width=4)
@@ -27,7 +29,7 @@ def prefilter(draw: Draw, id: str, image: Image) -> Drawn:
         smaller = draw(f"{id}_half", image=smaller, size=sizes[-1], edge="black", result=LIGHT)
         halves.append(smaller)
     whole = (width + sizes[0][0], max(height, sum(down for _, down in sizes)))
-    levels = {f"half{level}": half for level, half in enumerate(halves, 1)}
+    levels: dict[str, Any] = {f"half{level}": half for level, half in enumerate(halves, 1)}
     return draw(f"{id}_levels", image=image, **levels, size=whole, edge="black", result=LIGHT)
 
 
