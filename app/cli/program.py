@@ -40,6 +40,7 @@ _VISIBLE = (
     "sweep",
     "bench",
     "export-isf",
+    "doctor",
 )
 _HIDDEN = ("git-driver", "worker")
 _LEAST_MEMORY = 288 << 20
@@ -52,6 +53,7 @@ WITHOUT_ROOT = MappingProxyType(
         "demo": "it reads no files but those of Halation",
         "gallery": "it reads no files but those of Halation",
         "schema": "it reads no file",
+        "doctor": "it reads no files but those that every command reads",
         "git-setup": "it reads no graph but those of the repository, and writes the configuration of git",
         "git-driver": "git hands it files of the repository, and copies in temporary folders",
         "worker": "the render job names the root",

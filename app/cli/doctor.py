@@ -1,0 +1,176 @@
+"""`halation doctor`: looks at everything that Halation needs on this machine."""
+
+from __future__ import annotations
+
+import os
+import platform
+import re
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from importlib import metadata
+from pathlib import Path
+from typing import Literal
+
+from msgspec import Struct
+
+from ..errors import HalationError
+from ..resources.machine import available_cores, machine_memory, memory_limit
+from ..resources.sandbox import UNRESTRICTED
+from ..resources.user_folders import list_preset_folders, state_folder
+from ..version import VERSION
+from .options import AsJson
+from .outcome import print_json
+from .plugins import list_refused_plugins
+
+State = Literal["ok", "note", "fault"]
+"""A note is worth knowing and stops nothing; a fault stops a part of Halation from working."""
+
+_LITTLE_DISK = 1 << 30
+"""Bytes. A shot of 100 frames in 4K takes a few times this."""
+
+_LITTLE_MEMORY = 2 << 30
+"""Bytes. The largest presets need about 1 GB in 4K, and pictures are decoded and encoded beside them."""
+
+
+class Finding(Struct, frozen=True):
+    """The state of one thing, in a sentence that says what to do where something is wrong."""
+
+    topic: str
+    state: State
+    sentence: str
+
+
+def doctor(as_json: AsJson = False) -> int:
+    """Check what Halation needs on this machine, and say what to do where something is missing.
+
+    It looks at packages, OpenGL, memory, disk, folders, color management and plug-ins. Paste its output into reports of
+    bugs: paths in your home folder are shortened. The exit code is 1 if something does not work.
+    """
+    findings = list(examine_machine())
+    if as_json:
+        print_json({"findings": findings_as_json(findings)})
+    else:
+        width = max(len(finding.topic) for finding in findings)
+        for finding in findings:
+            print(f"{finding.state:5}  {finding.topic:{width}}  {finding.sentence}")
+    return 1 if any(finding.state == "fault" for finding in findings) else 0
+
+
+def findings_as_json(findings: list[Finding]) -> list[dict[str, str]]:
+    """Findings as JSON objects."""
+    return [{"topic": item.topic, "state": item.state, "sentence": item.sentence} for item in findings]
+
+
+def examine_machine() -> Iterator[Finding]:
+    """All findings, one after the other. A thing that cannot be examined is a fault of its own."""
+    yield Finding("halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}")
+    yield from _examine_packages()
+    yield _examine_opengl()
+    yield _examine_display()
+    yield _examine_memory()
+    yield from _examine_folders()
+    yield _examine_color()
+    yield from _examine_plugins()
+
+
+def _examine_packages() -> Iterator[Finding]:
+    """The packages that Halation declares: their versions, or which are missing."""
+    try:
+        requirements = metadata.requires("halation") or []
+    except metadata.PackageNotFoundError:
+        yield Finding("packages", "note", "Halation runs from its source folder: ./dev test installs what it needs")
+        return
+    needed = [match[0] for text in requirements if ";" not in text and (match := re.match(r"[\w.-]+", text))]
+    versions: list[str] = []
+    for name in needed:
+        try:
+            versions.append(f"{name} {metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            yield Finding("packages", "fault", f"{name} is missing: run pip install --upgrade halation")
+    yield Finding("packages", "ok", ", ".join(versions))
+    try:
+        yield Finding("video", "ok", f"av {metadata.version('av')}")
+    except metadata.PackageNotFoundError:
+        yield Finding("video", "note", "videos cannot be read or written: run pip install 'halation[video]'")
+
+
+def _examine_opengl() -> Finding:
+    """The device that renders, tried for real."""
+    from ..renderer import open_device
+
+    try:
+        return Finding("opengl", "ok", open_device(sandbox=UNRESTRICTED).description)
+    except HalationError as fault:
+        return Finding("opengl", "fault", str(fault))
+
+
+def _examine_display() -> Finding:
+    """Whether a window can be opened: only the editor needs one."""
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return Finding("display", "ok", "the editor can open a window")
+    return Finding("display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not")
+
+
+def _examine_memory() -> Finding:
+    memory = min(memory_limit(), machine_memory())
+    sentence = f"{memory / 2**30:.1f} GiB for {available_cores()} cores"
+    if memory < _LITTLE_MEMORY:
+        return Finding("memory", "note", f"{sentence}: large pictures need more; --memory renders them in tiles")
+    return Finding("memory", "ok", sentence)
+
+
+def _examine_folders() -> Iterator[Finding]:
+    """Folders that are written to, with the space on their disks, and folders of presets."""
+    for topic, folder in (("temporary files", Path(tempfile.gettempdir())), ("preferences", state_folder())):
+        yield _examine_folder(topic, folder)
+    own, *shared = list_preset_folders()
+    yield _examine_folder("own presets", own)
+    for folder in shared:
+        if not folder.is_dir():
+            yield Finding("shared presets", "note", f"{_shorten(folder)} does not exist: see HALATION_PATH")
+
+
+def _examine_folder(topic: str, folder: Path) -> Finding:
+    nearest = next(parent for parent in (folder, *folder.parents) if parent.exists())
+    name = _shorten(folder)
+    if not nearest.is_dir() or not os.access(nearest, os.W_OK):
+        return Finding(topic, "fault", f"{name} cannot be written: change its permissions")
+    free = shutil.disk_usage(nearest).free
+    sentence = f"{name}, {free / 2**30:.1f} GiB free"
+    if free < _LITTLE_DISK:
+        return Finding(topic, "note", f"{sentence}: make room before long renders")
+    return Finding(topic, "ok", sentence)
+
+
+def _examine_color() -> Finding:
+    """The OpenColorIO config: that of $OCIO, or the built-in one."""
+    from ..color.management import get_default_color_manager
+
+    config = os.environ.get("OCIO", "")
+    try:
+        manager = get_default_color_manager()
+        spaces = len(manager.config.getColorSpaceNames())
+    except HalationError as fault:
+        return Finding("color", "fault", f"{fault}; correct or unset OCIO")
+    name = _shorten(Path(config)) if config else "the built-in config"
+    return Finding("color", "ok", f"{name}, {spaces} color spaces")
+
+
+def _examine_plugins() -> Iterator[Finding]:
+    from halation.nodes import plugins
+
+    for refused in list_refused_plugins():
+        sentence = f"{refused['package']} {refused['version']} cannot be loaded: {refused['fault']}"
+        yield Finding("plug-ins", "fault", sentence)
+    loaded = [f"{plugin.package} {plugin.version}" for plugin in plugins() if not plugin.fault]
+    yield Finding("plug-ins", "ok", ", ".join(loaded) or "none")
+
+
+def _shorten(path: Path) -> str:
+    """A path with ~ for the home folder."""
+    try:
+        return f"~/{path.relative_to(Path.home()).as_posix()}"
+    except (ValueError, RuntimeError):
+        return path.as_posix()

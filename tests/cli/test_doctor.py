@@ -1,0 +1,104 @@
+"""`halation doctor`: what is missing on a machine is found and named, with what to do."""
+
+from __future__ import annotations
+
+import json
+from importlib import metadata
+
+import pytest
+from halation.cli import doctor
+from halation.renderer import open_device
+from halation.resources.sandbox import UNRESTRICTED
+from halation.version import VERSION
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path, monkeypatch):
+    """A home folder, and a machine with a display where everything works."""
+    for name in ("HALATION_STATE", "HALATION_PATH", "OCIO"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("DISPLAY", ":0")
+    return tmp_path
+
+
+def states(cli) -> dict[str, tuple[str, str]]:
+    """State and sentence by topic; the last of a topic counts."""
+    result = cli("doctor", "--json")
+    return {item["topic"]: (item["state"], item["sentence"]) for item in json.loads(result.out)["findings"]}
+
+
+def test_a_machine_that_works(cli):
+    result = cli("doctor")
+    assert result.code == 0 and "fault" not in result.out
+    assert VERSION in result.out and open_device(sandbox=UNRESTRICTED).description in result.out
+    assert f"numpy {metadata.version('numpy')}" in result.out
+
+
+def test_paths_do_not_name_the_user(cli, home):
+    result = cli("doctor")
+    assert str(home) not in result.out and "~/" in result.out
+
+
+def test_a_missing_package_is_named(cli, monkeypatch):
+    def find(name: str, found=metadata.version) -> str:
+        if name in ("rich", "av"):
+            raise metadata.PackageNotFoundError(name)
+        return found(name)
+
+    monkeypatch.setattr(metadata, "version", find)
+    result = cli("doctor")
+    assert result.code == 1
+    assert "rich is missing: run pip install --upgrade halation" in result.out
+    assert "pip install 'halation[video]'" in result.out
+
+
+def test_a_config_that_is_missing(cli, monkeypatch):
+    monkeypatch.setenv("OCIO", "/nowhere/config.ocio")
+    assert cli("doctor").code == 1
+    state, sentence = states(cli)["color"]
+    assert state == "fault" and "/nowhere/config.ocio" in sentence and "unset OCIO" in sentence
+
+
+def test_no_opengl(cli, monkeypatch):
+    from halation import renderer
+    from halation.errors import DeviceError
+
+    def refuse(**options: object) -> None:
+        raise DeviceError("there is no driver: install one")
+
+    monkeypatch.setattr(renderer, "open_device", refuse)
+    assert states(cli)["opengl"] == ("fault", "there is no driver: install one")
+
+
+def test_no_display_concerns_the_editor_alone(cli, monkeypatch):
+    monkeypatch.delenv("DISPLAY")
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    monkeypatch.setattr(doctor.sys, "platform", "linux")
+    state, sentence = states(cli)["display"]
+    assert state == "note" and "rendering works" in sentence and cli("doctor").code == 0
+
+
+def test_folders_that_cannot_be_used(cli, home, monkeypatch):
+    (home / "file").write_text("")
+    monkeypatch.setenv("HALATION_STATE", str(home / "file" / "state"))
+    monkeypatch.setenv("HALATION_PATH", str(home / "missing"))
+    topics = states(cli)
+    assert topics["preferences"][0] == "fault" and "~/file/state" in topics["preferences"][1]
+    assert topics["shared presets"] == ("note", "~/missing does not exist: see HALATION_PATH")
+
+
+@pytest.mark.parametrize(("free", "state"), [(5 << 30, "ok"), (100 << 20, "note")])
+def test_little_disk_is_noted(cli, monkeypatch, free, state):
+    usage = type("Usage", (), {"free": free})
+    monkeypatch.setattr(doctor.shutil, "disk_usage", lambda path: usage)
+    found_state, sentence = states(cli)["temporary files"]
+    assert found_state == state and f"{free / 2**30:.1f} GiB free" in sentence
+    assert ("make room" in sentence) == (state == "note")
+
+
+def test_memory_is_the_smaller_of_machine_and_limit(cli, monkeypatch):
+    monkeypatch.setattr(doctor, "machine_memory", lambda: 64 << 30)
+    monkeypatch.setattr(doctor, "memory_limit", lambda: 1 << 30)
+    state, sentence = states(cli)["memory"]
+    assert state == "note" and sentence.startswith("1.0 GiB") and "--memory" in sentence
