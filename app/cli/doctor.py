@@ -17,7 +17,7 @@ from msgspec import Struct
 
 from ..errors import HalationError
 from ..resources.machine import available_cores, machine_memory, memory_limit
-from ..resources.sandbox import UNRESTRICTED
+from ..resources.sandbox import read_process_sandbox
 from ..resources.user_folders import list_preset_folders, state_folder
 from ..version import VERSION
 from .options import AsJson
@@ -34,7 +34,7 @@ _LITTLE_MEMORY = 2 << 30
 """Bytes. The largest presets need about 1 GB in 4K, and pictures are decoded and encoded beside them."""
 
 
-class Finding(Struct, frozen=True):
+class MachineCheck(Struct, frozen=True):
     """The state of one thing, in a sentence that says what to do where something is wrong."""
 
     topic: str
@@ -48,24 +48,24 @@ def doctor(as_json: AsJson = False) -> int:
     It looks at packages, OpenGL, memory, disk, folders, color management and plug-ins. Paste its output into reports of
     bugs: paths in your home folder are shortened. The exit code is 1 if something does not work.
     """
-    findings = list(examine_machine())
+    checks = list(examine_machine())
     if as_json:
-        print_json({"findings": findings_as_json(findings)})
+        print_json({"checks": checks_as_json(checks)})
     else:
-        width = max(len(finding.topic) for finding in findings)
-        for finding in findings:
-            print(f"{finding.state:5}  {finding.topic:{width}}  {finding.sentence}")
-    return 1 if any(finding.state == "fault" for finding in findings) else 0
+        width = max(len(check.topic) for check in checks)
+        for check in checks:
+            print(f"{check.state:5}  {check.topic:{width}}  {check.sentence}")
+    return 1 if any(check.state == "fault" for check in checks) else 0
 
 
-def findings_as_json(findings: list[Finding]) -> list[dict[str, str]]:
+def checks_as_json(checks: list[MachineCheck]) -> list[dict[str, str]]:
     """Findings as JSON objects."""
-    return [{"topic": item.topic, "state": item.state, "sentence": item.sentence} for item in findings]
+    return [{"topic": item.topic, "state": item.state, "sentence": item.sentence} for item in checks]
 
 
-def examine_machine() -> Iterator[Finding]:
-    """All findings, one after the other. A thing that cannot be examined is a fault of its own."""
-    yield Finding("halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}")
+def examine_machine() -> Iterator[MachineCheck]:
+    """All checks, one after the other. A thing that cannot be examined is a fault of its own."""
+    yield MachineCheck("halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}")
     yield from _examine_packages()
     yield _examine_opengl()
     yield _examine_display()
@@ -75,12 +75,12 @@ def examine_machine() -> Iterator[Finding]:
     yield from _examine_plugins()
 
 
-def _examine_packages() -> Iterator[Finding]:
+def _examine_packages() -> Iterator[MachineCheck]:
     """The packages that Halation declares: their versions, or which are missing."""
     try:
         requirements = metadata.requires("halation") or []
     except metadata.PackageNotFoundError:
-        yield Finding("packages", "note", "Halation runs from its source folder: ./dev test installs what it needs")
+        yield MachineCheck("packages", "note", "Halation runs from its source folder: ./dev test installs what it needs")
         return
     needed = [match[0] for text in requirements if ";" not in text and (match := re.match(r"[\w.-]+", text))]
     versions: list[str] = []
@@ -88,40 +88,40 @@ def _examine_packages() -> Iterator[Finding]:
         try:
             versions.append(f"{name} {metadata.version(name)}")
         except metadata.PackageNotFoundError:
-            yield Finding("packages", "fault", f"{name} is missing: run pip install --upgrade halation")
-    yield Finding("packages", "ok", ", ".join(versions))
+            yield MachineCheck("packages", "fault", f"{name} is missing: run pip install --upgrade halation")
+    yield MachineCheck("packages", "ok", ", ".join(versions))
     try:
-        yield Finding("video", "ok", f"av {metadata.version('av')}")
+        yield MachineCheck("video", "ok", f"av {metadata.version('av')}")
     except metadata.PackageNotFoundError:
-        yield Finding("video", "note", "videos cannot be read or written: run pip install 'halation[video]'")
+        yield MachineCheck("video", "note", "videos cannot be read or written: run pip install 'halation[video]'")
 
 
-def _examine_opengl() -> Finding:
+def _examine_opengl() -> MachineCheck:
     """The device that renders, tried for real."""
     from ..renderer import open_device
 
     try:
-        return Finding("opengl", "ok", open_device(sandbox=UNRESTRICTED).description)
+        return MachineCheck("opengl", "ok", open_device(sandbox=read_process_sandbox()).description)
     except HalationError as fault:
-        return Finding("opengl", "fault", str(fault))
+        return MachineCheck("opengl", "fault", str(fault))
 
 
-def _examine_display() -> Finding:
+def _examine_display() -> MachineCheck:
     """Whether a window can be opened: only the editor needs one."""
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        return Finding("display", "ok", "the editor can open a window")
-    return Finding("display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not")
+        return MachineCheck("display", "ok", "the editor can open a window")
+    return MachineCheck("display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not")
 
 
-def _examine_memory() -> Finding:
+def _examine_memory() -> MachineCheck:
     memory = min(memory_limit(), machine_memory())
     sentence = f"{memory / 2**30:.1f} GiB for {available_cores()} cores"
     if memory < _LITTLE_MEMORY:
-        return Finding("memory", "note", f"{sentence}: large pictures need more; --memory renders them in tiles")
-    return Finding("memory", "ok", sentence)
+        return MachineCheck("memory", "note", f"{sentence}: large pictures need more; --memory renders them in tiles")
+    return MachineCheck("memory", "ok", sentence)
 
 
-def _examine_folders() -> Iterator[Finding]:
+def _examine_folders() -> Iterator[MachineCheck]:
     """Folders that are written to, with the space on their disks, and folders of presets."""
     for topic, folder in (("temporary files", Path(tempfile.gettempdir())), ("preferences", state_folder())):
         yield _examine_folder(topic, folder)
@@ -129,22 +129,22 @@ def _examine_folders() -> Iterator[Finding]:
     yield _examine_folder("own presets", own)
     for folder in shared:
         if not folder.is_dir():
-            yield Finding("shared presets", "note", f"{_shorten(folder)} does not exist: see HALATION_PATH")
+            yield MachineCheck("shared presets", "note", f"{_shorten(folder)} does not exist: see HALATION_PATH")
 
 
-def _examine_folder(topic: str, folder: Path) -> Finding:
+def _examine_folder(topic: str, folder: Path) -> MachineCheck:
     nearest = next(parent for parent in (folder, *folder.parents) if parent.exists())
     name = _shorten(folder)
     if not nearest.is_dir() or not os.access(nearest, os.W_OK):
-        return Finding(topic, "fault", f"{name} cannot be written: change its permissions")
+        return MachineCheck(topic, "fault", f"{name} cannot be written: change its permissions")
     free = shutil.disk_usage(nearest).free
     sentence = f"{name}, {free / 2**30:.1f} GiB free"
     if free < _LITTLE_DISK:
-        return Finding(topic, "note", f"{sentence}: make room before long renders")
-    return Finding(topic, "ok", sentence)
+        return MachineCheck(topic, "note", f"{sentence}: make room before long renders")
+    return MachineCheck(topic, "ok", sentence)
 
 
-def _examine_color() -> Finding:
+def _examine_color() -> MachineCheck:
     """The OpenColorIO config: that of $OCIO, or the built-in one."""
     from ..color.management import get_default_color_manager
 
@@ -153,19 +153,19 @@ def _examine_color() -> Finding:
         manager = get_default_color_manager()
         spaces = len(manager.config.getColorSpaceNames())
     except HalationError as fault:
-        return Finding("color", "fault", f"{fault}; correct or unset OCIO")
+        return MachineCheck("color", "fault", f"{fault}; correct or unset OCIO")
     name = _shorten(Path(config)) if config else "the built-in config"
-    return Finding("color", "ok", f"{name}, {spaces} color spaces")
+    return MachineCheck("color", "ok", f"{name}, {spaces} color spaces")
 
 
-def _examine_plugins() -> Iterator[Finding]:
+def _examine_plugins() -> Iterator[MachineCheck]:
     from halation.nodes import plugins
 
     for refused in list_refused_plugins():
         sentence = f"{refused['package']} {refused['version']} cannot be loaded: {refused['fault']}"
-        yield Finding("plug-ins", "fault", sentence)
+        yield MachineCheck("plug-ins", "fault", sentence)
     loaded = [f"{plugin.package} {plugin.version}" for plugin in plugins() if not plugin.fault]
-    yield Finding("plug-ins", "ok", ", ".join(loaded) or "none")
+    yield MachineCheck("plug-ins", "ok", ", ".join(loaded) or "none")
 
 
 def _shorten(path: Path) -> str:

@@ -25,7 +25,7 @@ def home(tmp_path, monkeypatch):
 def states(cli) -> dict[str, tuple[str, str]]:
     """State and sentence by topic; the last of a topic counts."""
     result = cli("doctor", "--json")
-    return {item["topic"]: (item["state"], item["sentence"]) for item in json.loads(result.out)["findings"]}
+    return {item["topic"]: (item["state"], item["sentence"]) for item in json.loads(result.out)["checks"]}
 
 
 def test_a_machine_that_works(cli):

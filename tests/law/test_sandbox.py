@@ -15,6 +15,7 @@ APP = ROOT / "app"
 ENVIRONMENT = {
     "authoring/render_queue/queued_render.py": "the environment of a process that it starts",
     "cli/__init__.py": "settings of libraries, before they are loaded at the start of the process",
+    "cli/doctor.py": "whether there is a display, and the name of the color config",
     "cli/helpers.py": "the environment of processes that it starts",
     "cli/outcome.py": "HALATION_DEBUG",
     "cli/versions.py": "what the terminal and git say of colors",
