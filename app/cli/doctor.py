@@ -65,7 +65,9 @@ def checks_as_json(checks: list[MachineCheck]) -> list[dict[str, str]]:
 
 def examine_machine() -> Iterator[MachineCheck]:
     """All checks, one after the other. A thing that cannot be examined is a fault of its own."""
-    yield MachineCheck("halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}")
+    yield MachineCheck(
+        "halation", "ok", f"{VERSION}, Python {platform.python_version()}, {platform.platform(terse=True)}"
+    )
     yield from _examine_packages()
     yield _examine_opengl()
     yield _examine_display()
@@ -80,7 +82,9 @@ def _examine_packages() -> Iterator[MachineCheck]:
     try:
         requirements = metadata.requires("halation") or []
     except metadata.PackageNotFoundError:
-        yield MachineCheck("packages", "note", "Halation runs from its source folder: ./dev test installs what it needs")
+        yield MachineCheck(
+            "packages", "note", "Halation runs from its source folder: ./dev test installs what it needs"
+        )
         return
     needed = [match[0] for text in requirements if ";" not in text and (match := re.match(r"[\w.-]+", text))]
     versions: list[str] = []
@@ -110,7 +114,9 @@ def _examine_display() -> MachineCheck:
     """Whether a window can be opened: only the editor needs one."""
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return MachineCheck("display", "ok", "the editor can open a window")
-    return MachineCheck("display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not")
+    return MachineCheck(
+        "display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not"
+    )
 
 
 def _examine_memory() -> MachineCheck:
