@@ -37,7 +37,10 @@ def test_which_panels_are_open_is_remembered(tmp_path) -> None:
         return window.params.docking_params.dockable_window_of_name("History")
 
     visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or setattr(panel(window), "is_visible", False))
-    visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or window.editor.commands.reset_layout())
+    visit(
+        tmp_path,
+        lambda window: seen.append(panel(window).is_visible) or window.editor.commands.apply_layout("composite"),
+    )
     visit(tmp_path, lambda window: seen.append(panel(window).is_visible))
     assert seen == [True, False, True]
     assert (tmp_path / "state" / "layout.ini").exists()

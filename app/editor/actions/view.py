@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from ..shared.action import Action
-from ..shared.window_commands import PanelTitle
+from ..shared.window_commands import LayoutName, PanelTitle
 from ..theme.style import ui_scale
 
 if TYPE_CHECKING:
@@ -34,6 +35,18 @@ def _scale(step: float) -> Callable[[ViewSettingsContext], object]:
 
     return scale
 
+
+def _apply_layout(context: ViewSettingsContext, name: LayoutName) -> None:
+    context.commands.apply_layout(name)
+
+
+_LAYOUTS: tuple[tuple[LayoutName, str, str, str], ...] = (
+    ("composite", "Composite", "Ctrl+F1", "to build a graph, which is below the viewer; these are their first places"),
+    ("beside", "Composite, Graph Beside", "Ctrl+F2", "to build a graph beside the viewer, on a wide display"),
+    ("code", "Code", "Ctrl+F3", "to write GLSL"),
+    ("animate", "Animate", "Ctrl+F4", "to set keys"),
+    ("review", "Review", "Ctrl+F5", "to look at pictures and renders"),
+)
 
 VIEW: tuple[Action[ViewSettingsContext], ...] = (
     Action(
@@ -87,7 +100,22 @@ VIEW: tuple[Action[ViewSettingsContext], ...] = (
         doc="Let the graph fill the window, or show the other panels again.",
     ),
     Action(
-        "view.reset_layout", "Reset Panels", lambda context: context.commands.reset_layout(), "View", separated=True
+        "view.reset_layout",
+        "Reset Panels",
+        lambda context: context.commands.apply_layout("composite"),
+        "View",
+        separated=True,
+    ),
+    *(
+        Action(
+            f"view.layout.{name}",
+            label,
+            partial(_apply_layout, name=name),
+            "View/Layout",
+            keys,
+            doc=f"Move all panels to where they serve best {purpose}.",
+        )
+        for name, label, keys, purpose in _LAYOUTS
     ),
     Action("view.screenshot", "Save a Screenshot...", lambda context: context.commands.save_screenshot(), "View"),
     Action("help.palette", "Command Palette...", lambda context: context.dialogs.open.add("palette"), "Help", "Ctrl+P"),

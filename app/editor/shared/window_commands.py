@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Literal
+
+LayoutName = Literal["composite", "beside", "code", "animate", "review"]
+"""Layouts of panels by what the user does; "beside" has the graph beside the viewer."""
 
 
 class PanelTitle(StrEnum):
@@ -27,7 +31,8 @@ class WindowCommands:
 
     closing: bool = False
     """True lets the window close."""
-    resets_layout: bool = False
+    layout: LayoutName | None = None
+    """The layout of panels to apply."""
     saves_screenshot: bool = False
     maximizes: PanelTitle | None = None
     """The panel that is to fill the window, or no longer."""
@@ -42,9 +47,9 @@ class WindowCommands:
         """Show a panel, in front of those in the same dock."""
         self.panels.append(title)
 
-    def reset_layout(self) -> None:
-        """Reset all panels to their first places."""
-        self.resets_layout = True
+    def apply_layout(self, name: LayoutName) -> None:
+        """Move all panels to their places in a layout."""
+        self.layout = name
 
     def maximize(self, title: PanelTitle) -> None:
         """Let a panel fill the window, or show the others again."""

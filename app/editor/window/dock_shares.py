@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from imgui_bundle import ImVec2, imgui
 
-_DOCKS = ("Right", "RightLower", "Lower", "MainDockSpace")
+_DOCKS = ("Right", "RightLower", "Side", "Lower", "MainDockSpace")
 
 
 class DockShares:

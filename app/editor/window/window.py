@@ -29,6 +29,7 @@ from .frame_updater import FrameUpdater
 from .full_screen import FullScreen, begin_filling, find_pointed_panel
 from .guard import draw_failure, draw_guarded, enable_error_recovery
 from .input_events import InputQueue
+from .layouts import LAYOUTS, apply_layout, make_splits
 from .menus import draw_menus
 from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .resting import GRACE, FrameWaker, choose_idle_rate
@@ -85,6 +86,7 @@ class Window:
         self._title = ""
         self._fronted: set[str] = set()
         self._styled: tuple[Palette, float, tuple[float, ...]] | None = None
+        self._layout = LAYOUTS["composite"]
         self.params = self._make_params(version, size)
         self._full_screen = FullScreen(self.params)
         self.frames = 0
@@ -110,11 +112,7 @@ class Window:
         window.show_menu_bar = window.show_status_bar = True
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
-        params.docking_params.docking_splits = [
-            hello_imgui.DockingSplit("MainDockSpace", "Right", imgui.Dir.right, 0.25, _NODE),
-            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.36, _NODE),
-            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.44, _NODE),
-        ]
+        params.docking_params.docking_splits = make_splits(self._layout)
         params.docking_params.main_dock_space_node_flags |= _NODE
         params.docking_params.dockable_windows = [self._dockable(docked) for docked in DOCKED]
         calls = params.callbacks
@@ -303,12 +301,11 @@ class Window:
     def _serve_commands(self) -> None:
         """Do what panels and actions asked the window to do."""
         commands, docking = self.editor.commands, self.params.docking_params
-        if commands.resets_layout:
-            commands.resets_layout = False
+        if commands.layout is not None:
             self._restore_panels()
-            docking.layout_reset = True
-            for docked in DOCKED:
-                docking.dockable_window_of_name(docked.title).is_visible = True
+            self._layout, commands.layout = LAYOUTS[commands.layout], None
+            apply_layout(self.params, self._layout)
+            self._front_again, self._front_at = self._layout.front, self.frames + _APPEARING
         if commands.saves_screenshot:
             commands.saves_screenshot = False
             self._screenshot()
@@ -325,7 +322,7 @@ class Window:
         if any(title != self._filling for title in commands.panels):
             self._restore_panels()  # else the panel would be below the one that fills the window
         if commands.panels:
-            docks = {docked.title: docked.dock for docked in DOCKED}
+            docks = {docked.title: self._layout.find_dock(docked.title, docked.dock) for docked in DOCKED}
             new_docks = {docks[title] for title in commands.panels}
             others = (title for title in self._front_again if docks[title] not in new_docks)
             self._front_again = (*others, *commands.panels)
