@@ -16,10 +16,10 @@ from halation.authoring.commands import (
 )
 from halation.authoring.session import Session
 from halation.document import dumps, loads
-from halation.document.diff_merge import merge_graphs
+from halation.document.diff_merge import compare_graphs, describe_difference, merge_graphs
 from halation.errors import GraphError
-from halation.graph import Control, Expression, Graph, Keys, Port, evaluate_at_frame, problems
-from halation.nodes import MAX_LIGHTS, Light, LightKind, lights_of, number_lights
+from halation.graph import Control, Expression, Graph, Group, Keys, Port, evaluate_at_frame, problems
+from halation.nodes import MAX_LIGHTS, Light, LightKind, item_of, lights_of, number_lights
 from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Lamps
 
@@ -132,3 +132,28 @@ def test_two_people_change_one_field_of_one_light():
     merge = merge_graphs(base, base.override("lamps.lamp_1.intensity", 2), base.override("lamps.lamp_1.intensity", 3))
     (conflict,) = merge.conflicts
     assert conflict.at == ("nodes", "lamps", "values", "lights", "lamp_1", "intensity")
+
+
+def test_a_difference_names_the_light_and_the_field():
+    base = Graph().add("lamps", Lamps(lights=number_lights(LAMPS)))
+    after = base.override("lamps.lamp_1.exposure", 2)
+    after = after.put(LIGHTS, after.value(LIGHTS).without_item("lamp_2").with_item("rim", item_of(Light(size=0.3))))
+    lines = describe_difference(compare_graphs(base, after), base, after)
+    assert [f"{line.sign} {line.words}" for line in lines] == [
+        "~ lamps.lights.lamp_1.exposure: 0 EV (default) -> 2 EV",
+        "- light lamps.lights.lamp_2: sun",
+        "+ light lamps.lights.rim: point",
+    ]
+
+
+def test_a_group_shows_a_field_of_a_light():
+    inner = Graph().add("lamps", Lamps(lights=number_lights(LAMPS)))
+    graph = Graph().add(
+        "group", Group(inner.add_control("key", Control(INTENSITY)).add_control("all", Control(LIGHTS)))
+    )
+    for path in ("group.key", "group.lamps.lamp_1.intensity", "group.all.lamp_1.intensity"):
+        changed = graph.override(path, 4)
+        body = changed.nodes["group"].body()
+        assert lights_of(body.value(LIGHTS))[0].intensity == 4.0, path
+        text = dumps(changed)
+        assert loads(text, catalogue=TOYS, sandbox=UNRESTRICTED) == changed and dumps(changed) == text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from halation.nodes import REFERENCE_HEIGHT, ItemSet, Node, Plain, Value, is_length, name_reference
 
@@ -93,7 +93,10 @@ def from_text(text: str) -> Any:
         return text.strip()
     if isinstance(parsed, list):
         parsed = tuple(parsed)
-    if not isinstance(parsed, int | float | bool | str | tuple | dict):
+    are_items = isinstance(parsed, dict) and all(
+        isinstance(part, dict) for part in cast("dict[str, Any]", parsed).values()
+    )
+    if not are_items and not isinstance(parsed, int | float | bool | str | tuple):
         raise UsageError("the clipboard holds no value: copy one first")
     return parsed
 
