@@ -85,6 +85,8 @@ class _PythonReader:
         return self._places
 
     def _visit(self, node: ast.AST) -> None:
+        if isinstance(node, ast.JoinedStr):  # Python 3.11 does not say where its parts are
+            return
         if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
             return
         if isinstance(node, ast.Assign) and any(isinstance(at, ast.Name) and at.id == "__all__" for at in node.targets):
@@ -115,8 +117,8 @@ class _PythonReader:
         self._replace_between(node.values[0], node.values[1], node.op)
 
     def _read_unaryop(self, node: ast.UnaryOp) -> None:
-        if isinstance(node.op, ast.Not):
-            self._places.append((self._at(node), self._at(node.operand), ""))
+        if isinstance(node.op, ast.Not) and (word := re.match(r"not\s*", self._text(node))):
+            self._places.append((self._at(node), self._at(node) + word.end(), ""))
 
     def _read_constant(self, node: ast.Constant) -> None:
         number = node.value

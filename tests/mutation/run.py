@@ -47,6 +47,9 @@ SLOW_ROOMS = ("gui", "hostile", "law", "mutation")
 """Rooms of tests that no fault is shown to: each takes minutes, or reads the tree itself."""
 
 
+_PYTEST = ("-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no")
+
+
 @dataclass(frozen=True)
 class Trial:
     """A fault and what the tests said."""
@@ -101,8 +104,22 @@ def list_tests(path: Path) -> list[str]:
     return [str(test.relative_to(ROOT)) for test in sorted(tests, key=measure_distance)][:FILES]
 
 
-def try_mutant(tree: Path, mutant: Mutant) -> Trial:
-    """Show a fault to its tests, and take it out of the tree again."""
+def try_mutant(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
+    """Show a fault to its tests, and take it out of the tree again.
+
+    Tests that fail without it too are added to those that are `broken`, and say nothing.
+    """
+    while True:
+        trial = _try_once(tree, mutant, broken)
+        failing = trial.words.removeprefix("FAILED ").partition(" - ")[0]
+        if not trial.words.startswith("FAILED ") or failing in broken:
+            return trial
+        if run_in_tree(tree, *_PYTEST, failing, timeout=LIMIT).returncode == 0:
+            return trial
+        broken.add(failing)
+
+
+def _try_once(tree: Path, mutant: Mutant, broken: set[str]) -> Trial:
     room, tests = room_of(mutant.path), list_tests(mutant.path)
     if not tests:
         return Trial(mutant, room, False, "no test covers the file")
@@ -111,7 +128,7 @@ def try_mutant(tree: Path, mutant: Mutant) -> Trial:
     path.write_text(mutant.apply(source), "utf-8")
     slow = [name for name in LIST.read_text("utf-8").split() if name.partition("::")[0] in tests]
     quick = [*tests, *(f"--deselect={name}" for name in slow)]
-    words = ["-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", "--tb=no"]
+    words = [*_PYTEST, *(f"--deselect={name}" for name in sorted(broken))]
     try:
         # Quick tests first: most faults are noticed by one of them.
         for selection in (quick, slow) if slow else (quick,):
@@ -157,11 +174,11 @@ def main() -> int:
     sys.stdout.reconfigure(line_buffering=True)  # pyright: ignore[reportAttributeAccessIssue]
     mutants = [mutant for place in options.at for mutant in list_line_mutants(place)]
     mutants = mutants if options.at else draw_mutants(options.seed, options.count, tuple(options.rooms))
-    trials: list[Trial] = []
+    trials, broken = list[Trial](), set[str]()
     with tempfile.TemporaryDirectory() as folder:
         tree = copy_tree(Path(folder) / "tree")
         for mutant in mutants:
-            trials.append(trial := try_mutant(tree, mutant))
+            trials.append(trial := try_mutant(tree, mutant, broken))
             text = mutant.describe((ROOT / mutant.path).read_text("utf-8"))
             print("noticed " if trial.was_noticed else "SURVIVED", text, f"({trial.words})")
     scores, floors = rate(trials), json.loads(FLOORS.read_text("utf-8"))

@@ -96,14 +96,31 @@ def test_a_fault_is_seen_by_the_tests_and_taken_out_again(
     (tmp_path / path).write_text("a < b")
 
     def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
+        if "a.py::test" in words:
+            return subprocess.CompletedProcess(words, 0, "", "")
         seen.append((tree / path).read_text())
         return subprocess.CompletedProcess(words, code, "FAILED a.py::test\n" if code else "", "")
 
     monkeypatch.setattr(run, "run_in_tree", play)
-    trial = try_mutant(tmp_path, Mutant(path, 2, 3, "<="))
+    trial = try_mutant(tmp_path, Mutant(path, 2, 3, "<="), set())
     assert {*seen} == {"a <= b"} and (tmp_path / path).read_text() == "a < b"
     assert trial.was_noticed is was_noticed and ("FAILED a.py::test" in trial.words) is was_noticed
     assert rate([trial]) == {"graph": (int(was_noticed), 1)}
+
+
+def test_a_test_that_fails_without_the_fault_notices_nothing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    path = Path("app/graph/walk.py")
+    (tmp_path / path).parent.mkdir(parents=True)
+    (tmp_path / path).write_text("a < b")
+
+    def play(tree: Path, *words: str, timeout: float) -> subprocess.CompletedProcess[str]:
+        fails = "--deselect=a.py::test" not in words
+        return subprocess.CompletedProcess(words, int(fails), "FAILED a.py::test - no\n" if fails else "", "")
+
+    monkeypatch.setattr(run, "run_in_tree", play)
+    broken = set[str]()
+    assert not try_mutant(tmp_path, Mutant(path, 2, 3, "<="), broken).was_noticed
+    assert broken == {"a.py::test"}
 
 
 def test_floors_rise_where_enough_was_tried_and_never_fall() -> None:
