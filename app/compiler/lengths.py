@@ -27,7 +27,7 @@ class ResolvedLength(Struct, frozen=True):
 
 
 def resolve_lengths(graph: Graph, request: Request, provider: ResourceProvider) -> tuple[ResolvedLength, ...]:
-    """The lengths of all nodes that are rendered and change something, in the order of the nodes. Raises GraphError."""
+    """The lengths of all nodes that are rendered, in the order of the nodes. Raises GraphError."""
     return tuple(_list_lengths(graph, request, provider))
 
 

@@ -115,6 +115,19 @@ def test_a_resized_input_does_not_change_the_look(run) -> None:
     assert np.abs(run(graph, {"image": make_picture(2)}) - expected).max() < 0.004
 
 
+@pytest.mark.parametrize("kind", ["kuwahara", "oil"])
+def test_whether_a_length_changes_anything_depends_on_its_pixels(run, kind: str) -> None:
+    """A radius below a pixel does nothing: 0.05 of the height is 3 pixels, and 3 px@6000 are less than one."""
+    graph, port = graph_of(NODES[kind](), {"image": make_picture()}), Port("node", "radius")
+    given = {"image": make_picture()}
+    tall = graph.override("node.radius.unit", "height").set(port, 0.05)
+    expected = run(graph.set(port, 3.0), given)
+    np.testing.assert_allclose(run(tall, given), expected, atol=2e-6)
+    assert not np.array_equal(expected, make_picture())
+    tiny = graph.override("node.radius.unit", "px@6000").set(port, 3.0)
+    np.testing.assert_array_equal(run(tiny, given), make_picture())
+
+
 def test_groups_have_a_reference_height_of_their_own(run) -> None:
     body = make_blur(REFERENCE)
     outer = Graph(

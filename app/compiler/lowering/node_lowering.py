@@ -116,7 +116,11 @@ class NodeLowering:
         node, path = inputs.node, inputs.path
         size = self._find_size(inputs)
         step.whole_height = self._find_whole_height(inputs, size)
-        passed_through = self._pass_through(inputs)
+        reference = self._context.flat.find_reference_height(path)
+        step.length_height = self._choose_height(node, reference, size, step)
+        scaled_node = node.to_working_units(self._context.request.scale, step.length_height, reference)
+        says_units = reference is not None or node.length_units
+        passed_through = self._pass_through(inputs, scaled_node if says_units else node)
         if passed_through is not None:
             return {
                 name: self._pictures.fit(operand, size, path) if isinstance(operand, Ref) else operand
@@ -124,9 +128,6 @@ class NodeLowering:
             }
         self._fit_all(inputs, size)
         before = inputs.inputs.get(masks.IMAGE)
-        reference = self._context.flat.find_reference_height(path)
-        step.length_height = self._choose_height(node, reference, size, step)
-        scaled_node = node.to_working_units(self._context.request.scale, step.length_height, reference)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
@@ -205,9 +206,8 @@ class NodeLowering:
         sizes = {self._builder.shape(operand).size for operand in operands if isinstance(operand, Ref)}
         return sizes <= {size, (1, 1)} and all(frame == inputs.frame for _, frame in inputs.at_frames)
 
-    def _pass_through(self, inputs: NodeInputs) -> dict[str, Operand] | None:
+    def _pass_through(self, inputs: NodeInputs, node: Node) -> dict[str, Operand] | None:
         """What the outputs of a muted or neutral node show; None if it has something to do."""
-        node = inputs.node
         if inputs.path in self._context.flat.muted:
             sources = {name: find_stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {

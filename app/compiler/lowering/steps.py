@@ -48,7 +48,7 @@ class LoweringStep(Struct):
     reads_frame: bool = False
     """True if the number of the frame decided what it added."""
     length_height: float = 0.0
-    """The height that lengths of the node are fractions of, in pixels; 0 for a node that changes nothing."""
+    """The height that lengths of the node are fractions of, in pixels."""
     whole_height: float = 0.0
     """The height of the picture that the result was cut out of, in pixels of the result; 0 if it is whole."""
 
