@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 
 import moderngl
+import numpy as np
 import pytest
 from halation import renderer
+from oiio_pictures import write_picture
 
 REAL_DEVICE = renderer.open_device
 
@@ -252,3 +255,29 @@ def test_a_node_that_cannot_be_imported_is_no_bug_of_halation(cli, monkeypatch):
         1,
         "halation: nodes/color/mine.py, line 38: SyntaxError: '(' was never closed\n",
     )
+
+
+def test_a_place_for_the_frame_that_is_too_wide_is_a_fault_of_the_graph(fails, tmp_path):
+    path = tmp_path / "graph.json"
+    ends = {"inputs": {"a": {"type": "Image", "file": "$F99999"}}, "outputs": {"image": {"type": "Image"}}}
+    path.write_text(json.dumps({"halation": 1, **ends, "links": {"outputs.image": "inputs.a"}}))
+    assert "more than 16 digits for a frame" in fails(3, "render", path)
+
+
+def test_what_libraries_print_is_not_beside_the_sentence(tmp_path):
+    """libpng writes lines of its own to the standard error of C."""
+    path = tmp_path / "cut.png"
+    write_picture(path, np.random.default_rng(1).random((64, 64, 4), np.float32), format="uint8")
+    data = bytearray(path.read_bytes())
+    place = data.index(b"IDAT") + 40
+    data[place : place + 8] = b"\xff" * 8
+    path.write_bytes(bytes(data))
+    graph = {"nodes": {"r": {"type": "read_image", "values": {"path": str(path)}}}, "links": {"outputs.image": "r.out"}}
+    file = tmp_path / "graph.json"
+    file.write_text(json.dumps({"halation": 1, "outputs": {"image": {"type": "Image"}}, **graph}))
+    words = [sys.executable, "-m", "halation.cli", "render", file, "-o", tmp_path / "out.png"]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=100)
+    assert ended.returncode == 4
+    device, *lines = ended.stderr.splitlines()
+    assert "rasterizer" in device or "GL" in device
+    assert len(lines) == 1 and lines[0].startswith("halation: ") and "cut.png" in lines[0]
