@@ -156,7 +156,9 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
     units = dict(item.length_units)
     changed = {name: plain for name, plain in set_values.items() if name in units or plain != item.values[name].default}
-    values = {**unknown_values, **changed, **_describe_items(id, graph, set_values)}
+    values = {**unknown_values, **changed}
+    if item.item_values:
+        values |= _describe_items(id, graph, set_values)
     type_facts = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.required_package:
         type_facts["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)

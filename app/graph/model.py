@@ -38,7 +38,7 @@ class Port(Struct, frozen=True, order=True):
     def parse(cls, text: str) -> Port:
         """Read `node.socket` or `node.value.item.field`. Raises GraphError."""
         node, _, socket = text.partition(".")
-        if not node or not all(socket.split(".")) or socket.count(".") not in (0, 2):
+        if not node or not socket or ("." in socket and (socket.count(".") != 2 or not all(socket.split(".")))):
             raise GraphError(f"'{text}' is not a socket: write node.socket, such as 'bloom.image'")
         return cls(node, socket)
 

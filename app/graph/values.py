@@ -15,6 +15,8 @@ def coerce(value: Value, setting: object) -> Plain | None:
 
     Ranges and choices are not checked: see `value_fault`.
     """
+    if value.type == "float" and type(setting) is float:
+        return setting  # the usual case
     return coerce_items(value, setting) if value.items else coerce_scalar(value, setting)
 
 

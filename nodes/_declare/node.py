@@ -52,6 +52,8 @@ class Node:
     inputs: ClassVar[Mapping[str, Socket]] = {}
     outputs: ClassVar[Mapping[str, OutputSocket]] = {}
     values: ClassVar[Mapping[str, Value]] = {}
+    item_values: ClassVar[tuple[str, ...]] = ()
+    """The values that hold named items."""
     order: ClassVar[tuple[str, ...]] = ()
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
     aliases: ClassVar[tuple[str, ...]] = ()
@@ -105,6 +107,7 @@ class Node:
             for field in sorted(_fields(cls), key=lambda field: field.name not in own_names)
             if field.name != "length_units"
         }
+        cls.item_values = tuple(name for name, value in cls.values.items() if value.items)
         cls.order = tuple(name for name in own_names if name in cls.inputs or name in cls.values)
 
     @classmethod
