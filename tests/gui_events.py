@@ -8,6 +8,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Callable, Generator
 from pathlib import Path
+from typing import Any
 
 from gui_driver import headless
 from halation.editor.window.opening import run
@@ -68,7 +69,7 @@ class Keyboard:
 
     def move(self, x: float, y: float) -> None:
         """Move the mouse."""
-        host = glfw_utils.glfw_window_hello_imgui()
+        host: Any = glfw_utils.glfw_window_hello_imgui()
         glfw.set_cursor_pos(host, x, y)
         self._window._input.add_position(int(ctypes.cast(host, ctypes.c_void_p).value or 0), x, y)
 
@@ -82,8 +83,8 @@ class Keyboard:
 def play(script: Callable[[Window, Keyboard], Script], folder: Path, path: Path | None = None) -> Window:
     """Open the editor, run a script between its frames, and close it."""
     window = headless(folder, path)
-    before, steps, question = window.params.callbacks.post_new_frame, script(window, Keyboard(window)), [bool]
-    question[0] = lambda: window.frames > 8
+    before, steps = window.params.callbacks.post_new_frame, script(window, Keyboard(window))
+    question: list[Callable[[], bool]] = [lambda: window.frames > 8]
 
     def frame() -> None:
         assert window.frames < LIMIT, "this never became true"

@@ -39,6 +39,7 @@ _SIGNS = MappingProxyType(
         "DownArrow": "Down",
         "PageUp": "Page Up",
         "PageDown": "Page Down",
+        "KeypadDecimal": "Num .",
     }
 )
 
