@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Protocol
 
@@ -23,9 +23,6 @@ class _SourceGraph(Protocol):
 
     @property
     def links(self) -> Mapping[Port, Port]: ...
-
-    @property
-    def field_outputs(self) -> Mapping[Port, Socket]: ...
 
     def declared_source(self, port: Port) -> Socket | None: ...
 
@@ -66,14 +63,23 @@ def _is_field(graph: _SourceGraph, port: Port) -> bool:
     return socket is not None and socket.kind is Kind.FIELD
 
 
-def find_type_fault(graph: _SourceGraph, source: Port, start: Socket, target: Socket | Value) -> str | None:
-    """Why an output, declared as `start`, cannot feed a target; None if its type fits, or that of what it follows."""
+def find_type_fault(
+    graph: _SourceGraph,
+    source: Port,
+    start: Socket,
+    target: Socket | Value,
+    list_fields: Callable[[], Mapping[Port, Socket]],
+) -> str | None:
+    """Why an output, declared as `start`, cannot feed a target; None if its type fits, or that of what it follows.
+
+    `list_fields` returns what `find_field_outputs` does; it is called only where the declared type does not fit.
+    """
     fault = conversion(start, target)
     followed = find_followed_input(graph, source) if fault else None
     if fault is None or followed is None:
         return fault
-    if source in graph.field_outputs:
-        return conversion(graph.field_outputs[source], target)
+    if field := list_fields().get(source):
+        return conversion(field, target)
     if followed in graph.links or conversion(Field(), target):
         return fault
     return f"{fault}; '{source}' is a Field where a Field is linked to '{followed}'"

@@ -136,7 +136,7 @@ class Graph(Wired[Item], EndEdits):
             start, end = self.declared_source(source), self.target(target)
         except GraphError as error:
             return str(error)
-        return None if start is None or end is None else find_type_fault(self, source, start, end)
+        return start and end and find_type_fault(self, source, start, end, lambda: self.field_outputs)
 
     def bypass(self, id: str, target: Socket | Value | None) -> Port | None:
         """The port that can feed `target` in place of node `id`: the source of its first linked input that fits."""

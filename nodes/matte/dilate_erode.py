@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Pixels, ProxyNote, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Pixels, ProxyNote, Slider, Socket
 
 
 class DilateErode(Filter):
@@ -49,7 +49,7 @@ class DilateErode(Filter):
         if part:
             smaller: Pixels = grow(draw, self.image, padded, largest, whole, sense) if whole else self.image
             return draw.point("dilate_erode_mix", smaller=smaller, larger=grown, part=part)
-        assert not isinstance(grown, Image)
+        assert not isinstance(grown, Socket)
         return grown
 
 
@@ -76,7 +76,7 @@ def _grow_square(draw: Draw, image: Pixels, padded: Pixels, margin: int, radius:
             "dilate_erode_join", size=size, spans=spans, axis=axis, start=margin - radius, count=count,
             total=length, sense=sense,
         )  # fmt: skip
-    assert not isinstance(spans, Image)
+    assert not isinstance(spans, Socket)
     return spans
 
 
@@ -96,5 +96,5 @@ def _grow_disc(draw: Draw, image: Pixels, padded: Pixels, margin: int, radius: i
             )  # fmt: skip
         spans = _double(draw, spans, 0, count, sense)
         count *= 2
-    assert not isinstance(grown, Image)
+    assert not isinstance(grown, Socket)
     return grown
