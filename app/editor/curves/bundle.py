@@ -28,7 +28,7 @@ _BEYOND = 12.0
 
 
 @dataclass(frozen=True)
-class Shape:
+class CurveShape:
     """A channel of keys: its pieces, and the frames, values, names and shapes of its keys."""
 
     keys: Keys
@@ -39,10 +39,10 @@ class Shape:
     looks: tuple[Interpolation, ...]
 
 
-def make_shape(lane: Lane, keys: Keys, inner: Pieces) -> Shape:
+def make_shape(lane: Lane, keys: Keys, inner: Pieces) -> CurveShape:
     """The shape of a channel, from its pieces."""
     port, channel = lane
-    return Shape(
+    return CurveShape(
         keys,
         inner,
         np.array(keys.frames),
@@ -57,7 +57,7 @@ class Bundle:
     """Channels one after the other; `piece_of` and `key_of` say which one a piece and a key belong to."""
 
     lanes: tuple[Lane, ...] = ()
-    shapes: tuple[Shape, ...] = ()
+    shapes: tuple[CurveShape, ...] = ()
     pieces: Pieces = field(default_factory=lambda: np.empty((0, 4, 2)))
     straight: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, np.bool_))
     piece_of: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
@@ -155,13 +155,13 @@ class BundleBuilder:
     """Builds bundles. The shape of a channel is cached until its keys change."""
 
     def __init__(self) -> None:
-        self._shapes: dict[Lane, Shape] = {}
+        self._shapes: dict[Lane, CurveShape] = {}
         self._pieces: dict[Port, tuple[Keys, list[Pieces]]] = {}
 
     def make(self, rows: Iterable[CurveRow], hidden: Collection[Lane]) -> Bundle:
         """All channels of rows with keys, without the hidden ones."""
         lanes: list[Lane] = []
-        shapes: list[Shape] = []
+        shapes: list[CurveShape] = []
         for row in rows:
             for channel in range(len(row.channels) or 1) if row.port and row.keys else ():
                 assert row.port and row.keys
@@ -188,7 +188,7 @@ class BundleBuilder:
             np.array([_find_edges(shape) for shape in shapes]),
         )
 
-    def _find_shape(self, lane: Lane, keys: Keys) -> Shape:
+    def _find_shape(self, lane: Lane, keys: Keys) -> CurveShape:
         shape = self._shapes.get(lane)
         if shape is None or shape.keys is not keys:
             channel_pieces = self._pieces.get(lane[0])
@@ -198,6 +198,6 @@ class BundleBuilder:
         return shape
 
 
-def _find_edges(shape: Shape) -> tuple[float, ...]:
+def _find_edges(shape: CurveShape) -> tuple[float, ...]:
     holds = shape.keys.outside == "hold" or len(shape.frames) == 1
     return shape.frames[0], shape.values[0], shape.frames[-1], shape.values[-1], float(holds)
