@@ -87,7 +87,7 @@ def test_lights(gui) -> None:
         ui.double_click("name lamps.lights")
         assert of(ui) == (Light(),)
 
-    gui(body, size=(1400, 1300))
+    gui(body, size=(1400, 1800))
 
 
 def test_a_field_of_a_light_gets_keys(gui) -> None:
