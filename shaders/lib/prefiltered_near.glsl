@@ -1,3 +1,5 @@
+// A picture that was made smaller in steps, in a pass that reads `levels`: see lib/prefiltered.glsl.
+
 #include "lib/prefiltered.glsl"
 
 // The mean of the picture around a place, over a square `width` pixels wide, from its `levels`; of size `size`.

@@ -1,3 +1,5 @@
+// Pictures between their pixels, by the filters of lib/kernels.glsl.
+
 #include "lib/kernels.glsl"
 
 // The picture between its pixels, in a pass that reads `image`, by the filter of a choice `kernel`. Where pixels lie
