@@ -63,6 +63,11 @@ class CustomNode(Node, abstract=True):
         defaults = {name: value.default for name, value in self.values.items()}
         object.__setattr__(self, "_settings", MappingProxyType(defaults | settings))
 
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """What all values are set to, by name."""
+        return self._settings
+
     def setting(self, name: str) -> Any:
         """What the value of this name is set to."""
         return self._settings[name]

@@ -153,8 +153,12 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
         converted = {name: _value(id, declared[name], plain) for name, plain in item.values.items() if name in declared}
         values = {**unknown_values, **item.values, **converted, **_describe_items(id, graph, item.values)}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
-    set_values = {name: _value(id, value, item.setting(name)) for name, value in item.values.items()}
-    units = dict(item.length_units)
+    settings, units = item.settings, dict(item.length_units)
+    set_values = {
+        name: _value(id, value, settings[name])
+        for name, value in item.values.items()
+        if settings[name] is not value.default or name in units or value.items
+    }
     changed = {name: plain for name, plain in set_values.items() if name in units or plain != item.values[name].default}
     values = {**unknown_values, **changed}
     if item.item_values:

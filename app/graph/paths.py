@@ -86,13 +86,13 @@ def _change_code_file(item: Node, change: Change) -> Node:
     if not isinstance(item, CustomNode) or not item.code.file:
         return item
     kind = node_type(structs.replace(item.code, file=change(item.code.file)))
-    return kind(**{name: item.setting(name) for name in item.values}).with_length_units(item.length_units)
+    return kind(**item.settings).with_length_units(item.length_units)
 
 
 def _inline_item(item: Item, folder: str) -> Item:
     if isinstance(item, CustomNode) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
         kind = node_type(structs.replace(item.code, file=""))
-        return kind(**{name: item.setting(name) for name in item.values}).with_length_units(item.length_units)
+        return kind(**item.settings).with_length_units(item.length_units)
     if not isinstance(item, Group):
         return item
     # A path that a control sets is relative to the file of the control, so it is set before the body leaves that file.

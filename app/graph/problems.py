@@ -205,13 +205,13 @@ def _check_inputs(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[P
 
 
 def _values(id: str, item: Item) -> Iterator[Problem]:
-    values = signature(item).values
+    node = item if isinstance(item, Node) else None
+    values = node.values if node else signature(item).values
+    settings = node.settings if node else item.values if isinstance(item, Group) else {}
     for name, value in values.items():
-        if isinstance(item, Node):
-            setting = item.setting(name)
-            value = item.declaration(name) if item.length_units else value
-        else:
-            setting = item.values.get(name, value.default) if isinstance(item, Group) else value.default
+        setting = settings.get(name, value.default)
+        if node and node.length_units:
+            value = node.declaration(name)
         if value.items:
             for path, fault in find_item_faults(value, setting) if setting is not value.default else ():
                 place = ".".join((name, *path))

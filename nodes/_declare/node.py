@@ -10,7 +10,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 
 from .camera import CameraModel
 from .draw import Draw, Drawn
-from .lengths import LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
+from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
 from .masking import is_maskable, list_mask_values, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
@@ -120,6 +120,12 @@ class Node:
         for name, (_, default) in additions.items():
             setattr(cls, name, default)
 
+    @property
+    def settings(self) -> Mapping[str, Any]:
+        """What all values are set to, by name, in the order of `values`."""
+        fields = vars(self)
+        return {name: fields[name] for name in self.values}
+
     def setting(self, name: str) -> Any:
         """What the value of this name is set to."""
         return getattr(self, name)
@@ -164,7 +170,7 @@ class Node:
                     lambda field: unit_factor(resolve_length_unit(field.unit, reference_height), scale, height),
                 )
                 continue
-            if value.unit is None:
+            if value.unit in WORKING_UNITS:
                 continue
             unit = chosen_units.get(name) or resolve_length_unit(value.unit, reference_height)
             factor = unit_factor(unit, scale, height)
@@ -177,8 +183,7 @@ class Node:
 
     def with_values(self, /, **values: Any) -> Self:
         """The same node with other values."""
-        settings = {name: self.setting(name) for name in self.values} | values
-        return type(self)(**settings).with_length_units(self.length_units)
+        return type(self)(**{**self.settings, **values}).with_length_units(self.length_units)
 
     def with_length_units(self, length_units: LengthUnits) -> Self:
         """The same numbers of lengths in other units."""

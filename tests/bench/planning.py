@@ -43,7 +43,7 @@ def make_large_graph(count: int, first: int = 0) -> Graph:
     for number in range(count):
         kind, amount = types[TYPES[(number + first) % len(TYPES)]], 0.1 + 0.8 * (number + 1) / (count + first)
         value = next(name for name, item in kind.values.items() if isinstance(item.default, float))
-        graph = graph.add(f"n{number}", kind(**{value: amount}))
+        graph = graph.add(f"n{number}", kind().with_values(**{value: amount}))
         sockets = [name for name in kind.inputs if name != "mask"]
         for socket, source in zip(sockets, (ports[-1], ports[-5:][0]), strict=False):
             graph = graph.connect(source, Port(f"n{number}", socket))

@@ -72,7 +72,7 @@ def test_a_broken_file_changes_nothing(script):
     script("""
 cases = {
     text.replace("Exposure(Pointwise):", "Exposure(Pointwise)"): "nodes/color/exposure.py, line 6: expected ':'",
-    text.replace("-10.0, 10.0", "-10.0, nothing"): "line 13: name 'nothing' is not defined",
+    text.replace("-10.0, 10.0", "-10.0, nothing"): "line 14: name 'nothing' is not defined",
     text.replace("float, Slider", "dict, Slider"): "nodes/color/exposure.py, line 6: ",
     "raise SystemExit": "line 1: SystemExit",
     "from . import gone": "line 1: ",

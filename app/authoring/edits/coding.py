@@ -176,8 +176,7 @@ def _list_changed_values(item: Item) -> Mapping[str, Any]:
         return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
     if isinstance(item, Group):
         return {}
-    values = {name: (item.setting(name), value.default) for name, value in item.values.items()}
-    return {name: plain for name, (plain, default) in values.items() if plain != default}
+    return {name: plain for name, plain in item.settings.items() if plain != item.values[name].default}
 
 
 def _keep_valid_values(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:

@@ -15,8 +15,9 @@ from .expand import make_zero
 
 def check_values(path: str, node: Node) -> None:
     """Raise GraphError for an invalid value."""
+    settings = node.settings
     for name, value in node.values.items():
-        setting = node.setting(name)
+        setting = settings[name]
         if node.length_units:
             value = node.declaration(name)
         if setting is not value.default and (fault := value_fault(value, setting)):

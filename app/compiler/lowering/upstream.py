@@ -83,10 +83,9 @@ class UpstreamHashes:
 
     def _hash_node(self, path: str) -> None:
         node = self._flat.nodes[path]
-        values = {name: node.setting(name) for name in node.values}
         read = [f"{source} {self._hash_source(source)}" if source else "-" for source in self._reads[path]]
         units = node.length_units, self._flat.find_reference_height(path)
-        self.hashes[path] = _hash(node.shader, values, units, path in self._flat.muted, self._settings, *read)
+        self.hashes[path] = _hash(node.shader, node.settings, units, path in self._flat.muted, self._settings, *read)
 
     def _hash_ends(self) -> None:
         groups: dict[str, str] = {}

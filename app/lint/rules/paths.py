@@ -36,12 +36,15 @@ def list_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
         if end.file:
             yield INPUTS, name, f"inputs.{name}.file", end.file
     for id, item in graph.nodes.items():
-        if isinstance(item, Group):
-            if item.path:
+        if isinstance(item, Node):
+            values = item.values
+            if isinstance(item, CustomNode) and item.code.file:
+                yield id, "", f"nodes.{id}.file", item.code.file
+        else:
+            values = signature(item).values
+            if isinstance(item, Group) and item.path:
                 yield id, "", f"nodes.{id}.path", item.path
-        elif isinstance(item, CustomNode) and item.code.file:
-            yield id, "", f"nodes.{id}.file", item.code.file
-        for name, value in signature(item).values.items():
+        for name, value in values.items():
             if value.type != "path":  # most are none, and a graph may have 100,000 nodes
                 continue
             path = item.setting(name) if isinstance(item, Node) else ""
