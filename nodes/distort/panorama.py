@@ -22,7 +22,7 @@ class Panorama(Filter):
     is equidistant: the distance from the middle grows with the angle. A mirror ball is a polished ball seen from far
     away. A little planet is stereographic and looks down. Perspective is what a camera sees.
 
-    The result has as many pixels to a quarter turn as the picture. Faces of cubes and the sides of a lat-long picture
+    The result has as many pixels to a quarter turn as the picture, and even sides, as videos need them. Faces of cubes and the sides of a lat-long picture
     join without a seam. What a projection does not show is empty.
     """
 
@@ -73,7 +73,7 @@ class Panorama(Filter):
         # Sizes are asked of nodes as they are saved, in degrees.
         quarter = self.scale * _measure_quarter(self.source, math.radians(self.source_angle), size)
         width, height = _fit_quarter(self.target, math.radians(self.angle), quarter, self.aspect)
-        return (max(round(width), 1), max(round(height), 1))
+        return (2 * max(round(width / 2.0), 1), 2 * max(round(height / 2.0), 1))
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
@@ -109,7 +109,7 @@ def _measure_quarter(projection: Projection, angle: float, size: Size) -> float:
 
 def _fit_quarter(projection: Projection, angle: float, quarter: float, aspect: float) -> tuple[float, float]:
     """The width and height of a picture in which a quarter turn takes so many pixels."""
-    angle, face = _limit_angle(projection, angle), max(float(round(quarter)), 1.0)
+    angle, face = _limit_angle(projection, angle), 2.0 * max(float(round(quarter / 2.0)), 1.0)
     side = quarter * angle / _QUARTER
     view = quarter * 2.0 * math.tan(min(angle, _WIDEST["perspective"]) / 2.0) / _QUARTER
     return {
