@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, Size, Slider
+from .._declare import Doc, Draw, Drawn, Filter, Image, OutputSocket, ProxyNote, Size, Slider
 
 Projection = Literal["lat-long", "cube strip", "cube cross", "fisheye", "mirror ball", "little planet", "perspective"]
 """How directions lie in a picture."""
@@ -30,6 +30,8 @@ class Panorama(Filter):
         "spherical transform", "latlong", "equirectangular", "cubemap", "cube map", "360", "vr", "vr converter", "hdri",
         "light probe", "mirrored ball", "tiny planet", "little planet", "fisheye", "environment", "lat long",
     )  # fmt: skip
+
+    proxy_notes = (ProxyNote(("out",), "a view enlarges a part of the picture, and pixels of a proxy are larger"),)
 
     image = Image()
     out = OutputSocket(follows="image")
@@ -73,7 +75,7 @@ class Panorama(Filter):
         # Sizes are asked of nodes as they are saved, in degrees.
         quarter = self.scale * _measure_quarter(self.source, math.radians(self.source_angle), size)
         width, height = _fit_quarter(self.target, math.radians(self.angle), quarter, self.aspect)
-        return (2 * max(round(width / 2.0), 1), 2 * max(round(height / 2.0), 1))
+        return (2 * round(width / 2.0) or 1, 2 * round(height / 2.0) or 1)
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
