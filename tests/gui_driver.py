@@ -31,6 +31,9 @@ PATIENCE = 120.0
 UNSEEN = 0.1
 """The part of the window's width and height that is drawn while nobody looks. With 0 the library ends the process."""
 
+TITLE, SPLITTER = 24.0, 6.0
+"""Pixels of a panel that its title takes, and those at its border where a click takes the splitter (4 in Dear ImGui)."""
+
 T = TypeVar("T")
 Point = tuple[float, float]
 
@@ -141,6 +144,18 @@ class Ui:
         """Turn the wheel where the mouse is."""
         self.ctx.mouse_wheel_y(steps)
         self.wait(2)
+
+    def reveal(self, place: str, panel: str = "Inspector") -> None:
+        """Turn the wheel over a panel until a place is between its title and its border, where splitters are hit."""
+        self.wait(2)
+        for _ in range(60):
+            _, first, _, last = self.editor.places[panel]
+            _, top, _, bottom = self.editor.places[place]
+            if first + TITLE <= top and bottom <= last - SPLITTER:
+                return
+            self.move(panel, (0.02, 0.5))
+            self.wheel(1.0 if top < first + TITLE else -1.0)
+        raise AssertionError(f"'{place}' cannot be scrolled to")
 
     def keys(self, text: str) -> None:
         """Press a shortcut such as "Ctrl+Z" once."""

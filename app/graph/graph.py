@@ -330,13 +330,16 @@ def signature(item: Item) -> Signature:
 
 
 def control_value(graph: Graph, name: str) -> Value | None:
-    """The value that a control points at, with the name of the control and the setting as default; else None."""
+    """The value that a control points at, with the name of the control and the setting as default; else None.
+
+    It is never folded: what a group offers is in view, also if it is a value of a mask inside.
+    """
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
     if item is None or not (value := find_setting(item, control.target.socket)):
         return None
     value = resolve_unit(value, item, graph.settings)
-    return structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
+    return structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc, folded=False)
 
 
 def _find_value(item: Item, name: str, id: str) -> Value:

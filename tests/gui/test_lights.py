@@ -50,6 +50,7 @@ def test_lights(gui) -> None:
         assert (of(ui)[1].kind, of(ui)[1].intensity) == (LightKind.SPOT, 10.0)
         assert len(ui.session.history.steps) == steps + 2
 
+        ui.reveal("field lamps.lights.sun_1.intensity")
         x, y = ui.at("field lamps.lights.sun_1.intensity")
         ui.drag((x, y), (x - 90.0, y))
         assert of(ui)[1].intensity < 0.0
@@ -57,6 +58,7 @@ def test_lights(gui) -> None:
         ui.keys("Ctrl+Z")
         assert of(ui)[1].intensity == 10.0
         inner = "field lamps.lights.sun_1.inner"
+        ui.reveal(inner)
         ui.drag(inner, ui.at(inner, (1.0, 0.5)), release=False)
         assert of(ui)[1].inner > 30.0
         ui.keys("Escape")
@@ -64,8 +66,10 @@ def test_lights(gui) -> None:
         ui.wait(3)
         assert (of(ui)[1].inner, of(ui)[1].outer) == (20.0, 30.0)
 
+        ui.reveal("field lamps.lights.sun_1.reach")
         ui.click("field lamps.lights.sun_1.reach")
         ui.type("7", enter=False)
+        ui.reveal("item lamps.lights lamp_1")
         ui.click("item lamps.lights lamp_1")
         assert [light.reach for light in of(ui)] == [0.0, 7.0]
         ui.click("on lamps.lights sun_1")
@@ -73,8 +77,10 @@ def test_lights(gui) -> None:
         ui.click("solo lamps.lights lamp_1")
         assert [light.solo for light in of(ui)] == [True, False]
         ui.click("item lamps.lights sun_1")
+        ui.reveal("name lamps.lights.sun_1.reach")
         ui.double_click("name lamps.lights.sun_1.reach")
         assert of(ui)[1].reach == 0.0
+        ui.reveal("field lamps.lights.sun_1 name")
         ui.click("field lamps.lights.sun_1 name")
         ui.keys("Ctrl+A")
         ui.type("beam")
@@ -87,7 +93,7 @@ def test_lights(gui) -> None:
         ui.double_click("name lamps.lights")
         assert of(ui) == (Light(),)
 
-    gui(body, size=(1400, 1800))
+    gui(body, size=(1400, 900))
 
 
 def test_a_field_of_a_light_gets_keys(gui) -> None:

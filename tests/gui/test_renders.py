@@ -33,14 +33,7 @@ def known(ui) -> None:
 
 def press(ui, place: str) -> None:
     """Scroll the inspector to a place, and click it."""
-    ui.wait(2)
-    for _ in range(60):
-        _, top, _, bottom = ui.editor.places["Inspector"]
-        here = ui.at(place)[1]
-        if top + 40.0 < here < bottom - 60.0:
-            break
-        ui.move("Inspector", (0.02, 0.5))
-        ui.wheel(-1.0 if here > bottom - 60.0 else 1.0)
+    ui.reveal(place)
     ui.click(place)
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from halation.nodes import Node, Socket
+from halation.nodes import Node, Socket, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -76,7 +77,7 @@ class NodeView:
             rows.draw_heading("Inputs")
         for name, socket in face.unfolded_inputs.items():
             _input(rows, Port(id, name), socket)
-        self._draw_mask(rows, id, item, face)
+        self._draw_mask(rows, (id,), [declaration for declaration in face.values.values() if declaration.folded])
 
     def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
         """Draw the values that several nodes have in common; the first node is the active one."""
@@ -88,29 +89,40 @@ class NodeView:
             rows, kind, rows.palette.category(_category(items[0])), lambda: self._draw_shared_buttons(rows, ids), 1
         )
         rows.note(", ".join(ids))
-        declarations = [declaration for declaration in common(session.graph, ids) if not declaration.folded]
+        declarations = common(session.graph, ids)
         if not declarations:
             rows.note("These nodes have no value in common.")
             return
-        rows.fit(declaration.label or declaration.name for declaration in declarations)
-        rows.draw_heading("Values in Common")
-        for declaration in declarations:
+        unfolded = [declaration for declaration in declarations if not declaration.folded]
+        if unfolded:
+            rows.draw_heading("Values in Common")
+        rows.fit(declaration.label or declaration.name for declaration in unfolded or declarations)
+        for declaration in unfolded:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
+        self._draw_mask(rows, ids, [declaration for declaration in declarations if declaration.folded])
 
-    def _draw_mask(self, rows: Rows, id: str, item: Item, face: Signature) -> None:
-        """Draw the mask of a node and its values below a heading that stays closed until they are used."""
-        values = {name: value for name, value in face.values.items() if value.folded}
-        if not values or not isinstance(item, Node):
+    def _draw_mask(self, rows: Rows, ids: tuple[str, ...], declarations: Sequence[Value]) -> None:
+        """Draw the mask of nodes and its values below a heading that stays closed until one of the nodes uses them.
+
+        The input is drawn for a single node only: what several nodes share is values.
+        """
+        if not declarations:
             return
-        is_used = Port(id, "mask") in rows.context.session.graph.links
-        is_used |= any(item.setting(name) != value.default for name, value in values.items())
-        if not rows.fold("Mask", f"mask {id}", is_open=is_used):
+        graph = rows.context.session.graph
+        ports = {declaration.name: tuple(Port(id, declaration.name) for id in ids) for declaration in declarations}
+        is_used = any(Port(id, "mask") in graph.links for id in ids) or any(
+            port in graph.animation or graph.value(port) != declaration.default
+            for declaration in declarations
+            for port in ports[declaration.name]
+        )
+        if not rows.fold("Mask", f"mask {' '.join(ids)}", is_open=is_used):
             return
-        for name, socket in face.inputs.items():
-            if socket.folded:
-                _input(rows, Port(id, name), socket)
-        for name, declaration in values.items():
-            self._values.draw(rows, (Port(id, name),), declaration)
+        if len(ids) == 1:
+            for name, socket in signature(graph.nodes[ids[0]]).inputs.items():
+                if socket.folded:
+                    _input(rows, Port(ids[0], name), socket)
+        for declaration in declarations:
+            self._values.draw(rows, ports[declaration.name], declaration)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 

@@ -111,7 +111,9 @@ class TestApplying:
         graph = session.graph
         assert [value.name for value in common(graph, ("one", "two"))] == list(Gain.values)
         assert [value.name for value in common(graph, ("one", "blend"))] == ["gain"]
-        assert common(graph, ("one", "soft")) == ()
+        of_masks = common(graph, ("one", "soft"))
+        assert [(value.name, value.folded) for value in of_masks] == [("mix", True), ("invert_mask", True)]
+        assert common(graph, ("blend", "soft")) == ()
         assert common(graph.add("odd", Unknown("odd")), ("one", "odd")) == ()
 
     @pytest.mark.parametrize("plain", [1.5, 3, True, "soft light", (1.0, 2.0)])
