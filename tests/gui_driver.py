@@ -32,7 +32,7 @@ UNSEEN = 0.1
 """The part of the window's width and height that is drawn while nobody looks. With 0 the library ends the process."""
 
 TITLE, SPLITTER = 24.0, 6.0
-"""Pixels of a panel that its title takes, and those at its border where a click takes the splitter (4 in Dear ImGui)."""
+"""Pixels of a panel that its title takes, and those at its border where a click takes the splitter (4 in ImGui)."""
 
 T = TypeVar("T")
 Point = tuple[float, float]

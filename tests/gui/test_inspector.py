@@ -208,41 +208,6 @@ def test_several_nodes_are_changed_together(gui, file) -> None:
     gui(body, file)
 
 
-def test_the_masks_of_several_nodes_are_changed_together(gui, file) -> None:
-    def body(ui) -> None:
-        steps = select(ui, "vignette", "grade")
-        assert "field grade.mix" not in ui.editor.places
-        ui.reveal("fold mask grade vignette")
-        ui.click("fold mask grade vignette")
-        ui.reveal("field grade.mix")
-        ui.click("field grade.mix")
-        ui.type("0.25")
-        assert (value(ui, "grade.mix"), value(ui, "vignette.mix")) == (0.25, 0.25)
-        assert len(ui.session.history.steps) == steps + 1
-        ui.shot("masks.png")
-        select(ui, "noise")
-        select(ui, "grade", "vignette")
-        assert "field vignette.mix" in ui.editor.places
-
-    gui(body, file)
-
-
-def test_a_group_shows_its_control_over_the_mix_of_a_node(gui, file) -> None:
-    def body(ui) -> None:
-        select(ui, "grade", "vignette")
-        id = ui.session.apply(MakeGroup())
-        ui.session.enter(id)
-        ui.session.apply(ExposeValue(Port("grade", "mix")))
-        ui.session.leave()
-        (control,) = ui.session.graph.nodes[id].signature.values
-        select(ui, id)
-        ui.click(f"field {id}.{control}")
-        ui.type("0.5")
-        assert value(ui, f"{id}.{control}") == 0.5
-
-    gui(body, file)
-
-
 def test_names_ends_and_groups(gui, file) -> None:
     def body(ui) -> None:
         select(ui, "noise")

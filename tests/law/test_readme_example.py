@@ -61,7 +61,7 @@ def test_its_numbers_are_tested_as_contributing_says(tree: Path) -> None:
 
 
 def test_commands_of_the_table_select_tests(tree: Path, pytestconfig: pytest.Config) -> None:
-    """Every row names folders of tests and known options; the one that selects by a word is tried."""
+    """Every row names folders or files of tests and known options; the one that selects by a word is tried."""
     rows = [row.split() for row in re.findall(r"^\| `\./dev test(.*?)` \|", CONTRIBUTING, re.M)]
     assert len(rows) >= 4
     for row in rows:
@@ -70,7 +70,8 @@ def test_commands_of_the_table_select_tests(tree: Path, pytestconfig: pytest.Con
             if name.startswith("--"):
                 assert pytestconfig.getoption(name.removeprefix("--")) is not None
             else:
-                assert any((tree / name).rglob("test_*.py")), name
+                path = tree / name
+                assert (path.match("test_*.py") and path.is_file()) or any(path.rglob("test_*.py")), name
         if word:
             result = run_in_tree(tree, "-m", "pytest", "--collect-only", "-qq", "-p", "no:cacheprovider", *row)
             counts = [int(count) for count in re.findall(r": (\d+)$", result.stdout, re.M)]
