@@ -76,8 +76,18 @@ def test_keys_tell_different_pixels_apart(plan, seed):
         # A merged pass makes the same pixels as another one in other company.
         alone = [one for one in made.passes if not fusion or len(one.targets) == 1]
         merged = {number for one in made.passes if one not in alone for number in one.targets}
+        # One picture stands for all that are read under its key; that these are the same is checked on their own turn.
+        firsts: dict[str, int] = {}
+        for number, item in enumerate(made.surfaces):
+            if number not in merged:
+                firsts.setdefault(item.key, number)
         ways = {
-            number: (one.shader, one.uniforms, one.textures, one.targets.index(number))
+            number: (
+                one.shader,
+                one.uniforms,
+                tuple(read if read in merged else firsts[made.surfaces[read].key] for read in one.textures),
+                one.targets.index(number),
+            )
             for one in alone
             for number in one.targets
         }
