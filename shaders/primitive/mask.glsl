@@ -2,6 +2,8 @@
 
 #include "lib/finite.glsl"
 
+// No mix(): drivers expand it in different ways, depending on what else is in the shader.
+
 float mask_amount(float mask, float amount, bool inverted) {
     float inside = clamp(finite(mask), 0.0, 1.0);
     return clamp(finite(amount), 0.0, 1.0) * (inverted ? 1.0 - inside : inside);
@@ -10,11 +12,15 @@ float mask_amount(float mask, float amount, bool inverted) {
 vec4 mask_vec4(vec4 before, vec4 after, float mask, float amount, bool inverted) {
     float part = mask_amount(mask, amount, inverted);
     if (part <= 0.0) return finite(before);
-    return part >= 1.0 ? finite(after) : mix(finite(before), finite(after), part);
+    if (part >= 1.0) return finite(after);
+    vec4 safe = finite(before);
+    return safe + part * (finite(after) - safe);
 }
 
 float mask_float(float before, float after, float mask, float amount, bool inverted) {
     float part = mask_amount(mask, amount, inverted);
     if (part <= 0.0) return finite(before);
-    return part >= 1.0 ? finite(after) : mix(finite(before), finite(after), part);
+    if (part >= 1.0) return finite(after);
+    float safe = finite(before);
+    return safe + part * (finite(after) - safe);
 }
