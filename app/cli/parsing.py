@@ -155,7 +155,10 @@ def parse_scale(number: float) -> float:
 
 def parse_form(text: str | None) -> Form | None:
     """The form of passes that --form names; None if it is not given."""
-    return None if text is None else _parse_choice(text, ("fragment", "compute"), "--form")
+    if text is None:
+        return None
+    form: Form = _parse_choice(text, ("fragment", "compute"), "--form")
+    return form
 
 
 def parse_form_or_device(text: str) -> Form | Literal["device"]:
@@ -165,7 +168,10 @@ def parse_form_or_device(text: str) -> Form | Literal["device"]:
 
 def parse_precision(text: str | None) -> Precision | None:
     """The precision that --precision names; None if it is not given."""
-    return None if text is None else _parse_choice(text, ("half", "float"), "--precision")
+    if text is None:
+        return None
+    precision: Precision = _parse_choice(text, ("half", "float"), "--precision")
+    return precision
 
 
 def parse_dither(text: str) -> Dither:

@@ -85,7 +85,7 @@ def _text(item: Any, indent: int, column: int, trail: Trail, depth: int) -> str:
     return f"{opening}\n{lines}\n{' ' * indent}{closing}"
 
 
-def _entry(key: str, part: Any, indent: int, trail: Trail | None, depth: int) -> str:
+def _entry(key: str, part: object, indent: int, trail: Trail | None, depth: int) -> str:
     """A key and what it stands for, within an object at this depth."""
     start = f"{encode_basestring(key)}: "
     plain = _PLAIN.get(type(part))  # most parts are such, and need no trail

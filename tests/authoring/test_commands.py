@@ -23,7 +23,7 @@ def port(text: str) -> Port:
     return Port(*text.split("."))
 
 
-GAIN = port("gain.gain")
+GAIN, LIGHTS = port("gain.gain"), port("lamps.lights")
 CODE = "float f(float a, float k /* = 1 */) { return a * k; }"
 EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.AddNode: lambda s, p: c.AddNode("soften", (5.0, 6.0), port("n1.out")),
@@ -49,6 +49,11 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.ToggleCollapse: lambda s, p: c.ToggleCollapse(),
     c.SetValue: lambda s, p: c.SetValue(GAIN, 0.25),
     c.SetValues: lambda s, p: c.SetValues({GAIN: 0.25}, "Set both"),
+    c.ConvertLength: lambda s, p: c.ConvertLength((port("soften.sigma"),), "height", 1080),
+    c.AddItem: lambda s, p: c.AddItem(LIGHTS, "spot", {"intensity": 2.0}),
+    c.DuplicateItem: lambda s, p: c.DuplicateItem(LIGHTS, "lamp_1"),
+    c.RemoveItem: lambda s, p: c.RemoveItem(LIGHTS, "lamp_1"),
+    c.RenameItem: lambda s, p: c.RenameItem(LIGHTS, "lamp_1", "rim"),
     c.ResetValue: lambda s, p: c.ResetValue(GAIN),
     c.ResetNode: lambda s, p: c.ResetNode("gain"),
     c.ExposeValue: lambda s, p: c.ExposeValue(port("n2.gain")),
@@ -66,6 +71,7 @@ EXAMPLES: dict[type[EditCommand], Callable[[Session, Path], EditCommand]] = {
     c.SetFrameRate: lambda s, p: c.SetFrameRate(30.0),
     c.SetPreroll: lambda s, p: c.SetPreroll(4),
     c.SetColorSettings: lambda s, p: c.SetColorSettings(working="ACEScg"),
+    c.SetReferenceHeight: lambda s, p: c.SetReferenceHeight(1080),
     c.SetCanvasSize: lambda s, p: c.SetCanvasSize((64, 48)),
     c.AddFrame: lambda s, p: c.AddFrame("Look"),
     c.EditFrame: lambda s, p: c.EditFrame(ElementId("frames.f1"), "Other", (0.1, 0.2, 0.3)),
@@ -116,6 +122,7 @@ def session(tmp_path: Path) -> Session:
     session = Session(types, sandbox=UNRESTRICTED)
     graph = chain(3).add("gain", TOYS["gain"]()).add("blend", TOYS["blend"]()).add("render", types["read_render"]())
     graph = graph.connect(port("n0.out"), port("blend.first")).connect(port("n0.out"), port("blend.second"))
+    graph = graph.add("soften", TOYS["soften"]()).add("lamps", TOYS["lamps"]())
     session.apply(c.ReplaceGraph("Start", dataclasses.replace(graph, folder=str(tmp_path))))
     session.apply(c.SetValue(GAIN, 0.75))
     for name, command in {

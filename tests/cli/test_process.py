@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from halation.cli.program import Commands
+from halation.nodes import catalogue
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals, pipes and terminals")
@@ -41,7 +42,10 @@ def ten(tmp_path):
         "inputs": {"beauty": {"type": "Image", "file": str(sample), "layer": "Combined"}},
         "outputs": {"image": {"type": "Image"}},
         "links": {**links, "outputs.image": "tone.out"},
-        "nodes": {id: {"type": type, "values": values} for id, (type, values, _) in TEN.items()},
+        "nodes": {
+            id: {"type": type, "version": catalogue()[type].version, "values": values}
+            for id, (type, values, _) in TEN.items()
+        },
     }
     path = tmp_path / "ten.json"
     path.write_text(json.dumps(tree))

@@ -197,6 +197,7 @@ def test_dropped_files(tmp_path):
     assert json.loads((tmp_path / "doc.json").read_text()) == {
         "halation": 1,
         "outputs": {"image": {"type": "Image"}},
+        "settings": {"reference_height": 1080},
         "ui": {"nodes": {"outputs.image": {"x": 0.0, "y": 0.0}}},
     }
 

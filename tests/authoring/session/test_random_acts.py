@@ -13,6 +13,7 @@ from halation.authoring.commands import (
     AddDot,
     AddFrame,
     AddInput,
+    AddItem,
     AddNode,
     AddOutput,
     AlignSelection,
@@ -23,12 +24,14 @@ from halation.authoring.commands import (
     BakeKeys,
     Connect,
     ConnectNodes,
+    ConvertLength,
     CutLinks,
     CutSelection,
     DeleteSelection,
     DescribeControl,
     Disconnect,
     DisconnectAll,
+    DuplicateItem,
     DuplicateSelection,
     EditCommand,
     EditComment,
@@ -47,9 +50,11 @@ from halation.authoring.commands import (
     PlaceElement,
     RemoveDot,
     RemoveEnd,
+    RemoveItem,
     RemoveKey,
     RenameControl,
     RenameEnd,
+    RenameItem,
     RenameNode,
     ReplaceGraph,
     ReplaceNode,
@@ -67,6 +72,7 @@ from halation.authoring.commands import (
     SetKey,
     SetOutput,
     SetPreroll,
+    SetReferenceHeight,
     SetValue,
     SpliceChain,
     SwapInputs,
@@ -83,57 +89,24 @@ from halation.authoring.edits.selection import find_downstream, find_linked, fin
 from halation.authoring.session import Session
 from halation.document import dumps, loads
 from halation.errors import HalationError
-from halation.graph import Graph, Group, Keys, Port, problems, signature
-from halation.nodes import Kind
+from halation.graph import Graph, Group, Keys, Port, problems
+from halation.nodes import Kind, LightKind
 from halation.resources.sandbox import UNRESTRICTED
+from random_choices import (
+    any_group,
+    any_item,
+    any_items,
+    any_key,
+    any_node,
+    any_source,
+    any_target,
+    any_value,
+    some_keys,
+    spot,
+)
 from toy_nodes import TOYS, random_graph, random_value
 
 Act = Callable[[Session, Random], object]
-
-
-def any_node(session: Session, rng: Random) -> str:
-    return rng.choice([*session.graph.nodes, "nobody"])
-
-
-def any_group(session: Session, rng: Random) -> str:
-    groups = [id for id, item in session.graph.nodes.items() if isinstance(item, Group)]
-    return rng.choice([*groups, any_node(session, rng)])
-
-
-def any_key(session: Session, rng: Random) -> ElementId:
-    return rng.choice([*session.elements, ElementId("nobody")])
-
-
-def some_keys(session: Session, rng: Random) -> list[ElementId]:
-    known = [*session.elements]
-    return rng.sample(known, min(len(known), rng.choice([0, 1, 2, 3, 9])))
-
-
-def any_target(session: Session, rng: Random) -> Port:
-    graph = session.graph
-    sockets = [
-        Port(id, name)
-        for id, item in graph.nodes.items()
-        for name in (*signature(item).inputs, *signature(item).values)
-    ]
-    return rng.choice([*graph.links, *sockets, *(Port("outputs", name) for name in graph.outputs), Port("no", "body")])
-
-
-def any_source(session: Session, rng: Random) -> Port:
-    graph = session.graph
-    sockets = [Port(id, name) for id, item in graph.nodes.items() for name in signature(item).outputs]
-    return rng.choice([*sockets, *(Port("inputs", name) for name in graph.inputs), Port("no", "body")])
-
-
-def any_value(session: Session, rng: Random) -> Port:
-    graph = session.graph
-    return rng.choice(
-        [Port("no", "body"), *(Port(id, name) for id, item in graph.nodes.items() for name in signature(item).values)]
-    )
-
-
-def spot(rng: Random) -> tuple[float, float]:
-    return rng.uniform(-500, 500), rng.choice([0.0, 100.0, rng.uniform(-500, 500)])
 
 
 def any_setting(session: Session, rng: Random) -> None:
@@ -202,6 +175,22 @@ ACTS: dict[str, Act] = {
     ),
     "duplicate": lambda s, r: s.apply(DuplicateSelection()),
     "set": any_setting,
+    "convert_length": lambda s, r: s.apply(
+        ConvertLength(
+            tuple(any_value(s, r) for _ in range(r.choice([1, 1, 2]))), r.choice(["px", "height", "px@1080", "m"]), 48
+        )
+    ),
+    "add_item": lambda s, r: s.apply(
+        AddItem(
+            any_items(s, r),
+            r.choice([*LightKind, "candle"]),
+            r.choice([{}, {"intensity": 2.0}, {"intensity": "bright"}]),
+            r.choice(["", "", "rim", "a.b"]),
+        )
+    ),
+    "duplicate_item": lambda s, r: s.apply(DuplicateItem(*any_item(s, r))),
+    "remove_item": lambda s, r: s.apply(RemoveItem(*any_item(s, r))),
+    "rename_item": lambda s, r: s.apply(RenameItem(*any_item(s, r), r.choice(["rim", "key", "a.b", ""]))),
     "reset": lambda s, r: s.apply(ResetValue(any_value(s, r))),
     "reset_all": lambda s, r: s.apply(ResetNode(any_node(s, r))),
     "expose": lambda s, r: s.apply(ExposeValue(any_value(s, r), r.choice(["", "a", "b"]))),
@@ -236,6 +225,7 @@ ACTS: dict[str, Act] = {
         SetInput(r.choice([*s.graph.inputs, "no"]), file="a.exr", default=r.choice([None, 1.0, (1.0, 2.0), "x", True]))
     ),
     "set_output": lambda s, r: s.apply(SetOutput(r.choice([*s.graph.outputs, "no"]), layer="Z", view="none")),
+    "set_reference_height": lambda s, r: s.apply(SetReferenceHeight(r.choice([None, 0, 540, 1080]))),
     "set_size": lambda s, r: s.apply(SetCanvasSize(r.choice([None, (64, 48), (0, 3)]))),
     "view": lambda s, r: s.views.show(any_source(s, r), r.choice(["A", "B"])),
     "view_nothing": lambda s, r: s.views.clear(),
