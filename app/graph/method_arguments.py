@@ -61,6 +61,7 @@ def _find_faulty_argument(kind: type, method: Callable[..., Any]) -> Callable[[A
     """A function of arguments that says which of them has a wrong type; "" if none has."""
     signature, hints = inspect.signature(method), typing.get_type_hints(method)
     types_by_name = {name: _list_types(hints[name]) for name in signature.parameters if name in hints}
+    key_types = {name: _list_key_types(hints[name]) for name in signature.parameters if name in hints}
 
     def find(args: Any, options: Any) -> str:
         try:
@@ -72,9 +73,19 @@ def _find_faulty_argument(kind: type, method: Callable[..., Any]) -> Callable[[A
             if accepted and not isinstance(argument, accepted):
                 words = " or ".join("None" if item is type(None) else item.__name__ for item in accepted)
                 return f"{kind.__name__}.{method.__name__}: {name} is a {type(argument).__name__}; give a {words}"
+            if (keys := key_types.get(name, ())) and (wrong := [key for key in argument if not isinstance(key, keys)]):
+                return (
+                    f"{kind.__name__}.{method.__name__}: {name} has the key {ascii(wrong[0])}; "
+                    f"give a {' or '.join(item.__name__ for item in keys)}"
+                )
         return ""
 
     return find
+
+
+def _list_key_types(hint: Any) -> tuple[type, ...]:
+    """The classes of the keys that an annotation accepts; none where it is not of a Mapping, or accepts any key."""
+    return _list_types(typing.get_args(hint)[0]) if typing.get_origin(hint) is Mapping else ()
 
 
 def _list_types(hint: Any) -> tuple[type, ...]:

@@ -209,6 +209,7 @@ def test_typing_is_saved_with_the_graph_and_helped(gui, path) -> None:
         ui.click("button code help")
         ui.wait(2)
         ui.wheel(-40)
+        ui.wheel(3)
         ui.click("include lib/color")
         ui.until(lambda: text_of(ui).startswith('#include "lib/color.glsl"\n'))
         ui.settled()
