@@ -75,7 +75,7 @@ def _find_faulty_argument(kind: type, method: Callable[..., Any]) -> Callable[[A
                 return f"{kind.__name__}.{method.__name__}: {name} is a {type(argument).__name__}; give a {words}"
             if (keys := key_types.get(name, ())) and (wrong := [key for key in argument if not isinstance(key, keys)]):
                 return (
-                    f"{kind.__name__}.{method.__name__}: {name} has the key {ascii(wrong[0])}; "
+                    f"{kind.__name__}.{method.__name__}: {name} has the key {wrong[0]!a}; "
                     f"give a {' or '.join(item.__name__ for item in keys)}"
                 )
         return ""
