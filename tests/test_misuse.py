@@ -125,7 +125,7 @@ def test_methods_of_graphs_refuse_with_one_sentence(name: str, data) -> None:
 
 
 def test_keys_of_mappings_are_ports() -> None:
-    with pytest.raises(hal.HalationError, match="Graph.put_all: plains has the key 'light.stops'; give a Port"):
+    with pytest.raises(hal.HalationError, match=r"Graph\.put_all: plains has the key 'light\.stops'; give a Port"):
         small_graph().put_all({"light.stops": 1.0})  # type: ignore[dict-item]
 
 
