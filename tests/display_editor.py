@@ -20,11 +20,12 @@ def main(graph: Path, report: Path, state: Path) -> None:
     """Open a graph until the window is closed."""
     window = Window(graph, {}, UNRESTRICTED, version=(4, 5), state=state, size=(1200, 700))
     window.params.ini_disable = True
-    before = window.params.callbacks.post_new_frame
+    before = window.params.callbacks.after_swap
 
-    def frame() -> None:
+    def write_report() -> None:  # when the frame is shown: an idle editor may not draw another one
+        if before is not None:
+            before()
         places = {name: tuple(map(float, place)) for name, place in window.editor.places.items()}
-        before()
         editor = window.editor
         facts = {
             "frame": window.frames,
@@ -37,7 +38,7 @@ def main(graph: Path, report: Path, state: Path) -> None:
         }
         write_text_atomically(report, json.dumps(facts), sandbox=UNRESTRICTED)
 
-    window.params.callbacks.post_new_frame = frame
+    window.params.callbacks.after_swap = write_report
     run(window)
 
 

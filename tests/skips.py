@@ -30,6 +30,7 @@ REASONS: dict[str, Cause] = {
     "signals and limits": "system",
     "folders have no such mode": "system",
     "needs root": "system",
+    "tried nightly": "case",
     "another user cannot run this checkout": "system",
     "this machine does not let us mount": "system",
     "a Mac or Windows always has a display": "system",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from halation.nodes import ItemSet, Node, catalogue, plugins
 from msgspec.structs import replace
@@ -207,7 +207,7 @@ def _check_inputs(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[P
 def _values(id: str, item: Item) -> Iterator[Problem]:
     node = item if isinstance(item, Node) else None
     values = node.values if node else signature(item).values
-    settings = node.settings if node else item.values if isinstance(item, Group) else {}
+    settings: Mapping[str, Any] = node.settings if node else item.values if isinstance(item, Group) else {}
     for name, value in values.items():
         setting = settings.get(name, value.default)
         if node and node.length_units:

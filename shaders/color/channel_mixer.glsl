@@ -3,9 +3,7 @@
 float channel_mixer_mix(vec3 rgb, vec3 parts, bool normalized) {
     parts = finite(parts);
     float total = parts.r + parts.g + parts.b;
-    // Written out: drivers compute dot() in an order of their own where an image and a value are the same picture.
-    precise float mixed = rgb.r * parts.r + rgb.g * parts.g + rgb.b * parts.b;
-    return mixed / (normalized && abs(total) > 1e-6 ? total : 1.0);
+    return dot(rgb, parts) / (normalized && abs(total) > 1e-6 ? total : 1.0);
 }
 
 vec4 channel_mixer(

@@ -54,13 +54,13 @@ class Desktop:
         """Wait until something is true of the report."""
         end = time.monotonic() + PATIENCE
         while not (facts := self.facts) or not question(facts):
-            assert time.monotonic() < end, f"this never became true; {str(facts)[:2000]}"
+            assert time.monotonic() < end, f"this never became true; { {**facts, 'places': sorted(facts['places'])} }"
             time.sleep(0.05)
         return facts
 
     def point_at(self, place: str, x: float = 0.5, y: float = 0.5) -> None:
         """Move the mouse to a place of the editor."""
-        left, top, right, bottom = self.until(lambda facts: place in facts["places"])["places"][place]
+        left, top, right, bottom = self.find_still_place(place)
         origin, since = self.find_window(), self.facts["frame"]
         self.xdotool(
             "mousemove", round(origin[0] + left + (right - left) * x), round(origin[1] + top + (bottom - top) * y)
@@ -68,6 +68,14 @@ class Desktop:
         # An editor that is idle draws a few frames for a move, and none where the mouse is there already.
         end = time.monotonic() + 2.0
         self.until(lambda facts: facts["frame"] > since + 1 or time.monotonic() > end)
+
+    def find_still_place(self, place: str) -> list[float]:
+        """Where a place is when it has stopped moving."""
+        before: list[float] = []
+        while (here := self.until(lambda facts: place in facts["places"])["places"][place]) != before:
+            before = here
+            time.sleep(0.3)
+        return here
 
     def find_window(self) -> tuple[int, int]:
         """Where the content of the window is on the display."""
@@ -105,7 +113,9 @@ def open_display() -> Iterator[dict[str, str]]:
 
 
 @pytest.mark.timeout(300)
-def test_an_artist_at_a_real_display(tmp_path: Path) -> None:
+def test_an_artist_at_a_real_display(tmp_path: Path, is_nightly: bool) -> None:
+    if not is_nightly:
+        pytest.skip("tried nightly: on a busy machine a drag by xdotool can be over before the editor draws a frame")
     graph, saved, report = tmp_path / "look.json", tmp_path / "saved look.json", tmp_path / "report.json"
     board = Graph(settings=Settings((320, 180)), outputs={"image": Output(Kind.IMAGE)})
     board = board.add("board", catalogue()["checker"]()).connect(Port("board", "out"), Port("outputs", "image"))

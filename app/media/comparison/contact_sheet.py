@@ -33,7 +33,7 @@ _SQUARE = 12
 """Colors of the sheet and pixels of a square of the checkerboard: chosen by eye. The background is dark and neutral, so
 that it does not change how the pictures look."""
 _BOLD = "DroidSans-Bold"
-_QUALITY = 84
+_QUALITY = 82
 """JPEG quality of sheets, on the scale of libjpeg. Chosen by eye: no blocks are visible at 1:1, and the sheets in the
 documentation take a third less than at 95."""
 
