@@ -6,17 +6,17 @@ import os
 import platform
 import re
 import shutil
-import sys
 import tempfile
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 from typing import Literal
 
+import msgspec
 from msgspec import Struct
 
 from ..errors import HalationError
-from ..resources.machine import available_cores, machine_memory, memory_limit
+from ..resources.machine import available_cores, has_display, machine_memory, memory_limit
 from ..resources.sandbox import read_process_sandbox
 from ..resources.user_folders import list_preset_folders, state_folder
 from ..version import VERSION
@@ -50,17 +50,12 @@ def doctor(as_json: AsJson = False) -> int:
     """
     checks = list(examine_machine())
     if as_json:
-        print_json({"checks": checks_as_json(checks)})
+        print_json({"checks": [msgspec.to_builtins(check) for check in checks]})
     else:
         width = max(len(check.topic) for check in checks)
         for check in checks:
             print(f"{check.state:5}  {check.topic:{width}}  {check.sentence}")
     return 1 if any(check.state == "fault" for check in checks) else 0
-
-
-def checks_as_json(checks: list[MachineCheck]) -> list[dict[str, str]]:
-    """Findings as JSON objects."""
-    return [{"topic": item.topic, "state": item.state, "sentence": item.sentence} for item in checks]
 
 
 def examine_machine() -> Iterator[MachineCheck]:
@@ -112,7 +107,7 @@ def _examine_opengl() -> MachineCheck:
 
 def _examine_display() -> MachineCheck:
     """Whether a window can be opened: only the editor needs one."""
-    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+    if has_display():
         return MachineCheck("display", "ok", "the editor can open a window")
     return MachineCheck(
         "display", "note", "there is no display (DISPLAY is not set): rendering works, the editor does not"

@@ -1,16 +1,22 @@
-"""What this machine has: processors and memory."""
+"""What this machine has: processors, memory and a display."""
 
 from __future__ import annotations
 
 import math
 import os
 import re
+import sys
 from pathlib import Path
 
 
 def available_cores() -> int:
     """Count the processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def has_display() -> bool:
+    """True if windows can be opened: on Linux and the like, if a display is named."""
+    return sys.platform in ("darwin", "win32") or bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
 def machine_memory() -> float:

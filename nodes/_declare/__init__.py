@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from .camera import CameraModel, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
-from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderStage, ShaderText
+from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, Resampling, ShaderStage, ShaderText
 from .items import ItemSet, NamedItem, Scalar, natural_order
 from .kinds import KINDS, Kind, KindFacts
 from .lengths import (
@@ -51,6 +51,7 @@ from .lights import (
     name_lights,
     number_lights,
 )
+from .masking import INVERT_MASK, MASK, MASKED, MIX
 from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
@@ -91,11 +92,15 @@ from .values import (
 )
 
 __all__ = [
+    "INVERT_MASK",
     "KINDS",
     "LIGHTS",
+    "MASK",
+    "MASKED",
     "MAX_LIGHTS",
     "MAX_POINTS",
     "MAX_REFERENCE_HEIGHT",
+    "MIX",
     "REFERENCE_HEIGHT",
     "RGBA",
     "WORKING_SPACE",
@@ -156,6 +161,7 @@ __all__ = [
     "Reader",
     "Render",
     "RenderPath",
+    "Resampling",
     "Scalar",
     "Scene",
     "SceneFile",

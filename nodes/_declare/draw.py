@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import ClassVar, Literal, Protocol
+from typing import Annotated, ClassVar, Literal, Protocol
 
 from msgspec import Struct
 
@@ -13,7 +13,7 @@ from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
 from .sockets import CameraSocket, Edge, Size, Socket
-from .values import Scalar, Uniform
+from .values import Doc, Scalar, Uniform
 
 
 class Drawn(Protocol):
@@ -31,6 +31,15 @@ Affine = tuple[float, float, float, float, float, float]
 
 Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
 """The filter for places between pixels. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
+
+Resampling = Annotated[
+    Kernel,
+    Doc(
+        "Nearest keeps data as it is. Triangle is bilinear. Catmull-Rom and Lanczos (3 lobes) are sharp and may ring"
+        " around lights. Mitchell is in between."
+    ),
+]
+"""The filter of a node that reads its picture between pixels, as a value."""
 
 Argument = Socket | Drawn | Scalar
 """What a GLSL function is called with: a picture or a value."""

@@ -90,13 +90,6 @@ class ItemSet(Mapping[str, NamedItem]):
         """The items without one."""
         return ItemSet({key: item for key, item in self._items.items() if key != name})
 
-    def with_fields(self, name: str, fields: Mapping[str, Scalar | None]) -> ItemSet:
-        """The items with some fields of one item set; None stands for the default."""
-        item = self._items[name]
-        for field, setting in fields.items():
-            item = item.with_field(field, setting)
-        return self.replace({name: item})
-
 
 def natural_order(name: str) -> tuple[tuple[tuple[bool, int, str], ...], str]:
     """What names are sorted by, so that numbers in them count as numbers."""

@@ -12,11 +12,17 @@ from .values import Doc, Folded, Slider
 MASKED = "image"
 """The input that shows where the mask is 0."""
 
+MASK = "mask"
+"""The input for the mask."""
+
+MIX, INVERT_MASK = "mix", "invert_mask"
+"""The values of the mask."""
+
 
 def make_mask() -> Field:
     """The input for the mask; without a link the node changes the whole picture."""
     mask = Field(1.0, doc="Where the node changes the picture, 0..1. Elsewhere the picture stays.", folded=True)
-    mask.__set_name__(Field, "mask")
+    mask.__set_name__(Field, MASK)
     return mask
 
 
@@ -24,7 +30,7 @@ def list_mask_values() -> dict[str, tuple[Any, float | bool]]:
     """The annotations and defaults of the values that belong to the mask, by name."""
     mix = Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much of the change is seen; 0 is none.")
     invert = Doc("Change the picture where the mask is 0 instead.")
-    return {"mix": (Annotated[float, mix, Folded()], 1.0), "invert_mask": (Annotated[bool, invert, Folded()], False)}
+    return {MIX: (Annotated[float, mix, Folded()], 1.0), INVERT_MASK: (Annotated[bool, invert, Folded()], False)}
 
 
 def is_maskable(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, OutputSocket], base: type) -> bool:
@@ -39,6 +45,6 @@ def is_maskable(cls: type, inputs: Mapping[str, Socket], outputs: Mapping[str, O
         and image.kind is Kind.IMAGE
         and not image.optional
         and (first is None or first.socket.kind is Kind.IMAGE)
-        and names.isdisjoint({"mask", *list_mask_values()})
+        and names.isdisjoint({MASK, *list_mask_values()})
         and all("output_size" not in vars(parent) for parent in cls.__mro__[: cls.__mro__.index(base)])
     )

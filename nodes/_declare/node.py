@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 from .camera import CameraModel
 from .draw import Draw, Drawn
 from .lengths import WORKING_UNITS, LengthUnits, declare_in_unit, is_length, resolve_length_unit, unit_factor
-from .masking import is_maskable, list_mask_values, make_mask
+from .masking import MASK, is_maskable, list_mask_values, make_mask
 from .sockets import Image, OutputSocket, Size, Socket
 from .traits import ProxyNote, Trait
 from .values import Doc, Missing, Value, read_value
@@ -113,7 +113,7 @@ class Node:
     @classmethod
     def _add_mask(cls) -> None:
         """Declare the input and the values of a mask, as if the class body had them."""
-        cls.inputs = {**cls.inputs, "mask": make_mask()}
+        cls.inputs = {**cls.inputs, MASK: make_mask()}
         additions = list_mask_values()
         annotations = {name: annotation for name, (annotation, _) in additions.items()}
         cls.__annotations__ = vars(cls).get("__annotations__", {}) | annotations

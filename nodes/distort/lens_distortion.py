@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Reach, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Reach, Resampling, Slider
 
 _ENDLESS = 1e9
 
@@ -55,13 +55,7 @@ class LensDistortion(Filter):
         float, Slider(0.5, 2.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the result, to hide bent borders.")
     ] = 1.0
     center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
-    kernel: Annotated[
-        Kernel,
-        Doc(
-            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may "
-            "ring around lights, Mitchell is between."
-        ),
-    ] = "triangle"
+    kernel: Resampling = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:

@@ -14,6 +14,13 @@ _WIDEST = {"fisheye": math.tau, "little planet": math.radians(350.0), "perspecti
 The last degrees would take nearly all of the picture."""
 
 
+_HEIGHTS = {"lat-long": 2.0, "cube strip": 1.0, "cube cross": 3.0, "mirror ball": 2.0}
+"""The height of pictures that show all directions, in the length of a quarter turn."""
+
+_ASPECTS = {"lat-long": 2.0, "cube strip": 6.0, "cube cross": 4.0 / 3.0}
+"""Width over height of pictures that are no squares."""
+
+
 class Panorama(Filter):
     """Convert a panorama to another projection, and look around in it.
 
@@ -71,11 +78,15 @@ class Panorama(Filter):
     ] = 1.0
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
-        size = super().output_size(inputs, canvas)
         # Sizes are asked of nodes as they are saved, in degrees.
-        quarter = self.scale * _measure_quarter(self.source, math.radians(self.source_angle), size)
-        width, height = _fit_quarter(self.target, math.radians(self.angle), quarter, self.aspect)
-        return (2 * round(width / 2.0) or 1, 2 * round(height / 2.0) or 1)
+        source_angle, angle = math.radians(self.source_angle), math.radians(self.angle)
+        height = super().output_size(inputs, canvas)[1]
+        quarter = self.scale * height / _count_quarters(self.source, source_angle)
+        if self.target in ("cube strip", "cube cross"):
+            quarter = max(2.0 * round(quarter / 2.0), 2.0)  # faces are whole pixels
+        down = quarter * _count_quarters(self.target, angle)
+        across = down * (self.aspect if self.target == "perspective" else _ASPECTS.get(self.target, 1.0))
+        return (2 * round(across / 2.0) or 1, 2 * round(down / 2.0) or 1)
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
@@ -94,35 +105,12 @@ def _limit_angle(projection: Projection, angle: float) -> float:
     return min(angle, _WIDEST.get(projection, math.tau))
 
 
-def _measure_quarter(projection: Projection, angle: float, size: Size) -> float:
-    """How many pixels of a picture a quarter turn takes; of a perspective view, what its middle takes."""
-    height = size[1]
+def _count_quarters(projection: Projection, angle: float) -> float:
+    """How many quarter turns lie in the height of a picture, at the scale of the middle of a perspective view."""
     angle = _limit_angle(projection, angle)
-    return {
-        "lat-long": height / 2.0,
-        "cube strip": float(height),
-        "cube cross": height / 3.0,
-        "fisheye": height * _QUARTER / angle,
-        "mirror ball": height / 2.0,
-        "little planet": height * _QUARTER / angle,
-        "perspective": height * _QUARTER / (2.0 * math.tan(min(angle, _WIDEST["perspective"]) / 2.0)),
-    }[projection]
-
-
-def _fit_quarter(projection: Projection, angle: float, quarter: float, aspect: float) -> tuple[float, float]:
-    """The width and height of a picture in which a quarter turn takes so many pixels."""
-    angle, face = _limit_angle(projection, angle), 2.0 * max(float(round(quarter / 2.0)), 1.0)
-    side = quarter * angle / _QUARTER
-    view = quarter * 2.0 * math.tan(min(angle, _WIDEST["perspective"]) / 2.0) / _QUARTER
-    return {
-        "lat-long": (4.0 * quarter, 2.0 * quarter),
-        "cube strip": (6.0 * face, face),
-        "cube cross": (4.0 * face, 3.0 * face),
-        "fisheye": (side, side),
-        "mirror ball": (2.0 * quarter, 2.0 * quarter),
-        "little planet": (side, side),
-        "perspective": (aspect * view, view),
-    }[projection]
+    if projection == "perspective":
+        return 2.0 * math.tan(angle / 2.0) / _QUARTER
+    return _HEIGHTS.get(projection, angle / _QUARTER)
 
 
 def _rotation(yaw: float, pitch: float, roll: float) -> tuple[float, ...]:

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, Kernel, OutputSocket, Position, Slider, Trait
+from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, OutputSocket, Position, Resampling, Slider, Trait
 
 _SMALLEST = 1e-3
 """No scale is nearer to 0."""
@@ -46,13 +46,7 @@ class Transform(Filter):
     ] = (0.0, 0.0)
     pivot: Annotated[Position, Doc("The point around which the picture is rotated and scaled.")] = (0.5, 0.5)
     direction: Annotated[Literal["forward", "inverse"], Doc("Inverse undoes what forward did.")] = "forward"
-    kernel: Annotated[
-        Kernel,
-        Doc(
-            "Nearest keeps data as it is. Triangle is bilinear. Catmull-Rom and Lanczos (3 lobes)"
-            " are sharp and may ring around lights. Mitchell is in between."
-        ),
-    ] = "triangle"
+    kernel: Resampling = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:

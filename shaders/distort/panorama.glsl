@@ -6,11 +6,12 @@
 // `target` are, which are the same.
 
 const vec2 panorama_nowhere = vec2(-1e6);
-const int PANORAMA_RIGHT = 0, PANORAMA_LEFT = 1, PANORAMA_UP = 2, PANORAMA_DOWN = 3, PANORAMA_FRONT = 4;
+const int PANORAMA_RIGHT = 0, PANORAMA_LEFT = 1, PANORAMA_UP = 2, PANORAMA_DOWN = 3, PANORAMA_FRONT = 4,
+    PANORAMA_BACK = 5;
 
 // The cells of a cube cross, row by row; -1 are empty.
 const int panorama_cross[12] = int[](
-    -1, PANORAMA_UP, -1, -1, PANORAMA_LEFT, PANORAMA_FRONT, PANORAMA_RIGHT, 5, -1, PANORAMA_DOWN, -1, -1
+    -1, PANORAMA_UP, -1, -1, PANORAMA_LEFT, PANORAMA_FRONT, PANORAMA_RIGHT, PANORAMA_BACK, -1, PANORAMA_DOWN, -1, -1
 );
 
 // The cell of each face in a cube cross.
@@ -30,10 +31,19 @@ int panorama_face(vec3 way, out vec2 p) {
     vec3 size = abs(way);
     float far = max(max(size.x, size.y), size.z);
     vec3 on = way / far;
-    if (size.z == far) { p = way.z > 0.0 ? vec2(-on.y, on.x) : vec2(-on.y, -on.x); return way.z > 0.0 ? 2 : 3; }
-    if (size.x == far) { p = way.x > 0.0 ? vec2(-on.y, -on.z) : vec2(on.y, -on.z); return way.x > 0.0 ? 4 : 5; }
-    p = way.y > 0.0 ? vec2(on.x, -on.z) : vec2(-on.x, -on.z);
-    return way.y > 0.0 ? 1 : 0;
+    if (size.z == far) {
+        bool up = way.z > 0.0;
+        p = vec2(-on.y, up ? on.x : -on.x);
+        return up ? PANORAMA_UP : PANORAMA_DOWN;
+    }
+    if (size.x == far) {
+        bool front = way.x > 0.0;
+        p = vec2(front ? -on.y : on.y, -on.z);
+        return front ? PANORAMA_FRONT : PANORAMA_BACK;
+    }
+    bool left = way.y > 0.0;
+    p = vec2(left ? on.x : -on.x, -on.z);
+    return left ? PANORAMA_LEFT : PANORAMA_RIGHT;
 }
 
 bool panorama_is_cube(int projection) {

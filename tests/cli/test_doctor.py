@@ -8,6 +8,7 @@ from importlib import metadata
 import pytest
 from halation.cli import doctor
 from halation.renderer import open_device
+from halation.resources import machine
 from halation.resources.sandbox import UNRESTRICTED
 from halation.version import VERSION
 
@@ -74,7 +75,7 @@ def test_no_opengl(cli, monkeypatch):
 def test_no_display_concerns_the_editor_alone(cli, monkeypatch):
     monkeypatch.delenv("DISPLAY")
     monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
-    monkeypatch.setattr(doctor.sys, "platform", "linux")
+    monkeypatch.setattr(machine.sys, "platform", "linux")
     state, sentence = states(cli)["display"]
     assert state == "note" and "rendering works" in sentence and cli("doctor").code == 0
 

@@ -15,13 +15,12 @@ APP = ROOT / "app"
 ENVIRONMENT = {
     "authoring/render_queue/queued_render.py": "the environment of a process that it starts",
     "cli/__init__.py": "settings of libraries, before they are loaded at the start of the process",
-    "cli/doctor.py": "whether there is a display, and the name of the color config",
+    "cli/doctor.py": "the name of the color config",
     "cli/helpers.py": "the environment of processes that it starts",
     "cli/outcome.py": "HALATION_DEBUG",
     "cli/versions.py": "what the terminal and git say of colors",
     "cli/watchdog.py": "where a watched process, started or forked, writes its heartbeat",
     "color/management.py": "OCIO, the color config of the user, and how much OpenColorIO logs",
-    "editor/renders/folders.py": "whether there is a display",
     "editor/window/opengl.py": "HALATION_WINDOW: whether the window is visible",
     "media/limits.py": "HALATION_MAX_PIXELS",
     "regression/parallel.py": "the threads of a worker process, at its start",
@@ -29,6 +28,7 @@ ENVIRONMENT = {
     "renderer/opengl/driver_settings.py": "what Mesa reads from nowhere else, while a context is opened",
     "renderer/opengl/warming.py": "the device that the user chose",
     "resources/library_messages.py": "what libraries are told to print",
+    "resources/machine.py": "whether there is a display",
     "resources/sandbox.py": "HALATION_ROOT",
     "resources/user_folders.py": "HALATION_STATE and HALATION_PATH, the user's folders",
 }

@@ -6,14 +6,11 @@ lowered as if there were no masks.
 
 from __future__ import annotations
 
-from halation.nodes import Node, Temporal
+from halation.nodes import INVERT_MASK, MASK, MIX, Node, Temporal
 
 from ..ir import Builder, Call, Operand, Parameter, Ref, UniformConstant
 from .node_inputs import NodeInputs
 from .pictures import PictureBuilder
-
-IMAGE, MASK, MIX, INVERT = "image", "mask", "mix", "invert_mask"
-"""The names of the picture, the mask and its values: see `halation.nodes._declare.masking`."""
 
 
 def hides_node(node: Node) -> bool:
@@ -39,7 +36,7 @@ def add_mask(
         return pictures.fit(operand, shape.size, inputs.path) if isinstance(operand, Ref) else operand
 
     glsl = "float" if shape.channels == 1 else "vec4"
-    inverted = inputs.wires.get(INVERT, UniformConstant(bool(node.setting(INVERT))))
+    inverted = inputs.wires.get(INVERT_MASK, UniformConstant(bool(node.setting(INVERT_MASK))))
     if MASK not in inputs.linked:
         inverted = UniformConstant(False)
     parameters = (

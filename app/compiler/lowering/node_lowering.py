@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from halation.nodes import (
+    MASKED,
     Field,
     Filter,
     Kind,
@@ -127,7 +128,7 @@ class NodeLowering:
                 for name, operand in passed_through.items()
             }
         self._fit_all(inputs, size)
-        before = inputs.inputs.get(masks.IMAGE)
+        before = inputs.inputs.get(MASKED)
         if scaled_node is not node:
             inputs = replace(inputs, node=scaled_node)
         if isinstance(scaled_node, Pointwise):
@@ -215,7 +216,7 @@ class NodeLowering:
                 for name, source in sources.items()
             }
         has_work = bool(inputs.wires) or len(node.outputs) != 1
-        neutral_input = None if has_work else masks.IMAGE if masks.hides_node(node) else node.identity()
+        neutral_input = None if has_work else MASKED if masks.hides_node(node) else node.identity()
         return dict.fromkeys(node.outputs, inputs.inputs[neutral_input]) if neutral_input else None
 
     def _find_size(self, inputs: NodeInputs) -> Size:

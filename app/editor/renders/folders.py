@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+from ...resources.machine import has_display
 
 
 def command(folder: Path) -> list[str] | None:
     """The command that shows a folder, None if there is no known one."""
     name = {"darwin": "open", "win32": "explorer"}.get(sys.platform, "xdg-open")
     program = shutil.which(name)
-    display = sys.platform in ("darwin", "win32") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
-    return [program, str(folder)] if program and display else None
+    return [program, str(folder)] if program and has_display() else None
 
 
 def show_folder(folder: Path) -> bool:
