@@ -39,10 +39,10 @@ _VISIBLE = (
     "watch",
     "sweep",
     "bench",
-    "export-isf",
+    "export",
     "doctor",
 )
-_HIDDEN = ("git-driver", "worker")
+_HIDDEN = ("export-isf", "git-driver", "worker")
 _LEAST_MEMORY = 288 << 20
 """Bytes of address space. Libraries of pictures and colors end the process, or wait for ever, where they cannot be
 loaded and started in it: measured on Linux with four cores."""

@@ -131,13 +131,13 @@ class Library(Record, frozen=True):
 
     def is_cheap(self, shader: str, function: str, asker: str) -> bool:
         """True for a function without loops and transcendental functions: it costs less than to store a picture."""
-        return self._find_words(shader, function, asker).isdisjoint(_EXPENSIVE_WORDS)
+        return self.find_words(shader, function, asker).isdisjoint(_EXPENSIVE_WORDS)
 
     def is_straight(self, shader: str, function: str, asker: str) -> bool:
         """True for a function without loops."""
-        return self._find_words(shader, function, asker).isdisjoint(_LOOP_WORDS)
+        return self.find_words(shader, function, asker).isdisjoint(_LOOP_WORDS)
 
-    def _find_words(self, shader: str, function: str, asker: str) -> frozenset[str]:
+    def find_words(self, shader: str, function: str, asker: str) -> frozenset[str]:
         """All words of a function and of those that it calls."""
         if (shader, function) not in self._words:
             self._words[shader, function] = frozenset[str]().union(

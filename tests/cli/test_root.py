@@ -208,6 +208,7 @@ OUTSIDE: dict[str, tuple[object, ...]] = {
     "watch": ("{out}/group.json", "-o", "{fence}/a.png"),
     "sweep": ("{out}/group.json", "-o", "{fence}/a.png", "--set", "n.size=1,2"),
     "bench": ("{out}/group.json",),
+    "export": ("{out}/group.json", "--to", "isf"),
     "export-isf": ("{out}/group.json",),
 }
 """For each command that takes `--root`, words that name a file outside of it."""

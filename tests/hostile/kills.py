@@ -51,7 +51,7 @@ SCENES: dict[str, tuple[str, ...]] = {
     "fmt": (*HALATION, "fmt", "messy.json"),
     "many graphs": (*HALATION, "fmt", "many"),
     "a merge": (*HALATION, "merge", "graph.json", "messy.json", "other.json", "-o", "merged.json"),
-    "an ISF": (*HALATION, "export-isf", "graph.json", "-o", "out.fs"),
+    "an ISF": (*HALATION, "export", "graph.json", "-o", "out.fs"),
     "a log": (*HALATION, "check", "messy.json", "--sarif", "log.json"),
     "the cache of devices": (*SAVING, "cache"),
     "preferences": (*SAVING, "preferences"),
