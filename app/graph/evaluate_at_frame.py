@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 from halation.nodes import ItemSet, Plain, Scalar, Value
@@ -72,9 +73,7 @@ def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | Non
 def find_expression_loops(graph: Graph) -> Iterator[tuple[Port, str]]:
     """The ports whose expressions depend on themselves, each with a sentence."""
     reads = {
-        port: [find_named_value(graph, name)[0] for name in item.names if _names_a_value(graph, name)]
-        for port, item in graph.animation.items()
-        if isinstance(item, Expression)
+        port: list(_list_reads(graph, item)) for port, item in graph.animation.items() if isinstance(item, Expression)
     }
     cyclic = find_cyclic(reads)
     yield from ((port, f"{port}: its expression depends on itself") for port in reads if port in cyclic)
@@ -174,8 +173,7 @@ class _ValueEvaluation:
     def _find_reads(self, port: Port) -> list[Port]:
         """The animated values that an expression names."""
         animation = self._graph.animation[port]
-        names = animation.names if isinstance(animation, Expression) else ()
-        ports = (find_named_value(self._graph, name)[0] for name in names if _names_a_value(self._graph, name))
+        ports = _list_reads(self._graph, animation) if isinstance(animation, Expression) else ()
         return [read_port for read_port in ports if read_port in self._graph.animation]
 
     def _evaluate_animation(self, port: Port, animation: Animation) -> Plain:
@@ -220,9 +218,8 @@ def fit_to_value(port: Port, value: Value, computed: Scalar, frame: int) -> Scal
     return type(plain)(min(max(plain, value.minimum), value.maximum))
 
 
-def _names_a_value(graph: Graph, name: str) -> bool:
-    try:
-        find_named_value(graph, name)
-    except GraphError:
-        return False
-    return True
+def _list_reads(graph: Graph, expression: Expression) -> Iterator[Port]:
+    """The values that an expression reads; names that mean none are left out."""
+    for name in expression.names:
+        with suppress(GraphError):
+            yield find_named_value(graph, name)[0]

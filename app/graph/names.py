@@ -18,8 +18,10 @@ _MAX_LENGTH = 100
 """Letters of a name. Longer names get no suggestion: the time to compare two names grows with the square of this."""
 _MAX_NAMES = 20_000
 """Names that are compared with one unknown name. Comparing that many takes 0.1 s."""
-_MAX_COMPARISONS = 100_000
+_MAX_COMPARISONS = 40_000
 """Names that are compared for all faults of one graph together. A file can hold 100,000 faults."""
+_LEAST_COMPARISONS = 20
+"""What the shortest list counts as: starting to compare takes as long as comparing this many names (measured)."""
 
 _COMPARISONS_LEFT: ContextVar[list[int] | None] = ContextVar("_COMPARISONS_LEFT", default=None)
 
@@ -40,9 +42,10 @@ def limit_suggestions() -> Generator[None]:
 def did_you_mean(name: str, names: Collection[str]) -> str:
     """The end of a sentence about an unknown name: the most similar of `names`, or a short list of them, or ""."""
     comparisons = _COMPARISONS_LEFT.get() or [_MAX_COMPARISONS]
-    if len(name) > _MAX_LENGTH or len(names) > min(_MAX_NAMES, comparisons[0]):
+    cost = max(len(names), _LEAST_COMPARISONS)
+    if len(name) > _MAX_LENGTH or cost > min(_MAX_NAMES, comparisons[0]):
         return ""
-    comparisons[0] -= len(names)
+    comparisons[0] -= cost
     lowered = {item.lower(): item for item in sorted(names, reverse=True) if len(item) <= _MAX_LENGTH}
     if near := difflib.get_close_matches(name.lower(), lowered, n=1):
         return f"; did you mean '{lowered[near[0]]}'?"

@@ -189,7 +189,8 @@ def _group(id: str, item: Group, node_types: Mapping[str, type[Node]], depth: in
 def _links(graph: Graph) -> Iterator[Problem]:
     for target, fault in graph.link_faults.items():
         source = graph.links[target]
-        is_reversed = graph.link_fault(target, source) is None
+        has_node = source.node in graph.nodes or source.node == OUTPUTS
+        is_reversed = has_node and graph.link_fault(target, source) is None
         hint = f'; a link names its target first: write "{source}": "{target}"' if is_reversed else ""
         sentence = f"'{source}' cannot feed '{target}': {fault}{hint}"
         yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
