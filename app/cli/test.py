@@ -11,11 +11,12 @@ from ..resources.render_choices import DEFAULT_TIMEOUT
 from ..resources.sandbox import Sandbox
 from .options import AsJson
 from .outcome import print_json, print_note
-from .watchdog import Timeout, run_session
+from .watchdog import PoolWatchdog, Timeout, run_session
 
 if TYPE_CHECKING:
     from ..regression.case_runner import RunOptions
     from ..regression.cases import Case
+    from ..regression.parallel import Supervisor
     from ..regression.results import Outcome
 
 _MARKS = {"passed": "pass", "failed": "FAIL", "blessed": "new ", "skipped": "skip"}
@@ -76,14 +77,18 @@ def test(
         return _list_cases(cases, as_json)
     reports = _ReportFiles(report, junit, as_json)
 
-    def work() -> int:
+    def work(supervisor: Supervisor | None = None) -> int:
         from ..regression.case_runner import RunOptions
 
         options = RunOptions(sandbox, update, out, pictures=report is not None, deterministic=deterministic)
-        return _run_and_report(cases, options, jobs, stop_early, reports)
+        return _run_and_report(cases, options, jobs, stop_early, reports, supervisor)
 
-    # The processes of -j could not be told apart by one that watches, so these only try programs.
-    return work() if jobs > 1 else run_session(work, timeout, as_json)
+    if jobs == 1:
+        return run_session(work, timeout, as_json)
+    import tempfile
+
+    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+        return work(PoolWatchdog(Path(folder), timeout))
 
 
 class _ReportFiles(NamedTuple):
@@ -95,7 +100,12 @@ class _ReportFiles(NamedTuple):
 
 
 def _run_and_report(
-    cases: tuple[Case, ...], options: RunOptions, jobs: int, stop_early: bool, files: _ReportFiles
+    cases: tuple[Case, ...],
+    options: RunOptions,
+    jobs: int,
+    stop_early: bool,
+    files: _ReportFiles,
+    supervisor: Supervisor | None,
 ) -> int:
     """Run cases, write all reports, and return the exit code."""
     from ..regression.junit import write_junit
@@ -110,6 +120,7 @@ def _run_and_report(
         jobs=jobs,
         stop_early=stop_early,
         report_outcome=None if files.as_json else _print_outcome,
+        supervisor=supervisor,
     )
     if files.page is not None:
         write_report(session, files.page, sandbox=options.sandbox)

@@ -6,6 +6,7 @@ the process that uses it, so another process has to read the file and kill the f
 
 from __future__ import annotations
 
+import contextlib
 import os
 import select
 import signal
@@ -99,6 +100,28 @@ class Watchdog:
     def _fault(self, sentence: str) -> DeviceError:
         nodes = self._beat.partition(" ")[2]
         return DeviceError(f"{describe_owner(nodes)}: its code {sentence}", node=nodes)
+
+
+class PoolWatchdog:
+    """Watches processes that work side by side: each writes its heartbeat to a file in `folder`, named by its number.
+
+    `timeout` is as in `Watchdog`.
+    """
+
+    def __init__(self, folder: Path, timeout: float) -> None:
+        self.folder, self._timeout = folder, timeout
+        self._watchdogs: dict[int, Watchdog] = {}
+
+    def check(self) -> None:
+        """Kill a process whose code runs too long or takes too much memory, and raise DeviceError."""
+        for file in self.folder.iterdir():
+            process = int(file.name)
+            if process not in self._watchdogs:
+                self._watchdogs[process] = Watchdog(file, self._timeout, tries_first=True)
+            if fault := self._watchdogs[process].check(process):
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+                raise fault
 
 
 def needs_watchdog(graph: Graph) -> bool:

@@ -6,16 +6,19 @@ import os
 import signal
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context, parent_process
+from pathlib import Path
 from threading import Thread, current_thread, main_thread
+from typing import Protocol
 
 from .. import renderer as engine
 from ..errors import RenderError
+from ..renderer.execution.progress_beacon import BEACON_FILE, BEACON_TRIALS
 from ..resources.sandbox import Sandbox
 from ..version import VERSION
 from .case_runner import RunOptions, run_case
@@ -23,6 +26,20 @@ from .cases import Case
 from .results import Outcome, RegressionRun
 
 OutcomeListener = Callable[[Outcome], None]
+
+_CHECK_INTERVAL = 0.05
+"""Seconds between two looks at processes that work."""
+
+
+class Supervisor(Protocol):
+    """What watches processes that share cases, because code in a graph may block one."""
+
+    folder: Path
+    """Where each process writes its heartbeat, to a file with its number as name."""
+
+    def check(self) -> None:
+        """Raise DeviceError for code that must not go on; its process has been killed."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -41,16 +58,21 @@ def run_cases(
     jobs: int = 1,
     stop_early: bool = False,
     report_outcome: OutcomeListener | None = None,
+    supervisor: Supervisor | None = None,
 ) -> RegressionRun:
     """Run cases; `report_outcome` is called with each as it ends. `stop_early` stops after the first failure.
 
-    Raises DeviceError without OpenGL, OutputError for a folder that cannot be written.
+    If there are several processes, `supervisor` watches them. Raises DeviceError without OpenGL and for code that the
+    supervisor stopped, OutputError for a folder that cannot be written.
     """
     started = time.perf_counter()
     outcomes: dict[str, Outcome] = {}
     device, software = "", True
     processes = min(jobs, len(cases))
-    with closing(_run_shared(cases, options, processes) if processes > 1 else _run_alone(cases, options)) as results:
+    shared = processes > 1
+    with closing(
+        _run_shared(cases, options, processes, supervisor) if shared else _run_alone(cases, options)
+    ) as results:
         for result in results:
             outcomes[result.outcome.case.id], device, software = result.outcome, result.device, result.software
             if report_outcome is not None:
@@ -74,15 +96,22 @@ def _run_alone(cases: Iterable[Case], options: RunOptions) -> Generator[_CaseRes
         yield _run_and_describe(case, renderer, options)
 
 
-def _run_shared(cases: Sequence[Case], options: RunOptions, jobs: int) -> Generator[_CaseResult, None, None]:
+def _run_shared(
+    cases: Sequence[Case], options: RunOptions, jobs: int, supervisor: Supervisor | None
+) -> Generator[_CaseResult, None, None]:
     # If each process used all cores, they would only slow each other down.
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
-    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _prepare_worker, (threads,))
+    folder = supervisor.folder if supervisor else None
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _prepare_worker, (threads, folder))
     try:
         with _ignore_interrupts():
-            waiting: list[Future[_CaseResult]] = [pool.submit(_run_in_worker, case, options) for case in cases]
-        for future in as_completed(waiting):
-            yield future.result()
+            waiting = {pool.submit(_run_in_worker, case, options) for case in cases}
+        while waiting:
+            ended, waiting = wait(waiting, _CHECK_INTERVAL if supervisor else None, FIRST_COMPLETED)
+            for future in ended:
+                yield future.result()
+            if supervisor is not None:
+                supervisor.check()
     except BrokenProcessPool:
         raise RenderError("a process was ended from outside, perhaps for want of memory: use fewer, -j 1") from None
     finally:
@@ -107,9 +136,13 @@ def _ignore_interrupts() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _prepare_worker(threads: str) -> None:
-    """Limit the threads of the driver, and end this process with its parent: it would wait for work for ever."""
+def _prepare_worker(threads: str, heartbeats: Path | None) -> None:
+    """Limit the threads of the driver, say where the heartbeat goes if it is watched, and end this process with its
+    parent: it would wait for work for ever.
+    """
     os.environ.setdefault("LP_NUM_THREADS", threads)
+    if heartbeats is not None:
+        os.environ[BEACON_FILE], os.environ[BEACON_TRIALS] = str(heartbeats / str(os.getpid())), "1"
     parent = parent_process()
 
     def end() -> None:

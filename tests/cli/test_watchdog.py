@@ -160,15 +160,15 @@ def _heartbeat_of(process: str) -> str:
     )
 
 
-@pytest.mark.parametrize("command", ["test", "watch"])
+@pytest.mark.parametrize("command", ["test", "test -j 2", "watch"])
 def test_commands_that_render_many_times_are_watched_too(tmp_path: Path, command: str) -> None:
     """They had no limit, and never ended: what is tried on a few pixels is quick there."""
     path = graph(tmp_path, ENDLESS)
     suite = tmp_path / "s.suite.toml"
-    suite.write_text('[cases.user]\ngraph = "graph.json"\ngolden = ""\n')
-    words = (suite,) if command == "test" else (path, "-o", tmp_path / "out.exr")
+    suite.write_text("".join(f'[cases.{name}]\ngraph = "graph.json"\ngolden = ""\n' for name in ("one", "two")))
+    words = (path, "-o", tmp_path / "out.exr") if command == "watch" else (suite,)
     ended = subprocess.run(
-        [*HALATION, command, *map(str, words), "--timeout", "1"], capture_output=True, text=True, timeout=100
+        [*HALATION, *command.split(), *map(str, words), "--timeout", "1"], capture_output=True, text=True, timeout=100
     )
     assert ended.returncode == 5, ended.stderr
     sentence = ended.stderr.splitlines()[-1]

@@ -19,7 +19,7 @@ from halation.errors import DeviceError, ShaderError
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes.color.exposure import Exposure
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.execution.trials import TrialProcess
+from halation.renderer.execution.trials import Trial, TrialProcess
 from halation.resources.sandbox import UNRESTRICTED
 
 PICTURE = np.full((8, 8, 4), 0.5, np.float32)
@@ -66,7 +66,7 @@ def submitted(trial_process: TrialProcess, monkeypatch: pytest.MonkeyPatch) -> l
     nodes_tried: list[str] = []
     submit = trial_process.submit
 
-    def record(program: Mapping[str, Any], nodes: str, *, may_yield: bool) -> Future[DeviceError | None]:
+    def record(program: Mapping[str, Any], nodes: str, *, may_yield: bool) -> Future[Trial]:
         nodes_tried.append(nodes)
         return submit(program, nodes, may_yield=may_yield)
 
@@ -165,3 +165,19 @@ def test_what_has_no_code_of_users_starts_nothing(tried: Renderer) -> None:
     plain = plain.connect(Port("inputs", "image"), Port("node", "image"))
     tried.render(plain.connect(Port("node", "out"), Port("outputs", "out")), REQUEST)
     assert list_children() <= others
+
+
+def test_code_that_would_run_for_minutes_is_refused_before_it_runs() -> None:
+    """Nothing can stop a device that has begun. On few pixels the same code runs."""
+    rounds = graph("""vec4 slow(vec4 image) {
+        float sum = image.r;
+        for (int i = 0; i < 40000; i++) sum = fract(sin(sum + float(i)) * 437.5);
+        return vec4(sum);
+    }""")
+    renderer = Renderer(trial_process=TrialProcess(timeout=1.0), sandbox=UNRESTRICTED)
+    few, many = (RenderRequest({"image": np.full((side, side, 4), 0.5, np.float32)}) for side in (8, 2048))
+    assert np.isfinite(renderer.render(rounds, few)["out"]).all()
+    with pytest.raises(DeviceError, match=r"node 'user': its code would run for about .* minutes on 2048x2048 pixels"):
+        renderer.render(rounds, many)
+    assert np.isfinite(renderer.render(rounds, few)["out"]).all()
+    renderer.close()

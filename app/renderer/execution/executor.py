@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
-from ...errors import DeviceError, InputError, RenderError, describe_owner
+from ...errors import InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
@@ -23,7 +23,7 @@ from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
 from .texture_pool import PooledTexture, TextureLease, TexturePool
-from .trials import Trials
+from .trials import Trial, Trials
 
 MAX_TABLES = 64
 MAX_MESHES = 16
@@ -114,7 +114,7 @@ class Executor:
         trial = self.begin_trial(plan, render_pass)
         return trial is None or trial.done()
 
-    def begin_trial(self, plan: Plan, render_pass: Pass) -> Future[DeviceError | None] | None:
+    def begin_trial(self, plan: Plan, render_pass: Pass) -> Future[Trial] | None:
         """Begin to try the program of a pass in another process, where it has code of users and is not known."""
         if self._trials is None or not render_pass.writers or self._beacon.replaces_trials:
             return None
@@ -123,9 +123,12 @@ class Executor:
     def _await_trial(self, plan: Plan, render_pass: Pass) -> None:
         while trial := self.begin_trial(plan, render_pass):
             with suppress(CancelledError):  # it made way for others, and is tried again
-                if fault := trial.result():
+                if fault := trial.result().fault:
                     raise fault
-                return
+                break
+        software = self.device.target.software
+        if self._trials and (fault := self._trials.find_slowness(plan, render_pass, software)):
+            raise fault
 
     @contextmanager
     def _watch(self, render_pass: Pass) -> Iterator[None]:
