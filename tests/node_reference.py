@@ -119,7 +119,8 @@ DRAWS = """\
 ## Drawing
 
 `passes(self, draw)` of a `Filter` records what to draw and returns the last result, or a result for each output by
-name. Nothing runs yet. Functions are those of the node's own GLSL file.
+name. Nothing runs yet. Functions are those of the node's own GLSL file and of
+the libraries that it includes.
 """
 GLSL = """\
 ## GLSL: names in every function

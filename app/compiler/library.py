@@ -83,6 +83,11 @@ class Library(Record, frozen=True):
             raise ShaderError(asker, text.file, 1, f"there is no function '{name}' in it")
         return text.functions[name]
 
+    def defining_file(self, shader: str, name: str, asker: str) -> str:
+        """The file with a function: `shader` itself, or one that it includes; `shader` also if none has it."""
+        files = [text.name for text in self.closure((shader,), asker) if name in text.functions]
+        return shader if shader in files or not files else files[0]
+
     def closure(self, names: tuple[str, ...], asker: str) -> tuple[Text, ...]:
         """The files and all that they include, each once, includes first. A ShaderError names the node `asker`."""
         if names not in self._closures:

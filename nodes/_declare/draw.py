@@ -94,8 +94,8 @@ class ShaderText(Struct, frozen=True):
 class Draw(Protocol):
     """Records the draws of a node. Nothing runs yet, but sizes are known.
 
-    Functions are those of the node's own GLSL file. `result` is the type of the picture that is drawn; Image by
-    default.
+    Functions are those of the node's own GLSL file and of the libraries that it includes. `result` is the type of the
+    picture that is drawn; Image by default.
     """
 
     @property

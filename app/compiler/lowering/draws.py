@@ -130,7 +130,7 @@ class Recorder:
         overlap: Overlap | Mapping[str, Overlap] | None = None,
         **arguments: Argument,
     ) -> Drawn:
-        light = self._library.is_light(self._shader, function, self._owner)
+        light = self._library.is_light(self._find_file(function), function, self._owner)
         shapes = (self._make_shape(result, size or self.size),)
         op = self._make_gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
         return self._add_op(op)
@@ -147,7 +147,7 @@ class Recorder:
         **arguments: Argument,
     ) -> tuple[Drawn, ...]:
         shapes = tuple(self._make_shape(result, size or self.size) for result in results)
-        made_types = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
+        made_types = [glsl for glsl, _ in self._find_function(function).outputs]
         drawn_types = [result.glsl for result in results]
         if made_types != drawn_types:
             fault = f"'{function}' makes ({', '.join(made_types)}) but is drawn for ({', '.join(drawn_types)})"
@@ -177,11 +177,11 @@ class Recorder:
                 accessors.append(Accessor(name, glsl_type(channels), operand, around))
             else:
                 plain_arguments[name] = item
-        parameters = self._make_parameters(self._library.function(self._shader, function, self._owner), plain_arguments)
+        parameters = self._make_parameters(self._find_function(function), plain_arguments)
         return Gather(
             shapes,
             self._owner,
-            self._shader,
+            self._find_file(function),
             function,
             parameters,
             find_choices(self._node),
@@ -191,7 +191,7 @@ class Recorder:
         )
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
-        signature = self._library.function(self._shader, function, self._owner)
+        signature = self._find_function(function)
         named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
         sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, DrawnPicture))]
         size = next((input_size for input_size in sizes if input_size != (1, 1)), (1, 1) if sizes else self.size)
@@ -199,7 +199,7 @@ class Recorder:
             Call(
                 (self._make_shape(result, size),),
                 self._owner,
-                self._shader,
+                self._find_file(function),
                 function,
                 self._make_parameters(signature, named),
                 find_choices(self._node),
@@ -320,6 +320,12 @@ class Recorder:
         return self._wrap(self._resources.read_asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
 
     # --- parts ---------------------------------------------------------------------------------------------------
+
+    def _find_file(self, function: str) -> str:
+        return self._library.defining_file(self._shader, function, self._owner)
+
+    def _find_function(self, function: str) -> GlslFunction:
+        return self._library.function(self._find_file(function), function, self._owner)
 
     def _add_op(self, op: Op) -> DrawnPicture:
         return DrawnPicture(self._builder.add(op), op.shapes[0])
