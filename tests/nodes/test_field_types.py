@@ -26,7 +26,7 @@ SETTINGS: dict[str, dict[str, object]] = {
     "resize": {"scale": (0.5, 1.5)},
 }
 
-STILL = ("sanitize", "echo", "frame_average", "displace", "variable_blur")
+STILL = ("sanitize", "echo", "frame_average", "displace", "variable_blur", "inpaint")
 """Nodes that change nothing of a finite still picture, or nothing without another input."""
 
 
