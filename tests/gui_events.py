@@ -35,6 +35,7 @@ class Keyboard:
 
     def __init__(self, window: Window) -> None:
         self._window = window
+        self._is_in_window = False
 
     @property
     def is_idle(self) -> bool:
@@ -70,14 +71,25 @@ class Keyboard:
     def move(self, x: float, y: float) -> None:
         """Move the mouse."""
         host: Any = glfw_utils.glfw_window_hello_imgui()
-        glfw.set_cursor_pos(host, x, y)
-        self._window._input.add_position(int(ctypes.cast(host, ctypes.c_void_p).value or 0), x, y)
+        address = int(ctypes.cast(host, ctypes.c_void_p).value or 0)
+        if not self._is_in_window:  # else the interface library asks for the place, and gets the last one
+            self._window._input.add_entry(address, 1)
+            self._is_in_window = True
+        self._window._input.add_position(address, x, y)
 
     def click(self, button: int = 0, count: int = 1) -> None:
         """Click where the mouse is."""
         for _ in range(count):
             self._window._input.add_button(button, glfw.PRESS, 0)
             self._window._input.add_button(button, glfw.RELEASE, 0)
+
+    def drag(self, *points: tuple[float, float]) -> None:
+        """Drag with the left button from the first point through the others, all of it between two frames."""
+        self.move(*points[0])
+        self._window._input.add_button(0, glfw.PRESS, 0)
+        for point in points[1:]:
+            self.move(*point)
+        self._window._input.add_button(0, glfw.RELEASE, 0)
 
 
 def play(script: Callable[[Window, Keyboard], Script], folder: Path, path: Path | None = None) -> Window:

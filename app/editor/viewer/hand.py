@@ -61,7 +61,7 @@ class ViewerInput:
         self.picked_point = None
         viewer.hovered = hovered or active
         imgui.set_item_key_owner(imgui.Key.mouse_wheel_y)
-        if hovered and not active:
+        if imgui.is_item_activated() or (hovered and not active):  # modifiers may come with the press
             keys = {"ctrl": io.key_ctrl, "alt": io.key_alt, "shift": io.key_shift}
             self.aim = aim(self._context, sight, at, ui_scale(), **keys)
         if hovered and io.mouse_wheel:

@@ -8,6 +8,11 @@ their order. It ends a frame's share where the modifiers change after a press; t
 While a text field is edited, what is typed arrives as characters alone, all of them in the next frame: the library
 takes one key at a time, and text would trail behind the hand.
 
+The mouse is one hand: it moves, then presses, then moves, then lets go. On a slow machine all of that comes between two
+frames, and a widget that is pressed before a frame has found it under the pointer, or let go before a frame has seen it
+dragged, misses its drag. So moves and each change of a button have frames of their own (`_Share`). Whether two clicks
+are a double click is decided by when they were made, not by when their frames are drawn.
+
 A key or a click may open a field that takes text, and the field has the focus only some frames later: the popup opens,
 it asks for the focus, the focus arrives. What is typed in the meantime belongs to the field. So keys wait until a frame
 has passed that changed nothing of what decides where they go (`_Focus`). No popup has to declare its field.
@@ -16,13 +21,15 @@ has passed that changed nothing of what decides where they go (`_Focus`). No pop
 from __future__ import annotations
 
 import ctypes
+import math
+import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, partial
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 from imgui_bundle import imgui
 
@@ -51,6 +58,33 @@ class InputEvent:
     """Whether it is the text of the key before it. Input methods send text without a key."""
     moves_focus: bool = False
     """Whether it may change what has the focus: a key that goes down, a button that goes down or up."""
+    pointer: Literal["", "move", "button", "wheel"] = ""
+    """What the mouse does, if it is the mouse."""
+    since_press: float = math.inf
+    """For a button that goes down, seconds since it went down before."""
+
+
+@dataclass
+class _Share:
+    """What the interface gets in one frame."""
+
+    has_pressed: bool = False
+    """Whether an event asks for something by now, so that the modifiers must stay as they are."""
+    pointer: Literal["", "move", "button", "wheel"] = ""
+    """What the mouse does in this frame."""
+
+    def takes(self, event: InputEvent) -> bool:
+        """True if an event of the mouse, or a key, may follow what the mouse has done in this frame."""
+        if not self.pointer:
+            return True
+        if event.pointer:
+            return event.pointer == self.pointer != "button"
+        return not (event.is_key and self.pointer == "move")  # the panel under the pointer gets the key
+
+    def add(self, event: InputEvent) -> None:
+        """Count an event in."""
+        self.has_pressed |= event.presses
+        self.pointer = event.pointer or self.pointer
 
 
 @dataclass(frozen=True)
@@ -65,6 +99,8 @@ class _Focus:
     next_active: int
     window: int
     window_count: int
+    hovered_window: int
+    """The panel under the mouse, whose shortcuts run."""
 
     @classmethod
     def read(cls) -> _Focus:
@@ -79,12 +115,22 @@ class _Focus:
             context.nav_next_activate_id,
             context.nav_window.id_ if context.nav_window is not None else 0,
             context.windows_active_count,
+            context.hovered_window.id_ if context.hovered_window is not None else 0,
         )
 
 
 PATIENCE = 20
 """Frames after which keys no longer wait for the focus. Opening the slowest dialog takes 5; a panel that asks for the
 focus again and again must not swallow keys for ever."""
+
+DOUBLE_CLICK = 0.3
+"""Seconds within which two clicks are a double click: the default of the interface library."""
+
+SINGLE_CLICK = 0.5
+"""Seconds after which a click is surely a single one: the default of the interface library."""
+
+FOREVER = 3600.0
+"""Seconds, more than any frame takes."""
 
 
 class InputQueue:
@@ -102,6 +148,8 @@ class InputQueue:
         self._waited = 0
         self._is_text_used = False
         """Whether the latest key was used as a key: then its character is no text for a field that it opened."""
+        self._press_times: dict[int, float] = {}
+        """When each button of the mouse went down last."""
 
     def __len__(self) -> int:
         return len(self._events)
@@ -114,6 +162,7 @@ class InputQueue:
         glfw.set_mouse_button_callback(window, lambda _, button, action, bits: self.add_button(button, action, bits))
         glfw.set_scroll_callback(window, lambda _, across, down: self.add_wheel(across, down))
         glfw.set_cursor_pos_callback(window, lambda _, x, y: self.add_position(address, x, y))
+        glfw.set_cursor_enter_callback(window, lambda _, entered: self.add_entry(address, entered))
 
     def add_key(self, key: int, scancode: int, action: int, bits: int) -> None:
         """A key went down or up; repeats are the interface library's own."""
@@ -163,24 +212,42 @@ class InputQueue:
         """A button of the mouse went down or up."""
         if button >= int(imgui.MouseButton_.count):
             return
-        is_down = action == glfw.PRESS
-        modifiers = self._update_held(bits)
+        is_down, since_press = action == glfw.PRESS, math.inf
+        if is_down:
+            now = time.monotonic()
+            since_press = now - self._press_times.get(button, -math.inf)
+            self._press_times[button] = now
         self._events.append(
-            InputEvent(modifiers, is_down, lambda io: io.add_mouse_button_event(button, is_down), moves_focus=True)
+            InputEvent(
+                self._update_held(bits),
+                is_down,
+                lambda io: io.add_mouse_button_event(button, is_down),
+                moves_focus=True,
+                pointer="button",
+                since_press=since_press,
+            )
         )
 
     def add_wheel(self, across: float, down: float) -> None:
         """The wheel was turned."""
-        self._events.append(InputEvent(self._latest, True, lambda io: io.add_mouse_wheel_event(across, down)))
+        self._events.append(
+            InputEvent(self._latest, True, lambda io: io.add_mouse_wheel_event(across, down), pointer="wheel")
+        )
 
     def add_position(self, window: int, x: float, y: float) -> None:
         """The mouse moved; the interface library knows which of its windows that concerns."""
         move = partial(imgui.backends.glfw_cursor_pos_callback, window, x, y)
-        self._events.append(InputEvent(self._latest, False, lambda _: move()))
+        self._events.append(InputEvent(self._latest, False, lambda _: move(), pointer="move"))
+
+    def add_entry(self, window: int, entered: int) -> None:
+        """The mouse came into the window or left it; in its order, or the moves before it would bring it back."""
+        enter = partial(imgui.backends.glfw_cursor_enter_callback, window, entered)
+        self._events.append(InputEvent(self._latest, False, lambda _: enter(), pointer="move"))
 
     def forward(self) -> None:
         """Hand over a frame's share; to be called before the interface begins the frame."""
-        io, has_pressed = imgui.get_io(), False
+        io, share = imgui.get_io(), _Share()
+        io.mouse_double_click_time, io.mouse_single_click_delay = DOUBLE_CLICK, SINGLE_CLICK
         is_settled = self._is_focus_settled()
         while self._events:
             event = self._events[0]
@@ -195,14 +262,18 @@ class InputQueue:
                     event.forward(io)
                 self._is_text_used = False
                 continue
+            if not share.takes(event):
+                return
             if event.modifiers != self._forwarded and not event.is_release:
-                if has_pressed:
+                if share.has_pressed:
                     return
                 for modifier in event.modifiers ^ self._forwarded:
                     io.add_key_event(modifier, modifier in event.modifiers)
                 self._forwarded = event.modifiers
+            if event.pointer == "button" and event.presses:
+                _decide_double_click(io, event.since_press < DOUBLE_CLICK)
             self._events.popleft().forward(io)
-            has_pressed |= event.presses
+            share.add(event)
             if event.is_key and not event.is_text:
                 self._is_text_used = event.is_character
             if event.moves_focus:
@@ -225,6 +296,12 @@ class InputQueue:
         """Update the held modifiers from an event, which knows of a release over another window too."""
         self._held = {modifier for bit, modifier in _BITS.items() if bits & bit}
         return frozenset(self._held)
+
+
+def _decide_double_click(io: imgui.IO, is_double: bool) -> None:
+    """Let the next press be the second of a double click, or not, whenever the frame of the first one was drawn."""
+    io.mouse_double_click_time = FOREVER if is_double else 0.0
+    io.mouse_single_click_delay = max(SINGLE_CLICK, 2.0 * io.mouse_double_click_time)  # the library insists on more
 
 
 _BITS: Mapping[int, imgui.Key] = MappingProxyType(
