@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 from typing import Annotated, Any, cast, get_type_hints
@@ -28,6 +29,9 @@ class LightKind(StrEnum):
     SPOT = "spot"
     SUN = "sun"
     SPHERE = "sphere"
+    RECTANGLE = "rectangle"
+    DISC = "disc"
+    TUBE = "tube"
 
 
 _Place = Annotated[Triple, Slider(-10.0, 10.0, unit="scene", doc="Where it is in the world.")]
@@ -88,16 +92,55 @@ class Light(Struct, frozen=True):
     ] = 0.0
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Doubles the intensity with each stop.")] = 0.0
     solo: Annotated[bool, Doc("While any light is solo, only those shine.")] = False
+    width: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From its left to its right edge.")] = 1.0
+    height: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From its lower to its upper edge.")] = 1.0
+    length: Annotated[float, Slider(0.0, 5.0, unit="scene", minimum=0.0, doc="From one end to the other.")] = 1.0
+    roll: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns it around its direction. At 0 its width is level.")
+    ] = 0.0
 
     @property
     def gain(self) -> float:
         """The intensity with the exposure."""
         return self.intensity * 2.0**self.exposure
 
+    @property
+    def aim(self) -> Triple:
+        """The direction with length 1: down, where there is none."""
+        size = math.hypot(*self.direction)
+        x, y, z = self.direction
+        return (x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, -1.0)
+
+    @property
+    def half_axes(self) -> tuple[Triple, Triple]:
+        """From the middle to an edge, both ways across: half the width and the height of a rectangle, radii of a disc;
+        half the length and the radius of a tube."""
+        x, y, z = self.aim
+        level = math.hypot(x, y)
+        side = (-y / level, x / level, 0.0) if level > 1e-6 else (1.0, 0.0, 0.0)
+        up = (y * side[2] - z * side[1], z * side[0] - x * side[2], x * side[1] - y * side[0])
+        if self.kind is LightKind.TUBE:
+            return _scale((x, y, z), self.length / 2.0), _scale(side, self.size)
+        cosine, sine = math.cos(self.roll), math.sin(self.roll)
+        along = tuple(cosine * first + sine * second for first, second in zip(side, up, strict=True))
+        across = tuple(cosine * second - sine * first for first, second in zip(side, up, strict=True))
+        sizes = (self.size, self.size) if self.kind is LightKind.DISC else (self.width / 2.0, self.height / 2.0)
+        return _scale(along, sizes[0]), _scale(across, sizes[1])
+
+
+def _scale(direction: tuple[float, ...], length: float) -> Triple:
+    """A half axis. None is shorter than 1e-4, so that light stays finite."""
+    x, y, z = (max(length, _THINNEST) * part for part in direction)
+    return x, y, z
+
+
+_THINNEST = 1e-4
+"""The least half axis, that of the radius of a sphere."""
+
 
 _ORDER = (
     "on", "solo", "color", "temperature", "intensity", "exposure",
-    "place", "direction", "size", "inner", "outer", "reach",
+    "place", "direction", "roll", "width", "height", "length", "size", "inner", "outer", "reach",
 )  # fmt: skip
 """The fields in the order of the editor."""
 
@@ -107,6 +150,9 @@ _FIELDS: Mapping[LightKind, tuple[str, ...]] = {
     LightKind.SPOT: (*_LOCAL, "direction", "inner", "outer"),
     LightKind.SUN: ("direction",),
     LightKind.SPHERE: (*_LOCAL, "size"),
+    LightKind.RECTANGLE: (*_LOCAL, "direction", "roll", "width", "height"),
+    LightKind.DISC: (*_LOCAL, "direction", "size"),
+    LightKind.TUBE: (*_LOCAL, "direction", "length", "size"),
 }
 _SHARED = ("color", "temperature", "intensity", "exposure", "on", "solo")
 _DOCS = {
@@ -114,9 +160,20 @@ _DOCS = {
     LightKind.SPOT: "Shines from one point in a cone.",
     LightKind.SUN: "Shines from far away, everywhere in the same direction.",
     LightKind.SPHERE: "Shines from the surface of a ball.",
+    LightKind.RECTANGLE: "Shines from one side of a rectangle, as a window or a soft box.",
+    LightKind.DISC: "Shines from one side of a disc.",
+    LightKind.TUBE: "Shines from the surface of a tube with closed ends.",
 }
-_DEFAULTS: Mapping[LightKind, Mapping[str, Any]] = {LightKind.SUN: {"intensity": 3.0}}
-"""Defaults that differ from those of `Light`. Below a sun of 3 W/m² a white floor has a luminance of about 1."""
+_DIFFERENCES: Mapping[LightKind, Mapping[str, Mapping[str, Any]]] = {
+    LightKind.SUN: {"intensity": {"default": 3.0}},
+    LightKind.DISC: {"size": {"default": 0.5, "doc": "The radius."}},
+    LightKind.TUBE: {
+        "size": {"default": 0.05, "doc": "The radius."},
+        "direction": {"default": (1.0, 0.0, 0.0), "doc": "The direction of its length, in the world."},
+    },
+}
+"""What fields of a kind declare otherwise than `Light`. Below a sun of 3 W/m² a white floor has a luminance of about 1;
+a tube is like a fluorescent lamp of 1 m."""
 
 
 def _declare_kinds() -> tuple[ItemKind, ...]:
@@ -128,8 +185,7 @@ def _declare_kinds() -> tuple[ItemKind, ...]:
     }
 
     def declare(kind: LightKind, name: str) -> Value:
-        defaults = _DEFAULTS.get(kind, {})
-        return replace(declared[name], default=defaults[name]) if name in defaults else declared[name]
+        return replace(declared[name], **_DIFFERENCES.get(kind, {}).get(name, {}))
 
     return tuple(
         ItemKind(kind.value, tuple(declare(kind, name) for name in _ORDER if name in (*_SHARED, *names)), _DOCS[kind])
@@ -147,7 +203,7 @@ def name_old_lights(setting: object) -> Mapping[str, Any] | None:
     ):
         return None
     starts = range(0, len(numbers), _OLD_NUMBERS)
-    kinds = tuple(LightKind)
+    kinds = tuple(LightKind)[:4]
     if any(numbers[at] not in range(len(kinds)) for at in starts):
         return None
     return {

@@ -25,6 +25,7 @@ from .._declare import (
     name_lights,
     ramp_at,
 )
+from ._area_lights import AREA_KINDS, COSINE_CELLS, pack_area_light, read_cosines
 from ._blackbody import blackbody_rec709
 from ._coverage import COVERAGE_REACH
 
@@ -83,9 +84,10 @@ _Place = tuple[float, float, float]
 class DeferredLighting(Filter):
     """Relight a render from its albedo, normals and positions, with up to 1024 lights of your own.
 
-    Points, spots, suns and spheres; a light with negative intensity subtracts light. Diffuse reflection is Lambert's;
+    Points, spots, suns, spheres, rectangles, discs and tubes; a light with negative intensity subtracts light. Diffuse reflection is Lambert's;
     specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe
-    (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis 2013). Light falls off
+    (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis 2013), for rectangles, discs
+    and tubes by linearly transformed cosines (Heitz et al. 2016), which are those of GGX. Light falls off
     with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights, those with a
     reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights at once.
     Nothing casts shadows. `out` is diffuse and specular light and emission.
@@ -166,24 +168,32 @@ class DeferredLighting(Filter):
             overlap=COVERAGE_REACH,
             result=Vector(width=3),
         )
-        lights = self._list_lights()
+        shining = self._list_lights()
+        lights = [light for light in shining if light.kind not in AREA_KINDS]
+        areas = [light for light in shining if light.kind in AREA_KINDS]
         texels = max(1, -(-len(lights) // (4 * _BITS)))
         tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
         words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
-        table = self._pack_lights(draw, lights)
-        ambient_gain = 0.0 if any(light.solo for light in lights) else self.ambient_intensity
+        table = self._tabulate(draw, lights, [_pack_light(light, self.intensity) for light in lights])
+        ambient_gain = 0.0 if any(light.solo for light in shining) else self.ambient_intensity
         ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
 
+        ways = {"normal": normal, "place": place, "near": near, "coverage": coverage}
+        material = {
+            "mapped": draw.is_linked(self.material),
+            "metal": self.metal,
+            "roughness": self.roughness,
+            "specular": self.specular,
+        }
+        view = {"rays": rays, "seen": camera is not None, "eye": camera.eye if camera else (0.0,) * 3}
+
         def lit(scattered: float, mirrored: float) -> Drawn:
-            return draw(
+            light = draw(
                 "deferred_lighting_lit",
                 self.albedo,
                 self.material,
                 self.occlusion,
-                normal=normal,
-                place=place,
-                near=near,
-                coverage=coverage,
+                **ways,
                 lights=table,
                 words=words,
                 overlap=_HERE,
@@ -191,14 +201,25 @@ class DeferredLighting(Filter):
                 texels=texels,
                 tiled=tiled,
                 share=(scattered, mirrored),
-                mapped=draw.is_linked(self.material),
-                metal=self.metal,
-                roughness=self.roughness,
-                specular=self.specular,
+                **material,
                 ambient=ambient,
-                rays=rays,
-                seen=camera is not None,
-                eye=camera.eye if camera else (0.0,) * 3,
+                **view,
+            )
+            if not areas:
+                return light
+            return draw(
+                "deferred_lighting_areas",
+                self.albedo,
+                self.material,
+                **ways,
+                lit=light,
+                areas=self._tabulate(draw, areas, [pack_area_light(light, self.intensity) for light in areas]),
+                cosines=draw.table(read_cosines(), COSINE_CELLS),
+                overlap=_HERE | {"lit": 0},
+                count=len(areas),
+                share=(scattered, mirrored),
+                **material,
+                **view,
             )
 
         return {
@@ -207,9 +228,13 @@ class DeferredLighting(Filter):
             "specular_light": lit(0.0, 1.0),
         }
 
-    def _pack_lights(self, draw: Draw, lights: list[Light]) -> Drawn:
-        """What the GLSL reads of all lights. Temperatures become colors there, as only GLSL knows the working space."""
-        table = draw.table(tuple(part for light in lights for part in _pack_light(light, self.intensity)), 3)
+    def _tabulate(self, draw: Draw, lights: list[Light], rows: list[tuple[float, ...]]) -> Drawn:
+        """Rows of numbers for GLSL, one for each light; the second texel of a row is a color.
+
+        Temperatures become colors in GLSL, as only that knows the working space.
+        """
+        width = len(rows[0]) // 4 if rows else 3
+        table = draw.table(tuple(part for row in rows for part in row), width)
         if not any(light.temperature for light in lights):
             return table
         colors = [blackbody_rec709(light.temperature) if light.temperature else (1.0,) * 3 for light in lights]
@@ -218,7 +243,7 @@ class DeferredLighting(Filter):
             table=table,
             tints=draw.table(tuple(part for color in colors for part in (*color, 1.0)), 1),
             heated=draw.table(tuple(part for light in lights for part in (float(light.temperature > 0.0),) * 4), 1),
-            size=(3, len(lights)),
+            size=(width, len(lights)),
             result=Vector(width=4),
         )
 
@@ -281,7 +306,7 @@ def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
     """
     kind = light.kind
     red, green, blue = (gain * light.gain * part for part in light.color)
-    x, y, z = _unit(light.direction)
+    x, y, z = light.aim
     window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
     size = max(light.size, 1e-4) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
     cone = (0.0, 0.0, 0.0, 1.0)
@@ -302,15 +327,8 @@ def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float,
         angle = light.outer
         along = radius / (2.0 * math.cos(angle)) if angle < math.pi / 4 else radius * math.cos(angle)
         radius = along if angle < math.pi / 4 else radius * math.sin(angle)
-    x, y, z = (place + along * part for place, part in zip(light.place, _unit(light.direction), strict=True))
+    x, y, z = (place + along * part for place, part in zip(light.place, light.aim, strict=True))
     return (x, y, z, 1.0001 * radius + 1e-6 * max(map(abs, (*light.place, x, y, z))))
-
-
-def _unit(direction: _Place) -> _Place:
-    """Down, where there is none."""
-    size = math.hypot(*direction)
-    x, y, z = direction
-    return (x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, -1.0)
 
 
 def _all(count: int, texels: int) -> tuple[float, ...]:

@@ -1,5 +1,6 @@
 #include "geometry/normal_from_depth.glsl"
 #include "lib/alpha.glsl"
+#include "lib/area_light.glsl"
 #include "lib/brdf.glsl"
 #include "lib/camera.glsl"
 #include "lib/coverage.glsl"
@@ -124,28 +125,55 @@ void deferred_lighting_sum(
     }
 }
 
-// One surface of a pixel, shaded alone. `at` is the pixel that stands for it.
-vec4 deferred_lighting_shade(
-    ivec2 at, vec3 place, vec3 normal, vec4 color, int model, int texels, bool tiled, vec2 share, bool mapped, float metal,
-    float roughness, float specular, vec3 ambient, bool seen, vec3 eye
+// One surface of a pixel: the pixel that stands for it, its place and normal, and its part of the color.
+struct LitPart {
+    ivec2 at;
+    vec3 place, normal;
+    vec4 color;
+};
+
+// What reflects light at a surface: its colors, and how rough it is.
+struct LitMaterial {
+    vec4 color;
+    vec3 scatter;
+    LitSurface surface;
+};
+
+// Finds surface `k` of a pixel, the front one first. False where nothing is lit.
+bool deferred_lighting_part(int k, bool mixed, Coverage shares, vec4 color, const vec4 rays[3], bool seen, out LitPart part) {
+    part.at = k == 0 ? shares.front : shares.back;
+    vec4 place = place_at(part.at);
+    part.color = color;
+    part.normal = unit_normal(normal_at(part.at));
+    for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
+        part.color = coverage_part(
+            color, finite(albedo_at(shares.front)), finite(albedo_at(shares.back)), shares.front_share
+        );
+        if (seen) place.xyz = coverage_place(rays, place.xyz, part.normal);
+        if (k == 0) part.normal = coverage_front(shares);
+        else part.color = color - part.color;
+    }
+    part.place = place.xyz;
+    return place.w != 0.0 && part.normal != vec3(0.0) && part.color != vec4(0.0);
+}
+
+LitMaterial deferred_lighting_material(
+    LitPart part, bool mapped, float metal, float roughness, float specular, bool seen, vec3 eye
 ) {
-    color = straight(color);
-    vec2 material = clamp(mapped ? finite(material_at(at)) : vec2(metal, roughness), 0.0, 1.0);
+    LitMaterial made;
+    made.color = straight(part.color);
+    vec2 material = clamp(mapped ? finite(material_at(part.at)) : vec2(metal, roughness), 0.0, 1.0);
 
     LitSurface surface;
-    surface.place = place, surface.normal = normal;
-    surface.view = seen ? normalize(eye - place) : normal;
-    surface.mirror = reflect(-surface.view, normal);
-    surface.nv = clamp(dot(normal, surface.view), 1e-4, 1.0);
+    surface.place = part.place, surface.normal = part.normal;
+    surface.view = seen ? normalize(eye - part.place) : part.normal;
+    surface.mirror = reflect(-surface.view, part.normal);
+    surface.nv = clamp(dot(part.normal, surface.view), 1e-4, 1.0);
     surface.alpha = max(material.y * material.y, DEFERRED_LIGHTING_SMOOTH);
-    surface.f0 = mix(vec3(0.08 * specular), color.rgb, material.x);
-    vec3 scatter = color.rgb * (1.0 - material.x);
-
-    vec3 sky = ambient * clamp(finite(occlusion_at(at)), 0.0, 1.0);
-    vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
-    deferred_lighting_sum(model, texels, tiled ? at / DEFERRED_LIGHTING_TILE : ivec2(0), surface, fallen, mirrored);
-    vec3 lit = share.x * scatter * fallen / BRDF_PI + share.y * mirrored;
-    return premultiplied(vec4(lit, color.a));
+    surface.f0 = mix(vec3(0.08 * specular), made.color.rgb, material.x);
+    made.scatter = made.color.rgb * (1.0 - material.x);
+    made.surface = surface;
+    return made;
 }
 
 // `share` scales diffuse (x) and specular light (y).
@@ -157,24 +185,41 @@ vec4 deferred_lighting_lit(
     Coverage shares = coverage_of(coverage_at(pixel));
     bool mixed = coverage_is_mixed(shares);
     for (int k = 0; k < (mixed ? 2 : 1); ++k) {
-        ivec2 at = k == 0 ? shares.front : shares.back;
-        vec4 place = place_at(at), part = color;
-        vec3 normal = unit_normal(normal_at(at));
-        for (int rounds = mixed ? 1 : 0; rounds > 0; --rounds) {
-            part = coverage_part(
-                color, finite(albedo_at(shares.front)), finite(albedo_at(shares.back)), shares.front_share
-            );
-            if (seen) place.xyz = coverage_place(rays, place.xyz, normal);
-            if (k == 0) normal = coverage_front(shares);
-            else part = color - part;
-        }
-        if (place.w == 0.0 || normal == vec3(0.0) || part == vec4(0.0)) continue;
-        sum += deferred_lighting_shade(
-            at, place.xyz, normal, part, model, texels, tiled, share, mapped, metal, roughness, specular, ambient, seen,
-            eye
-        );
+        LitPart part;
+        if (!deferred_lighting_part(k, mixed, shares, color, rays, seen, part)) continue;
+        LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
+        LitSurface surface = material.surface;
+        vec3 sky = ambient * clamp(finite(occlusion_at(part.at)), 0.0, 1.0);
+        vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(surface.f0, surface.nv, surface.alpha);
+        ivec2 tile = tiled ? part.at / DEFERRED_LIGHTING_TILE : ivec2(0);
+        deferred_lighting_sum(model, texels, tile, surface, fallen, mirrored);
+        vec3 lit = share.x * material.scatter * fallen / BRDF_PI + share.y * mirrored;
+        sum += premultiplied(vec4(lit, material.color.a));
     }
     return finite(vec4(sum.rgb, color.a));
+}
+
+// Adds the light of rectangles, discs and tubes to what is lit already.
+vec4 deferred_lighting_areas(
+    int count, vec2 share, bool mapped, float metal, float roughness, float specular, const vec4 rays[3], bool seen,
+    vec3 eye
+) {
+    vec4 color = finite(albedo_at(pixel)), before = lit_at(pixel);
+    Coverage shares = coverage_of(coverage_at(pixel));
+    bool mixed = coverage_is_mixed(shares);
+    for (int k = 0; k < (mixed ? 2 : 1); ++k) {
+        LitPart part;
+        if (!deferred_lighting_part(k, mixed, shares, color, rays, seen, part)) continue;
+        LitMaterial material = deferred_lighting_material(part, mapped, metal, roughness, specular, seen, eye);
+        LitSurface surface = material.surface;
+        AreaSurface lobes = area_surface(surface.normal, surface.view, surface.nv, sqrt(surface.alpha));
+        vec3 fallen = vec3(0.0), mirrored = vec3(0.0);
+        for (int light = 0; light < count; ++light)
+            area_add(area_light(light, surface.place), lobes, surface.f0, fallen, mirrored);
+        vec3 lit = share.x * material.scatter * fallen + share.y * mirrored;
+        before.rgb += premultiplied(vec4(lit, material.color.a)).rgb;
+    }
+    return finite(before);
 }
 
 vec4 deferred_lighting(vec4 lit, vec4 emission) { return finite(vec4(lit.rgb + finite(emission).rgb, lit.a)); }

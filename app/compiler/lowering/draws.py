@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Mapping, Sequence
 from hashlib import blake2b
 from types import MappingProxyType
@@ -308,7 +309,8 @@ class Recorder:
         )
         shape = PictureShape((width, rows), 4, data=True)
         picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
-        return self._add_op(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
+        fingerprint = blake2b(array("d", filled).tobytes() + bytes(str(width), "ascii")).hexdigest()
+        return self._add_op(Read((shape,), self._owner, picture, fingerprint, half=False))
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
         return self._resources.describe_render(path, named)

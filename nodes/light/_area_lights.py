@@ -1,0 +1,37 @@
+"""Rectangles, discs and tubes of light: what shaders/lib/area_light.glsl reads of them."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from pathlib import Path
+from struct import unpack
+
+from .._declare import Light, LightKind
+
+AREA_KINDS = (LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE)
+"""The kinds in the order of their numbers in GLSL."""
+
+COSINE_CELLS = 64
+"""Roughnesses, and angles of the eye, in the table of matrices."""
+
+
+@cache
+def read_cosines() -> tuple[float, ...]:
+    """The table of linearly transformed cosines, 64 cells in a row. tests/data/fit_area_lights.py makes its file."""
+    halves = Path(__file__).with_name("area_lights.bin").read_bytes()
+    return unpack(f"<{len(halves) // 2}e", halves)
+
+
+def pack_area_light(light: Light, gain: float) -> tuple[float, ...]:
+    """A light as four texels: its place, its radiance and its two half axes, and a fourth number of each.
+
+    That of the place is 1 / reach^2, that of the radiance the number of the kind; those of the axes are their lengths.
+    The radiance is the intensity divided by the area that the light shows to what is straight in front of it.
+    """
+    (along, width), (across, height) = ((axis, math.hypot(*axis)) for axis in light.half_axes)
+    window = 1.0 / light.reach**2 if light.reach > 0.0 else 0.0
+    area = (math.pi if light.kind is LightKind.DISC else 4.0) * width * height
+    red, green, blue = (gain * light.gain * part / area for part in light.color)
+    kind = float(AREA_KINDS.index(light.kind))
+    return (*light.place, window, red, green, blue, kind, *along, width, *across, height)
