@@ -84,13 +84,13 @@ _Place = tuple[float, float, float]
 class DeferredLighting(Filter):
     """Relight a render from its albedo, normals and positions, with up to 1024 lights of your own.
 
-    Points, spots, suns, spheres, rectangles, discs and tubes; a light with negative intensity subtracts light. Diffuse reflection is Lambert's;
-    specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe
-    (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis 2013), for rectangles, discs
-    and tubes by linearly transformed cosines (Heitz et al. 2016), which are those of GGX. Light falls off
-    with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights, those with a
-    reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights at once.
-    Nothing casts shadows. `out` is diffuse and specular light and emission.
+    Points, spots, suns, spheres, rectangles, discs and tubes; a light with negative intensity subtracts light. Diffuse
+    reflection is Lambert's; specular reflection is that of GGX microfacets (Walter et al. 2007, Heitz 2014, Schlick
+    1994) or Phong's lobe (Lafortune and Willems 1994), for spheres by the point nearest to the mirrored ray (Karis
+    2013). Rectangles, discs and tubes light by linearly transformed cosines (Heitz et al. 2016), always those of GGX.
+    Light falls off with the square of the distance, times (1 - (d / reach)^4)^2 if a reach is given: with many lights,
+    those with a reach are fast. A light can have a color temperature instead of a color. A swarm adds many small lights
+    at once. Nothing casts shadows. `out` is diffuse and specular light and emission.
     """
 
     aliases = (

@@ -1,9 +1,9 @@
-"""Fits linearly transformed cosines to GGX, and writes nodes/light/area_lights.bin: python tests/data/fit_area_lights.py
+"""Fits linearly transformed cosines to GGX, for nodes/light/area_lights.bin: python tests/data/fit_area_lights.py
 
 By Heitz, Dupuy, Hill and Neubelt 2016, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines". A cell of
-the table has a roughness (across) and an angle of the eye (down, by the root of 1 - cosine). Its matrix turns GGX into a
-cosine: the four numbers of its inverse that are neither 0 nor 1 are in the upper half. In the lower half are the part of
-white light that GGX reflects at a Fresnel reflectance of 1, divided by the part of the lobe above the horizon, and
+the table has a roughness (across) and an angle of the eye (down, by the root of 1 - cosine). Its matrix turns GGX into
+a cosine: the four numbers of its inverse that are neither 0 nor 1 are in the upper half. In the lower half are the part
+of white light that GGX reflects at a Fresnel reflectance of 1, divided by the part of the lobe above the horizon, and
 zeros. All numbers are halves.
 """
 

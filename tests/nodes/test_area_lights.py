@@ -43,9 +43,13 @@ def emitter(light: Light, count: int = 96) -> tuple[Array, Array, Array]:
     deep = np.cross(along, across) / np.linalg.norm(along)
     rim = np.cos(turn) * across + np.sin(turn) * deep
     axis, parts = along / np.linalg.norm(along), []
-    parts.append((middle + (2 * u - 1) * along + rim, rim / radius, 2 * np.pi * radius * light.length / count**2 * ones))
+    parts.append(
+        (middle + (2 * u - 1) * along + rim, rim / radius, 2 * np.pi * radius * light.length / count**2 * ones)
+    )
     for side in (1.0, -1.0):
-        parts.append((middle + side * along + np.sqrt(u) * rim, side * axis * ones, np.pi * radius**2 / count**2 * ones))
+        parts.append(
+            (middle + side * along + np.sqrt(u) * rim, side * axis * ones, np.pi * radius**2 / count**2 * ones)
+        )
     places, ways, areas = (np.concatenate(arrays) for arrays in zip(*parts, strict=True))
     return places, ways, areas
 
