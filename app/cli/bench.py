@@ -19,6 +19,7 @@ from .options import (
     GraphFile,
     Inputs,
     Node,
+    OneFrame,
     PassPrecision,
     Scale,
     Sets,
@@ -46,9 +47,7 @@ def bench(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[
-        int | None, typer.Option(help="Measure this frame; by default the first frame of the graph.")
-    ] = None,
+    frame: OneFrame = None,
     frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure the sum over these frames.")] = None,
     repeats: Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="Number of measured runs.")] = 15,
     warm_up: Annotated[

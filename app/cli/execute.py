@@ -16,6 +16,15 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ..errors import UsageError
 from . import parsing
+from .execute_batch import check_first_entry, execute_batch
+from .job_setup import (
+    choose_frames,
+    describe_costs,
+    make_output_settings,
+    make_request,
+    open_job_renderer,
+    print_report_notes,
+)
 from .options import open_graph, report_problems, resolve_inputs
 from .outcome import print_json, print_note, write_count
 from .progress import progress_reporter
@@ -24,8 +33,8 @@ from .watchdog import can_fork, needs_watchdog, run_forked
 if TYPE_CHECKING:
     from ..graph import Graph, Port
     from ..inputs.prefetch import Prefetcher
-    from ..renderer.jobs.job import JobReport
     from ..renderer.jobs.render_job import RenderJob
+    from ..renderer.jobs.reports import JobReport
 
 
 def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> int:
@@ -33,18 +42,27 @@ def execute(job: RenderJob, progress: Literal["bar", "json"], as_json: bool) -> 
     from msgspec.structs import replace
 
     started = time.perf_counter()
-    graph = open_graph(Path(job.graph), job.sets, job.document, sandbox=job.sandbox)
-    report_problems(Path(job.graph), graph)
+    graph = open_job_graph(job)
+    if job.entries:
+        check_first_entry(job, graph)
+    else:
+        report_problems(Path(job.graph), graph)
     if job.codec and not job.videos:
         raise UsageError(f"--codec {job.codec}: a codec needs a video: write -o NAME.mp4, .mov, .mkv or .webm")
-    if job.processes > 1 and job.videos:
+    if job.processes > 1 and job.videos and not job.entries:
         print_note(f"one process renders all frames, since all are in {job.videos[0]}")
         job = replace(job, processes=1)
+    execute_opened = execute_batch if job.entries else _execute_opened
     if job.processes == 1 and needs_watchdog(graph) and can_fork():
         return run_forked(
-            lambda: _execute_opened(job, graph, progress, as_json, started), job.timeout, job.memory, as_json
+            lambda: execute_opened(job, graph, progress, as_json, started), job.timeout, job.memory, as_json
         )
-    return _execute_opened(job, graph, progress, as_json, started)
+    return execute_opened(job, graph, progress, as_json, started)
+
+
+def open_job_graph(job: RenderJob) -> Graph:
+    """The graph of a job with the values of `--set`. Raises HalationError."""
+    return open_graph(Path(job.graph), job.sets, job.document, sandbox=job.sandbox)
 
 
 def _execute_opened(
@@ -59,13 +77,13 @@ def _execute_opened(
     targets = parsing.find_targets(graph, job.node)
     prefetcher = None if is_watched or job.processes > 1 else _begin_loading(job, graph, targets)
     if not job.frames and (not is_watched or parsing.have_frame_number(job.files)):
-        job = replace(job, frames=_choose_frames(job, graph))
+        job = replace(job, frames=choose_frames(job, graph, job.inputs))
     if helper_jobs := _split_among_helpers(job, graph, targets, is_watched):
-        from .helpers import run_helpers
+        from .helpers import join_reports, run_helpers
 
         total = max(1, len(job.frames))
         with progress_reporter(progress, total) as reporter:
-            report = run_helpers(helper_jobs, is_watched, job.timeout, reporter, total)
+            report = join_reports(run_helpers(helper_jobs, is_watched, job.timeout, reporter, total))
     else:
         report = _render_here(job, graph, targets, prefetcher, progress, started)
     _print_report(report, time.perf_counter() - started, as_json)
@@ -90,16 +108,6 @@ def _begin_loading(job: RenderJob, graph: Graph, targets: Mapping[str, Port]) ->
     from ..inputs.prefetch import Prefetcher
 
     return None if job.resume or targets or job.memory else Prefetcher(graph, job.inputs, sandbox=job.sandbox)
-
-
-def _choose_frames(job: RenderJob, graph: Graph) -> tuple[int, ...]:
-    """The frames of a job that names none: all of the graph if its files can hold them, else the first."""
-    from ..graph.frames import list_range
-    from ..inputs.lazy_provider import LazyResourceProvider
-
-    provider = LazyResourceProvider(job.sandbox)
-    first, last = provider.find_frames(graph, job.inputs)
-    return list_range(first, last) if parsing.have_frame_number(job.files) else (first,)
 
 
 def _split_among_helpers(
@@ -142,35 +150,12 @@ def _render_here(
     started: float,
 ) -> dict[str, Any]:
     """Render in this process; the report, ready for JSON."""
-    from ..renderer import DEFAULT_BUDGET, Renderer, RenderRequest, open_device, open_pinned
-    from ..renderer.jobs.job import OutputSettings, run_job
+    from ..renderer.jobs.job import run_job
 
     loaded_at = time.perf_counter()
-    device = (
-        open_pinned(job.memory, sandbox=job.sandbox)
-        if job.deterministic
-        else open_device(job.form, job.memory, sandbox=job.sandbox)
-    )
-    # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
-    leads_up = len(job.frames) > 1 and graph.settings.preroll is not None
-    renderer = Renderer(
-        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
-    )
-    print_note(renderer.device.description)
+    renderer = open_job_renderer(job, graph, prefetcher)
     opened_at = time.perf_counter()
-    precision = "float" if job.deterministic else job.precision
-    request = RenderRequest(job.inputs, targets, job.size, job.scale, precision=precision)
-    output_settings = OutputSettings(
-        job.files,
-        job.view,
-        job.compression,
-        job.precision or "half",
-        job.display,
-        job.look,
-        job.colorspace,
-        job.codec,
-        job.dither,
-    )
+    request, output_settings = make_request(job, job.inputs, targets), make_output_settings(job, job.files)
     with progress_reporter(progress, len(job.frames)) as reporter:
         report = run_job(renderer, graph, request, output_settings, job.frames, resume=job.resume, progress=reporter)
     seconds = {"load": loaded_at - started, "open": opened_at - loaded_at, **report.seconds}
@@ -183,30 +168,14 @@ def _report_facts(report: JobReport, device: str, seconds: Mapping[str, float]) 
         "written": [str(path) for path in report.written],
         "frames": [item.frame for item in report.frames],
         "kept": [item.frame for item in report.frames if item.is_kept],
-        "device": device,
-        "passes": report.passes,
-        "programs": report.programs,
-        "peak_bytes": report.peak_bytes,
-        "repaired": dict(report.repaired),
-        "warnings": dict(report.warnings),
-        "views": dict(report.views),
-        "data": list(report.data_outputs),
+        **describe_costs(report, device),
         "seconds": {name: round(part, 4) for name, part in seconds.items()},
     }
 
 
 def _print_report(report: Mapping[str, Any], total: float, as_json: bool) -> None:
     """Print which files were written in `total` seconds: as JSON to standard output, or as text to standard error."""
-    for path, warning in report["warnings"].items():
-        print_note(f"{path}: {warning}")
-    for path, count in report["repaired"].items():
-        print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
-    for output in report["data"]:
-        print_note(f"output '{output}' is data: its numbers are written, and no view changes them")
-    for output, view in report["views"].items():
-        screen = " of video (BT.1886)" if view == "bt1886" else ""
-        reason = f"its pictures are made for a screen{screen} already (--view)"
-        print_note(f"output '{output}' is encoded without a view: {reason}")
+    print_report_notes(report)
     if as_json:
         print_json(report)
         return

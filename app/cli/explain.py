@@ -14,6 +14,7 @@ from .options import (
     Inputs,
     Memory,
     Node,
+    OneFrame,
     PassPrecision,
     Scale,
     Sets,
@@ -37,7 +38,7 @@ def explain(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int | None, typer.Option(help="Plan this frame; by default the first frame of the graph.")] = None,
+    frame: OneFrame = None,
     form: Annotated[
         str,
         typer.Option(

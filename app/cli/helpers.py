@@ -13,7 +13,7 @@ import os
 import subprocess
 import tempfile
 import threading
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -30,16 +30,23 @@ if TYPE_CHECKING:
 
 
 def run_helpers(
-    jobs: Sequence[RenderJob], watched: bool, timeout: float, progress: ProgressReporter, total: int
-) -> dict[str, Any]:
-    """Render each job in a process of its own, and join their reports; `total` is how many frames they have together.
+    jobs: Sequence[RenderJob],
+    watched: bool,
+    timeout: float,
+    progress: ProgressReporter,
+    total: int,
+    report_entry: Callable[[Mapping[str, Any]], None] | None = None,
+) -> list[dict[str, Any]]:
+    """Render each job in a process of its own; their reports. `total` is how many frames they have together.
+
+    `report_entry` takes the report of each file of jobs with many.
 
     If they are `watched`, a helper whose code takes longer than `timeout` seconds is killed; 0 means no limit. Raises
     HalationError with the message and exit code of the first helper that fails; the others are stopped.
     """
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        pool = _HelperPool(jobs, watched, timeout, progress, total, Path(folder))
-        return join_reports(pool.run())
+        pool = _HelperPool(jobs, watched, timeout, progress, total, Path(folder), report_entry)
+        return pool.run()
 
 
 def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
@@ -99,7 +106,9 @@ class _HelperPool:
         progress: ProgressReporter,
         total: int,
         folder: Path,
+        report_entry: Callable[[Mapping[str, Any]], None] | None,
     ) -> None:
+        self._report_entry = report_entry
         self._progress, self._total, self._lock = progress, total, threading.Lock()
         self._done, self._notes = 0, set[str]()
         self._reports: list[dict[str, Any]] = []
@@ -109,7 +118,7 @@ class _HelperPool:
             _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout, job.memory) if watched else None, environment)
             for number, job in enumerate(jobs)
         ]
-        from ..renderer.jobs.job import FrameReport  # this import is slow, so the helpers start first
+        from ..renderer.jobs.reports import FrameReport  # this import is slow, so the helpers start first
 
         self._frame_report = FrameReport
 
@@ -180,7 +189,11 @@ class _HelperPool:
         """One line that a helper writes: progress as JSON, or a note for the user, which is shown once."""
         with contextlib.suppress(ValueError, KeyError, TypeError):
             event = json.loads(line)
-            if "done" in event:
+            if "file" in event:
+                if self._report_entry is not None:
+                    del event["done"], event["files"]  # they count what the helper has done, not all
+                    self._report_entry(event)
+            elif "done" in event:
                 self._done += 1
                 written = tuple(Path(path) for path in event["written"])
                 report = self._frame_report(event["frame"], written, event["passes"], event["kept"])

@@ -63,14 +63,20 @@ def report_failure(fault: BaseException, as_json: bool) -> int:
         return BROKEN_PIPE
     if isinstance(fault, OSError) and fault.filename is None:
         _close_output()
-    kind, code, sentence = _describe(fault)
+    _, code, sentence = _describe(fault)
     if code == BUG and os.environ.get("HALATION_DEBUG"):
         raise fault
     with contextlib.suppress(OSError):
         print(f"halation: {sentence}", file=sys.stderr, flush=True)
     if as_json:
-        print_json({"error": {"kind": kind, "message": sentence, "exit_code": code}})
+        print_json({"error": describe_fault(fault)})
     return code
+
+
+def describe_fault(fault: BaseException) -> dict[str, Any]:
+    """An error for scripts: its class, its sentence and its exit code."""
+    kind, code, sentence = _describe(fault)
+    return {"kind": kind, "message": sentence, "exit_code": code}
 
 
 def _describe(fault: BaseException) -> tuple[str, int, str]:

@@ -5,28 +5,31 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, Literal
 
 from .outcome import print_note
 
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
-    from ..renderer.jobs.job import FrameReport
+    from ..renderer.jobs.reports import FrameReport
 
 _PATIENCE = 0.3
 """Seconds that work may take without a bar: a choice, so that short renderings do not flicker."""
 
 
 @contextmanager
-def progress_reporter(kind: Literal["bar", "json"], frames: int) -> Iterator[ProgressReporter]:
-    """Open what a job reports its progress to: a bar, or lines of JSON."""
+def progress_reporter(
+    kind: Literal["bar", "json"], count: int, unit: Literal["frames", "files"] = "frames"
+) -> Iterator[ProgressReporter]:
+    """Open what a job of so many frames or files reports its progress to: a bar, or lines of JSON."""
     if kind == "json":
         yield JsonLines()
         return
-    bar = ProgressBar(frames)
+    bar = ProgressBar(count, unit)
     try:
         yield bar
     finally:
@@ -60,16 +63,21 @@ class JsonLines:
             )
         )
 
+    def report_entry(self, facts: Mapping[str, Any], done_count: int, total: int) -> None:
+        """Print which of several files is finished or has failed."""
+        print_note(json.dumps({**facts, "done": done_count, "files": total}))
+
 
 class ProgressBar:
     """A progress bar on standard error, where that is a terminal and the work is long enough to watch.
 
-    It counts frames, or the passes of a single one.
+    It counts frames, the passes of a single one, or files.
     """
 
-    def __init__(self, frames: int) -> None:
+    def __init__(self, frames: int, unit: Literal["frames", "files"] = "frames") -> None:
         self._quiet = not sys.stderr.isatty()
         self._frames = frames
+        self._unit = "passes" if frames == 1 and unit == "frames" else unit
         self._progress: RichProgress | None = None
         self._started = time.perf_counter()
 
@@ -88,6 +96,10 @@ class ProgressBar:
         if total > 1:
             self._show(f"frame {report.frame}", frames_done, total)
 
+    def report_entry(self, facts: Mapping[str, Any], done_count: int, total: int) -> None:
+        """Show how many files are finished."""
+        self._show(PurePath(facts["file"]).name, done_count, total)
+
     def close(self) -> None:
         """Remove the bar."""
         if self._progress is not None:
@@ -100,9 +112,8 @@ class ProgressBar:
             from rich.console import Console
             from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-            unit = "passes" if self._frames == 1 else "frames"
-            counter = TextColumn("{task.completed}/{task.total} " + unit)
-            time_left = () if self._frames == 1 else (TimeRemainingColumn(), TextColumn("left"))
+            counter = TextColumn("{task.completed}/{task.total} " + self._unit)
+            time_left = () if self._unit == "passes" else (TimeRemainingColumn(), TextColumn("left"))
             columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), counter, *time_left)
             self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
             self._progress.start()

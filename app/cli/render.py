@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -28,15 +28,26 @@ from .options import (
 )
 from .watchdog import Timeout
 
+if TYPE_CHECKING:
+    from ..renderer.jobs.render_entry import RenderEntry
+
 
 def render(
     graph: GraphFile,
     output: Annotated[
-        list[str],
+        list[str] | None,
         typer.Option(
             "-o", "--output", metavar="[NAME=]FILE", help="The file to write; an .exr holds all outputs as layers."
         ),
-    ],
+    ] = None,
+    each: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--each",
+            metavar="FILE|PATTERN|@LIST|-",
+            help="Render once for each of these files, which {} and {stem} in -i, --set and -o stand for.",
+        ),
+    ] = None,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",
@@ -103,18 +114,35 @@ def render(
     """Render a graph to files: one frame, or many.
 
     A file name with a place for the frame number (shot.####.png, shot.%04d.png) renders all frames of the graph, unless
-    --frame or --frames chooses some.
+    --frame or --frames chooses some. --each 'photos/*.jpg' -o 'graded/{stem}.png' renders many files.
     """
     form_of_passes = parsing.parse_form(form)
+    if not output and not each:
+        raise UsageError("missing option '-o' / '--output'; see halation render --help")
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     from ..renderer.jobs.render_job import RenderJob
 
+    files, settings, destinations = (
+        parsing.parse_inputs(inputs),
+        parsing.parse_sets(sets),
+        parsing.parse_destinations(output or ()),
+    )
+    entries: tuple[RenderEntry, ...] = ()
+    if each:
+        from .each import expand_entries, names_file
+
+        if str(graph) == "-" and "-" in each:
+            raise UsageError("GRAPH and --each cannot both be read from standard input: name a file for one of them")
+        entries = expand_entries(each, files, settings, destinations, read_standard_input, sandbox)
+        settings = {name: text for name, text in settings.items() if not names_file(text)}
+        files, destinations = {}, ()
     job = RenderJob(
         graph=str(graph),
         document=read_standard_input() if str(graph) == "-" else "",
-        inputs=parsing.parse_inputs(inputs),
-        sets=parsing.parse_sets(sets),
+        inputs=files,
+        sets=settings,
+        entries=entries,
         node=node,
         size=parsing.parse_size(size),
         scale=parsing.parse_scale(scale),
@@ -123,7 +151,7 @@ def render(
         form=form_of_passes,
         memory=parsing.parse_memory(memory),
         deterministic=deterministic,
-        destinations=tuple((name, str(path)) for name, path in parsing.parse_destinations(output)),
+        destinations=tuple((name, str(path)) for name, path in destinations),
         view=view,
         display=display,
         look=look,

@@ -34,7 +34,7 @@ from .watchdog import Timeout, run_session
 if TYPE_CHECKING:
     from ..graph import Graph
     from ..renderer import Renderer
-    from ..renderer.jobs.job import JobProgress, JobReport
+    from ..renderer.jobs.reports import JobProgress, JobReport
     from ..watch.rerendering import ContinuousRenderer, WatchReport
 
 _LISTED = 3

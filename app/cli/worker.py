@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
-from .execute import execute
+from itertools import count
+
+from .execute import execute, open_job_graph
+from .execute_batch import render_entries
 from .options import AsJson, read_standard_input
+from .outcome import print_json
+from .progress import JsonLines
 from .signals import end_with_parent
 from .watchdog import end_with_watchdog
 
@@ -20,4 +25,8 @@ def worker(as_json: AsJson = True) -> int:
     job = RenderJob.from_json(read_standard_input())
     if job.sandbox.root:
         job = replace(job, sandbox=read_process_sandbox().narrow(job.sandbox.root))
-    return execute(job, "json", as_json)
+    if not job.entries:
+        return execute(job, "json", as_json)
+    lines, total, counter = JsonLines(), len(job.entries), count(1)
+    print_json(render_entries(job, open_job_graph(job), lambda facts: lines.report_entry(facts, next(counter), total)))
+    return 0

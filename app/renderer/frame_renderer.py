@@ -94,12 +94,12 @@ class FrameRenderer:
         return at + 2 - begin, frame + 1 - begin
 
     def start_runs(
-        self, frame: int, outputs_lease: TextureLease, timings: PassTimings | None = None, following: int | None = None
+        self, frame: int, outputs_lease: TextureLease, timings: PassTimings | None = None, following: Plan | None = None
     ) -> Iterator[Run]:
         """The runs that make a frame, one after the other; the last one is the frame itself.
 
-        At the end `outputs_lease` holds its outputs. Results that the frame `following` reads too stay on the device
-        until that frame is rendered.
+        At the end `outputs_lease` holds its outputs. Results that the plan `following` has too stay on the device until
+        another frame is rendered here or this renderer is closed.
         """
         runner, begin = self.renderer.runner, self.find_history_start(frame)
         for at in self.find_lead_frames(frame):
@@ -111,7 +111,7 @@ class FrameRenderer:
         plan, lease = self.plan_frame(frame), runner.create_lease()
         # If the outputs are on the device, what the frame stored may not be: a later frame renders it again if needed.
         remembered = () if self._is_on_device(plan) else plan.remembered
-        carried = () if following is None else _find_carried_surfaces(plan, self.plan_frame(following))
+        carried = () if following is None else _find_carried_surfaces(plan, following)
         yield runner.start_run(plan, outputs_lease, (*plan.outputs.values(), *remembered, *carried), timings=timings)
         for number in (*plan.remembered, *carried):
             if plan.surfaces[number].key in runner.textures:

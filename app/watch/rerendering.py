@@ -18,7 +18,7 @@ from typing import Any, cast
 from ..compiler.library import reload_library
 from ..errors import GraphError, HalationError, InputError
 from ..graph import Graph
-from ..renderer.jobs.job import FrameReport, JobProgress, JobReport
+from ..renderer.jobs.reports import FrameReport, JobProgress, JobReport
 from ..resources.input_files import read_bytes
 from ..resources.sandbox import Sandbox
 from .code_files import code_files

@@ -22,9 +22,11 @@ RUN = [line for line in LINES if shlex.split(line)[1] not in ELSEWHERE]
 
 @pytest.fixture(scope="module")
 def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A repository with the graph of the README, twice, and a frame."""
+    """A repository with the graph of the README, twice, and two frames."""
     folder = tmp_path_factory.mktemp("readme")
     shutil.copy(presets.sample(), folder / "shot.exr")
+    (folder / "shots").mkdir()
+    shutil.copy(presets.sample(), folder / "shots" / "first.exr")
     (folder / "graph.json").write_text(GRAPH, encoding="utf-8")
     (folder / "look.json").write_text(GRAPH, encoding="utf-8")
     who = ("-c", "user.name=A", "-c", "user.email=a@example.org")

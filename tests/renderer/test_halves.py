@@ -94,7 +94,7 @@ def test_files_are_the_same_to_the_byte(engine, tmp_path, monkeypatch, code):
     for folder in folders:
         folder.mkdir()
         run_job(engine, through(code), given, OutputSettings((("", folder / "out.exr"),), compression="none"))
-        monkeypatch.setattr("halation.renderer.jobs.job.select_half_outputs", lambda *_: frozenset())
+        monkeypatch.setattr("halation.renderer.jobs.item_session.select_half_outputs", lambda *_: frozenset())
     one, other = (_pixels(folder / "out.exr") for folder in folders)
     assert one.dtype == np.float16 and one.tobytes() == other.tobytes()
 

@@ -7,6 +7,7 @@ from typing import Any, get_type_hints
 
 import pytest
 from halation.errors import UsageError
+from halation.renderer.jobs.render_entry import RenderEntry
 from halation.renderer.jobs.render_job import RenderJob
 from halation.resources.sandbox import UNRESTRICTED, Sandbox
 from hypothesis import given
@@ -14,6 +15,13 @@ from hypothesis import strategies as st
 from msgspec.structs import fields
 
 TEXT = st.text(max_size=12)
+ENTRIES = st.builds(
+    RenderEntry,
+    TEXT,
+    st.dictionaries(TEXT, TEXT, max_size=2),
+    st.dictionaries(TEXT, TEXT, max_size=2),
+    st.lists(st.tuples(TEXT, TEXT), max_size=2).map(tuple),
+)
 VALUES: dict[str, st.SearchStrategy[Any]] = {
     "sandbox": st.builds(Sandbox, TEXT),
     "inputs": st.dictionaries(TEXT, TEXT, max_size=3),
@@ -21,6 +29,7 @@ VALUES: dict[str, st.SearchStrategy[Any]] = {
     "size": st.none() | st.tuples(st.integers(1, 9999), st.integers(1, 9999)),
     "frames": st.lists(st.integers(-99, 9999), max_size=5).map(tuple),
     "destinations": st.lists(st.tuples(TEXT, TEXT), max_size=3).map(tuple),
+    "entries": st.lists(ENTRIES, max_size=2).map(tuple),
     "precision": st.sampled_from([None, "half", "float"]),
     "form": st.sampled_from([None, "fragment", "compute"]),
     "dither": st.sampled_from(["blue", "none"]),

@@ -283,7 +283,7 @@ def through(reel: FrameRenderer, frames: int) -> list[dict[str, np.ndarray]]:
     made: list[dict[str, np.ndarray]] = []
     for frame in range(1, frames + 1):
         kept = reel.renderer.runner.create_lease()
-        for run in reel.start_runs(frame, kept, following=frame + 1):
+        for run in reel.start_runs(frame, kept, following=reel.plan_frame(frame + 1)):
             with run:
                 list(run)
         made.append(reel.renderer.runner.download(reel.plan_frame(frame)))

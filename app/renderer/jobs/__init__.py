@@ -1,6 +1,6 @@
 """Renders frames of a graph into files.
 
-A job is a pipeline of three stages that work on different frames at the same time. While the device renders a frame,
+A job is a `pipeline` of three stages that work on different frames at the same time. While the device renders a frame,
 worker threads decode the pictures of the next one (`Runner.start_decoding`) and another thread encodes and writes the
 frame before (`write_queue`). Each stage holds a few pictures at most, so memory does not grow with the frame count.
 
@@ -16,6 +16,7 @@ and `provenance` can render the picture again. A key in the header tells whether
 Files appear under their names only when they are complete. A video is one file for all frames (`video_writers`), and a
 picture that no memory can hold is written by rows while it is rendered (`scanline_writers`).
 
-`job` runs the pipeline. `render_job` is a job as a value, which can be sent to another process, and `sweep` renders one
-graph with many values onto one sheet.
+`job` starts the pipeline, for one graph or for many items; `item_session` is one item on its way through.
+`render_job` is a job as a value, which can be sent to another process, and `sweep` renders one graph with many values
+onto one sheet.
 """

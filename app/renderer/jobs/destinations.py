@@ -14,7 +14,7 @@ from ... import media
 from ...color.encoding import Encoding
 from ...color.management import get_color_manager
 from ...compiler import Plan, Precision
-from ...errors import UsageError
+from ...errors import OutputError, UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
 from ...inputs.default_view import PictureEncodings, choose_default_view
@@ -81,6 +81,18 @@ def plan_destinations(
     for file in files:
         check_numbered(str(file.path), frames)
     return {frame: tuple(replace(file, path=_name_at_frame(file.path, frame)) for file in files) for frame in frames}
+
+
+def create_folders(files_by_frame: Mapping[int, Sequence[Destination]], sandbox: Sandbox) -> None:
+    """Create the folders of files that are not there. Raises OutputError."""
+    for folder in {file.path.parent for files in files_by_frame.values() for file in files}:
+        if reason := sandbox.fault(folder):
+            raise OutputError(f"{folder}: {reason}")
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as fault:
+            sentence = f"the folder cannot be created ({fault.strerror}); choose another with -o"
+            raise OutputError(f"{folder}: {sentence}") from None
 
 
 def _name_at_frame(path: Path, frame: int) -> Path:

@@ -19,6 +19,7 @@ from ...graph.frames import is_video
 from ...resources.render_choices import DEFAULT_TIMEOUT, Dither
 from ...resources.sandbox import Sandbox
 from .picture_settings import PictureSettings
+from .render_entry import RenderEntry
 
 
 class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
@@ -42,6 +43,8 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     """Bytes that a frame may take; 0 for as many as there are."""
     deterministic: bool = False
     destinations: tuple[tuple[str, str], ...] = ()
+    entries: tuple[RenderEntry, ...] = ()
+    """Many files, each with inputs, values and destinations of its own instead of those of the job."""
     codec: str = ""
     dither: Dither = "blue"
     resume: bool = False
@@ -57,7 +60,8 @@ class RenderJob(PictureSettings, frozen=True, kw_only=True, omit_defaults=True, 
     @property
     def videos(self) -> tuple[Path, ...]:
         """The files that hold all frames."""
-        return tuple(path for _, path in self.files if is_video(str(path)))
+        destinations = (*self.destinations, *(pair for entry in self.entries for pair in entry.destinations))
+        return tuple(Path(path) for _, path in destinations if is_video(path))
 
     @staticmethod
     def from_json(text: str) -> RenderJob:

@@ -1,4 +1,4 @@
-"""Writes the results of frames on another thread, while the next frames are rendered."""
+"""Writes the results of frames on other threads, while the next frames are rendered."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from ...resources.interrupts import delay_interrupts
 from ..execution.array_pool import ArrayPool
 from ..execution.decoding import Array
 
-MAX_WAITING = 2
-"""Frames whose results may wait to be written: one is being written and one is next, which evens out frames that take
-longer. A longer queue only takes memory: if writing is the slower stage on average, any queue fills up."""
+MAX_WAITING = 1
+"""Frames whose results may wait besides those that are being written, which evens out frames that take longer. A
+longer queue only takes memory: if writing is the slower stage on average, any queue fills up."""
 
 MAX_WAITING_BYTES = 2**28
 """Bytes that waiting frames may take together; one frame may be larger. As many as pictures that are decoded ahead."""
@@ -22,15 +22,19 @@ WriteResult = TypeVar("WriteResult")
 
 
 class WriteQueue(Generic[WriteResult]):
-    """Writes frames in order on one other thread. `arrays` lends the memory of their pixels."""
+    """Writes frames on `writers` other threads; a single one writes them in order.
 
-    def __init__(self) -> None:
+    `arrays` lends the memory of their pixels.
+    """
+
+    def __init__(self, writers: int = 1) -> None:
         self.arrays = ArrayPool()
-        self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
+        self._most = writers + MAX_WAITING
+        self._writer = ThreadPoolExecutor(writers, thread_name_prefix="write")
         self._writes: deque[tuple[Future[WriteResult], int]] = deque()
 
     def submit(self, write: Callable[[Mapping[str, Array]], WriteResult], outputs: Mapping[str, Array]) -> None:
-        """Call `write` with these outputs on the other thread, then give their memory back to `arrays`."""
+        """Call `write` with these outputs on another thread, then give their memory back to `arrays`."""
 
         def work() -> WriteResult:
             try:
@@ -58,4 +62,4 @@ class WriteQueue(Generic[WriteResult]):
 
     def _is_full(self) -> bool:
         nbytes = sum(size for _, size in self._writes)
-        return len(self._writes) > MAX_WAITING or (len(self._writes) > 1 and nbytes > MAX_WAITING_BYTES)
+        return len(self._writes) > self._most or (len(self._writes) > 1 and nbytes > MAX_WAITING_BYTES)

@@ -1,0 +1,99 @@
+"""What a render job needs in the process that renders it: a renderer, a request and settings of its files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from . import parsing
+from .outcome import print_note
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ..graph import Graph, Port
+    from ..inputs.prefetch import Prefetcher
+    from ..renderer import Renderer, RenderRequest
+    from ..renderer.jobs.job import JobReport, OutputSettings
+    from ..renderer.jobs.render_job import RenderJob
+
+
+def open_job_renderer(job: RenderJob, graph: Graph, prefetcher: Prefetcher | None = None) -> Renderer:
+    """Open the device of a job and print its description. Raises DeviceError."""
+    from ..renderer import DEFAULT_BUDGET, Renderer, open_device, open_pinned
+
+    device = (
+        open_pinned(job.memory, sandbox=job.sandbox)
+        if job.deterministic
+        else open_device(job.form, job.memory, sandbox=job.sandbox)
+    )
+    # Without pre-roll a frame needs the one before it at most; with pre-roll it needs more, so results are kept.
+    leads_up = len(job.frames) != 1 and graph.settings.preroll is not None
+    renderer = Renderer(
+        device, budget=DEFAULT_BUDGET if leads_up and not job.memory else 0, prefetcher=prefetcher, sandbox=job.sandbox
+    )
+    print_note(renderer.device.description)
+    return renderer
+
+
+def make_request(job: RenderJob, inputs: Mapping[str, str], targets: Mapping[str, Port]) -> RenderRequest:
+    """What is rendered of the graph of a job."""
+    from ..renderer import RenderRequest
+
+    precision = "float" if job.deterministic else job.precision
+    return RenderRequest(inputs, targets, job.size, job.scale, precision=precision)
+
+
+def make_output_settings(job: RenderJob, files: tuple[tuple[str, Path], ...]) -> OutputSettings:
+    """How the files of a job are written."""
+    from ..renderer.jobs.job import OutputSettings
+
+    return OutputSettings(
+        files,
+        job.view,
+        job.compression,
+        job.precision or "half",
+        job.display,
+        job.look,
+        job.colorspace,
+        job.codec,
+        job.dither,
+    )
+
+
+def choose_frames(job: RenderJob, graph: Graph, inputs: Mapping[str, str]) -> tuple[int, ...]:
+    """The frames of a job that names none: all of the graph if its files can hold them, else the first."""
+    from ..graph.frames import list_range
+    from ..inputs.lazy_provider import LazyResourceProvider
+
+    provider = LazyResourceProvider(job.sandbox)
+    first, last = provider.find_frames(graph, inputs)
+    return list_range(first, last) if parsing.have_frame_number(job.files) else (first,)
+
+
+def describe_costs(report: JobReport, device: str) -> dict[str, Any]:
+    """What every report of a job has, ready for JSON."""
+    return {
+        "device": device,
+        "passes": report.passes,
+        "programs": report.programs,
+        "peak_bytes": report.peak_bytes,
+        "repaired": dict(report.repaired),
+        "warnings": dict(report.warnings),
+        "views": dict(report.views),
+        "data": list(report.data_outputs),
+    }
+
+
+def print_report_notes(report: Mapping[str, Any]) -> None:
+    """Print what a report says of pictures that were repaired, and of how they were encoded."""
+    for path, warning in report["warnings"].items():
+        print_note(f"{path}: {warning}")
+    for path, count in report["repaired"].items():
+        print_note(f"{path}: {count} pixels that are not finite were filled from their neighbors")
+    for output in report["data"]:
+        print_note(f"output '{output}' is data: its numbers are written, and no view changes them")
+    for output, view in report["views"].items():
+        screen = " of video (BT.1886)" if view == "bt1886" else ""
+        reason = f"its pictures are made for a screen{screen} already (--view)"
+        print_note(f"output '{output}' is encoded without a view: {reason}")
