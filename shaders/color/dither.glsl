@@ -1,4 +1,5 @@
 #include "lib/alpha.glsl"
+#include "lib/bayer.glsl"
 #include "lib/blue_noise.glsl"
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
@@ -8,20 +9,10 @@
 // offset is far from those before.
 ivec2 dither_start(int number) { return ivec2(number) * ivec2(48, 36); }
 
-// The 8 x 8 Bayer matrix, computed from bits: x ^ y and y alternate, and the lowest bits of the place count most.
-float dither_bayer(ivec2 cell) {
-    int rank = 0;
-    for (int bit = 0; bit < 3; ++bit) {
-        int x = (cell.x >> bit) & 1, y = (cell.y >> bit) & 1;
-        rank = 4 * rank + 2 * (x ^ y) + y;
-    }
-    return (float(rank) + 0.5) / 64.0;
-}
-
 float dither_threshold(int pattern, ivec2 cell, int channel) {
     if (pattern == PATTERN_WHITE) return hash3(ivec3(cell, channel), uvec3(0u)).x;
     cell += dither_start(channel);
-    return pattern == PATTERN_BAYER ? dither_bayer(cell) : blue_noise(cell);
+    return pattern == PATTERN_BAYER ? bayer(cell, 3) : blue_noise(cell);
 }
 
 float dither_level(float light, int space, float steps, float threshold) {

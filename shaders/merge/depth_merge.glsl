@@ -1,0 +1,32 @@
+#include "lib/finite.glsl"
+#include "lib/geometry.glsl"
+
+// How much nearer picture a is than b; above 0 a is in front.
+float depth_merge_lead(ivec2 at) { return nearness(a_depth_at(at)) - nearness(b_depth_at(at)); }
+
+// The part of a pixel on the positive side of a line, from its value at the center and its slope: the area of a square
+// that is cut by a line.
+float depth_merge_share(float value, vec2 slope) {
+    vec2 steep = abs(slope);
+    float larger = max(steep.x, steep.y), smaller = min(steep.x, steep.y);
+    float corner = 0.5 * (larger + smaller), away = abs(value);
+    if (away >= corner || larger <= 0.0) return value > 0.0 ? 1.0 : 0.0;
+    float flat_part = 0.5 * (larger - smaller);
+    float rest = away <= flat_part ? 0.5 - away / larger
+                                   : 0.5 * (corner - away) * (corner - away) / max(larger * smaller, 1e-30);
+    return value > 0.0 ? 1.0 - rest : rest;
+}
+
+void depth_merge(bool antialias, out vec4 result, out float depth) {
+    float lead = depth_merge_lead(pixel), share = lead > 0.0 ? 1.0 : 0.0;
+    vec4 one = finite(a_at(pixel)), two = finite(b_at(pixel));
+    if (antialias) {
+        float east = depth_merge_lead(pixel + ivec2(1, 0)), west = depth_merge_lead(pixel - ivec2(1, 0));
+        float south = depth_merge_lead(pixel + ivec2(0, 1)), north = depth_merge_lead(pixel - ivec2(0, 1));
+        share = depth_merge_share(lead, 0.5 * vec2(east - west, south - north));
+    }
+    vec4 front = one + two * (1.0 - clamp(one.a, 0.0, 1.0)), back = two + one * (1.0 - clamp(two.a, 0.0, 1.0));
+    result = finite(mix(back, front, share));
+    float near = max(nearness(a_depth_at(pixel)), nearness(b_depth_at(pixel)));
+    depth = near > 0.0 ? 1.0 / near : GEOMETRY_NOTHING;
+}
