@@ -14,7 +14,7 @@ class Curves(Pointwise):
     """
 
     aliases = (
-        "rgb curves", "color curves", "color lookup", "color look up", "hue correct", "hue curves", "luma curve",
+        "rgb curves", "color curves", "color lookup", "color look up", "luma curve",
         "tone curve", "channel curves", "arbitrary map", "contrast", "s curve",
     )  # fmt: skip
 

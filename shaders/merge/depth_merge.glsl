@@ -4,6 +4,13 @@
 // How much nearer picture a is than b; above 0 a is in front.
 float depth_merge_lead(ivec2 at) { return nearness(a_depth_at(at)) - nearness(b_depth_at(at)); }
 
+// How the lead changes along an axis: on the side where it changes less, which shows the same two surfaces. The other
+// side may lie across a silhouette, which the pictures antialias.
+float depth_merge_slope(float here, ivec2 along) {
+    float ahead = depth_merge_lead(pixel + along) - here, behind = here - depth_merge_lead(pixel - along);
+    return abs(ahead) < abs(behind) ? ahead : behind;
+}
+
 // The part of a pixel on the positive side of a line, from its value at the center and its slope: the area of a square
 // that is cut by a line.
 float depth_merge_share(float value, vec2 slope) {
@@ -21,9 +28,8 @@ void depth_merge(bool antialias, out vec4 result, out float depth) {
     float lead = depth_merge_lead(pixel), share = lead > 0.0 ? 1.0 : 0.0;
     vec4 one = finite(a_at(pixel)), two = finite(b_at(pixel));
     if (antialias) {
-        float east = depth_merge_lead(pixel + ivec2(1, 0)), west = depth_merge_lead(pixel - ivec2(1, 0));
-        float south = depth_merge_lead(pixel + ivec2(0, 1)), north = depth_merge_lead(pixel - ivec2(0, 1));
-        share = depth_merge_share(lead, 0.5 * vec2(east - west, south - north));
+        vec2 slope = vec2(depth_merge_slope(lead, ivec2(1, 0)), depth_merge_slope(lead, ivec2(0, 1)));
+        share = depth_merge_share(lead, slope);
     }
     vec4 front = one + two * (1.0 - clamp(one.a, 0.0, 1.0)), back = two + one * (1.0 - clamp(two.a, 0.0, 1.0));
     result = finite(mix(back, front, share));

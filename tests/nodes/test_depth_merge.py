@@ -53,3 +53,12 @@ def test_the_background_is_behind_everything(run, empty):
     np.testing.assert_allclose(run(DepthMerge(), inputs), b, atol=1e-6)
     both = run(DepthMerge(), inputs | {"b_depth": nothing}, output="depth")
     assert (both == 1e10).all()
+
+
+def test_silhouettes_stay_where_they_are(run):
+    """Beside an object that is far in front, the surfaces behind it are not mixed, however close they are."""
+    a, b = (np.broadcast_to(color, (HEIGHT, WIDTH, 4)).copy() for color in (RED, BLUE))
+    a_depth, b_depth = np.full((HEIGHT, WIDTH), 5.001), np.full((HEIGHT, WIDTH), 5.0)
+    a_depth[:, 30:] = 1.0
+    inputs = {"a": a, "a_depth": a_depth, "b": b, "b_depth": b_depth}
+    np.testing.assert_array_equal(run(DepthMerge(), inputs), np.where(np.arange(WIDTH)[:, None] >= 30, a, b))

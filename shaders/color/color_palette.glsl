@@ -4,16 +4,16 @@
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-float palette_threshold(int dither, ivec2 cell) {
+float color_palette_threshold(int dither, ivec2 cell) {
     if (dither == DITHER_NONE) return 0.5;
     if (dither == DITHER_BLUE_NOISE) return blue_noise(cell);
     return bayer(cell, dither == DITHER_BAYER_2 ? 1 : dither == DITHER_BAYER_4 ? 2 : 3);
 }
 
-vec4 palette(vec4 image, const vec4 colors[34], int count, int dither, float spread, float size) {
+vec4 color_palette(vec4 image, const vec4 colors[34], int count, int dither, float spread, float size) {
     vec4 c = straight(finite(image));
     ivec2 cell = ivec2((vec2(pixel) + 0.5) / max(finite(size), 1.0));
-    vec3 code = srgb_encode(max(c.rgb, 0.0)) + finite(spread) * (palette_threshold(dither, cell) - 0.5);
+    vec3 code = srgb_encode(max(c.rgb, 0.0)) + finite(spread) * (color_palette_threshold(dither, cell) - 0.5);
     vec3 nearest = vec3(0.0);
     float least = 3e38;
     for (int i = 0; i < min(count, 17); ++i) {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes.color.palette import Palette
+from halation.nodes.color.color_palette import ColorPalette
 from scipy.spatial import cKDTree
 
 BAYER = {
@@ -34,7 +34,7 @@ def test_without_a_pattern_the_nearest_color_is_taken(run):
     picture = random.random((40, 50, 4)).astype(np.float32)
     picture[..., 3] = 1.0
     apart, nearest = cKDTree(encode(colors)).query(encode(picture[..., :3]), k=2)
-    out = run(Palette(colors=make_stops(colors), dither="none"), {"image": picture})
+    out = run(ColorPalette(colors=make_stops(colors), dither="none"), {"image": picture})
     sure = apart[..., 1] - apart[..., 0] > 1e-5
     np.testing.assert_allclose(out[sure][:, :3], colors[nearest[..., 0]][sure], atol=1e-6)
     np.testing.assert_array_equal(out[..., 3], 1.0)
@@ -49,7 +49,7 @@ def test_patterns_are_the_published_matrices(run, side, size):
     gray = np.broadcast_to(decode(code), (levels + 1, 1, 1))
     rows = np.repeat(np.repeat(gray, 8 * size, 0), 8 * size, 1)
     picture = np.concatenate([np.repeat(rows, 3, -1), np.ones_like(rows)], -1).astype(np.float32)
-    node = Palette(
+    node = ColorPalette(
         colors=make_stops(np.array([(0.0,) * 3, (1.0,) * 3])), dither=f"bayer {side}", spread=1.0, size=float(size)
     )
     white = run(node, {"image": picture})[..., 0].reshape(levels + 1, 8 * size, 8 * size) > 0.5
@@ -66,7 +66,7 @@ def test_blue_noise_keeps_the_average(run):
     ramp = np.broadcast_to(decode(np.linspace(0.0, 1.0, 64))[None, :, None], (64, 64, 3))
     picture = np.concatenate([ramp, np.ones((64, 64, 1))], -1).astype(np.float32)
     colors = np.array([(0.0,) * 3, (1.0,) * 3])
-    out = run(Palette(colors=make_stops(colors), dither="blue noise", spread=1.0), {"image": picture})
+    out = run(ColorPalette(colors=make_stops(colors), dither="blue noise", spread=1.0), {"image": picture})
     assert {*np.unique(out[..., 0])} == {0.0, 1.0}
     parts = out[..., 0].mean(0).reshape(8, 8).mean(1)
     np.testing.assert_allclose(parts, np.linspace(0.0, 1.0, 64).reshape(8, 8).mean(1), atol=0.03)

@@ -3,7 +3,7 @@ from typing import Annotated, Literal
 from .._declare import Doc, Draw, Drawn, Filter, Image, ProxyNote, Slider, Stops, Trait, ramp_knots
 
 
-class Palette(Filter):
+class ColorPalette(Filter):
     """Reduce a picture to a few given colors, with ordered dithering between them.
 
     Every pixel gets the nearest color of the palette, by the distance of sRGB values. A pattern is added before, so
@@ -11,7 +11,7 @@ class Palette(Filter):
     """
 
     aliases = (
-        "palette", "indexed color", "reduce colors", "quantize", "color quantization", "pixel art colors", "retro",
+        "indexed color", "reduce colors", "quantize", "color quantization", "pixel art colors", "retro",
         "ordered dither", "nearest color", "limited palette", "gameboy", "color count",
     )  # fmt: skip
     traits = (Trait.NEEDS_COLOR,)
@@ -42,6 +42,6 @@ class Palette(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         return draw.point(
-            "palette", self.image, colors=ramp_knots(self.colors), count=len(self.colors) // 5, dither=self.dither,
-            spread=self.spread, size=self.size,
+            "color_palette", self.image, colors=ramp_knots(self.colors), count=len(self.colors) // 5,
+            dither=self.dither, spread=self.spread, size=self.size,
         )  # fmt: skip
