@@ -373,12 +373,8 @@ class Recorder:
     def _make_parameters(self, signature: GlslFunction, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
         names = tuple(name for _, name in signature.parameters)
         if names != tuple(arguments):
-            raise ShaderError(
-                self._owner,
-                self._library.file_name(self._shader),
-                1,
-                f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
-            )
+            fault = f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})"
+            raise ShaderError(self._owner, self._library.file_name(self._shader), 1, fault)
         parameters: list[Parameter] = []
         for (glsl, name), item in zip(signature.parameters, arguments.values(), strict=True):
             if isinstance(item, str):
