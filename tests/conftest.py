@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import pytest
-from devices import RendererKeeper
+from devices import RendererKeeper, return_memory
 from halation.compiler import Precision
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import CameraModel, Kind, Node
@@ -27,6 +27,13 @@ Array = np.ndarray
 Run = Callable[..., Array]
 
 _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def memory() -> Iterator[None]:
+    """What the tests of a file have closed is freed at its end."""
+    yield
+    return_memory()
 
 
 @pytest.fixture(scope="session")
