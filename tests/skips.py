@@ -46,6 +46,7 @@ REASONS: dict[str, Cause] = {
     "libjpeg ends the process of whoever writes it": "case",
     "it is never part of a drag": "case",
     "PyAV is not installed": "tool",
+    "pyoidn is not installed": "tool",
     "this PyAV has no encoder": "tool",
     "git is not installed": "tool",
     "not installed as a command": "tool",

@@ -93,6 +93,10 @@ def _examine_packages() -> Iterator[MachineCheck]:
         yield MachineCheck("video", "ok", f"av {metadata.version('av')}")
     except metadata.PackageNotFoundError:
         yield MachineCheck("video", "note", "videos cannot be read or written: run pip install 'halation[video]'")
+    try:
+        yield MachineCheck("denoise", "ok", f"pyoidn {metadata.version('pyoidn')}")
+    except metadata.PackageNotFoundError:
+        yield MachineCheck("denoise", "note", "the node denoise cannot work: run pip install 'halation[denoise]'")
 
 
 def _examine_opengl() -> MachineCheck:

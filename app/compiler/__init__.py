@@ -18,7 +18,7 @@ from .lengths import ResolvedLength, resolve_lengths
 from .library import Library, load_library
 from .lowering.references import find_named_files
 from .lowering.upstream import UpstreamHashes
-from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
+from .plan import FIRST_TABLE, HostTask, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
 from .request import Request
 from .target import NULL, Form, Precision, Target
@@ -30,6 +30,7 @@ __all__ = [
     "MAX_WEIGHTS",
     "NULL",
     "Form",
+    "HostTask",
     "Library",
     "Memory",
     "Pass",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Literal
 
-from halation.nodes import CameraModel, Size, Uniform
+from halation.nodes import CameraModel, HostProgram, Size, Uniform
 from msgspec import Struct, field
 
 from ..graph import Port
@@ -98,6 +98,13 @@ class Upload(Struct, frozen=True):
     """The size of the whole picture, of which the surface may hold a part."""
 
 
+class HostTask(Struct, frozen=True):
+    """A program on the processor, and which of its pass's textures are its pictures, by name."""
+
+    program: HostProgram
+    pictures: tuple[tuple[str, int], ...]
+
+
 class Pass(Record, frozen=True):
     """One draw or dispatch. Textures are bound in order as t0, t1, ...; targets as o0, o1, ...
 
@@ -117,6 +124,9 @@ class Pass(Record, frozen=True):
     mesh: Mesh | None = None
     writers: Mapping[str, str] = field(default_factory=dict[str, str])
     """The node behind each file of code that users wrote."""
+
+    host: HostTask | None = None
+    """What runs on the processor, in place of the shader."""
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset({"writers"})
 

@@ -23,6 +23,7 @@ from __future__ import annotations
 from .camera import CameraModel, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, Resampling, ShaderStage, ShaderText
+from .host import HostProgram
 from .items import ItemSet, NamedItem, Scalar, natural_order
 from .kinds import KINDS, Kind, KindFacts
 from .lengths import (
@@ -126,6 +127,7 @@ __all__ = [
     "Fraction",
     "Handle",
     "Holds",
+    "HostProgram",
     "Image",
     "ItemKind",
     "ItemSet",

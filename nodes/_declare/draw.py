@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal, Protocol
 from msgspec import Struct
 
 from .camera import CameraModel
+from .host import HostProgram
 from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
@@ -268,6 +269,13 @@ class Draw(Protocol):
 
     def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
         """Numbers as a picture of four channels with `width` pixels in a row, for functions to read."""
+        ...
+
+    def host(self, program: HostProgram, /, result: Socket | None = None, **pictures: Pixels) -> Drawn:
+        """Run a program on the processor, which reads whole pictures by name and makes one of the node's size.
+
+        The renderer downloads the pictures and runs it on a thread of its own. Its result is kept like all others.
+        """
         ...
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:

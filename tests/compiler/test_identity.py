@@ -22,6 +22,7 @@ from halation.compiler.ir import (
     FunctionOp,
     Gather,
     HistoryRead,
+    HostCall,
     LoweredProgram,
     Op,
     Parameter,
@@ -37,7 +38,7 @@ from halation.compiler.ir import (
 )
 from halation.compiler.scheduling.fingerprints import PassFingerprints, find_keys
 from halation.glsl import parse
-from halation.nodes import Kind, ShaderStage, ShaderText
+from halation.nodes import HostProgram, Kind, ShaderStage, ShaderText
 from halation.resources.color_program import ColorProgram, LookupTable
 from halation.resources.mesh import Mesh
 from halation.resources.picture import Picture
@@ -73,6 +74,7 @@ SPECIMENS: dict[type[Op], Op] = {
         Convolve(SHAPES, "n", Ref(0), 0, (0.25, 0.5, 0.25), 1, -1, "clamp"),
         Reduce(SHAPES, "n", Ref(0), "sum"),
         ExternalProgram(SHAPES, "n", TEXT, (("image", Ref(0)),), (("gain", UniformConstant(1.0)),)),
+        HostCall(SHAPES, "n", HostProgram("denoise", (("hdr", True),)), (("color", Ref(0)), ("normal", Ref(1)))),
         Raster(SHAPES, "n", Mesh("digest", 0, 0), (1.0, 2.0), (3.0, 4.0), 0.1),
     )
 }

@@ -36,6 +36,7 @@ HOMES = {
     "OpenImageIO": "media",
     "PyOpenColorIO": "color",
     "av": "media",
+    "pyoidn": "media",
     "glfw": "editor",
     "imgui_bundle": "editor",
     "typer": "cli",

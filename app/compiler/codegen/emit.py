@@ -9,7 +9,7 @@ from halation.nodes import Uniform
 from msgspec import Struct
 
 from ..fusion.fuse import PassGroup
-from ..ir import ExternalProgram, LoweredProgram, Op, PictureShape, Raster, Ref
+from ..ir import ExternalProgram, HostCall, LoweredProgram, Op, PictureShape, Raster, Ref
 from ..library import Library
 from ..plan import Shader
 from ..target import Target
@@ -107,6 +107,13 @@ def _(root: Raster, request: _PassRequest) -> EmittedProgram:
 @_emit_root.register
 def _(root: ExternalProgram, request: _PassRequest) -> EmittedProgram:
     return EmittedProgram(*write_external(root, request.group, _write_half_rounding(request.target, request.halves)))
+
+
+@_emit_root.register
+def _(root: HostCall, request: _PassRequest) -> EmittedProgram:
+    """No program for the device. The text stands for that of the processor wherever passes are told apart by theirs."""
+    source = f"#version 410 core\n// {root.identity}\nvoid main() {{}}\n"
+    return EmittedProgram(Shader(source, "fragment", ("generated",), reads_images=False), ())
 
 
 def _name_windows(names: ShaderNames, group: PassGroup) -> None:

@@ -3,8 +3,8 @@
 A graph becomes a list of operations in static single assignment form: each operation makes one or more pictures, each
 picture is made once, and an operation reads pictures by `Ref` (the number of an operation and of its output). There are
 only a dozen kinds of operations (`operations`), however many nodes there are: a pointwise function (`Call`), a function
-that looks around (`Gather`), a convolution along one axis, a reduction, a program from outside, a drawn mesh, and
-sources, which no pass makes.
+that looks around (`Gather`), a convolution along one axis, a reduction, a program from outside, a drawn mesh, a
+program on the processor, and sources, which no pass makes.
 
 Operations are immutable values, compared by their fields. So common subexpressions need no pass of their own: a
 `Builder` that is given an equal operation again returns the first one. An operation refers only to operations before
@@ -24,6 +24,7 @@ equal pixels, and a field that a hash forgets would show stale pixels.
 
 from __future__ import annotations
 
+from .host_call import HostCall
 from .operation import Op, SourceOp
 from .operations import (
     BLOCK,
@@ -61,6 +62,7 @@ __all__ = [
     "FunctionOp",
     "Gather",
     "HistoryRead",
+    "HostCall",
     "LoweredProgram",
     "Memory",
     "Op",

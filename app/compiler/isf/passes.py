@@ -13,7 +13,7 @@ from ..codegen.includes import find_macros, select_texts, split_by_accessors
 from ..codegen.names import ShaderNames, convert
 from ..codegen.pass_parts import PassContext, PassParts, write_parts
 from ..fusion.fuse import PassGroup
-from ..ir import ExternalProgram, LoweredProgram, Op, Raster, Ref, UniformConstant
+from ..ir import ExternalProgram, HostCall, LoweredProgram, Op, Raster, Ref, UniformConstant
 from ..library import Library
 from .affine import write_literal
 
@@ -86,6 +86,7 @@ def find_obstacles(
 
 _OBSTACLES: Mapping[type[Op], str] = {
     Raster: "draws meshes",
+    HostCall: "runs on the processor",
     ExternalProgram: "is a shader of this format already: use its file",
 }
 """Kinds of operations that a shader of this format cannot do."""

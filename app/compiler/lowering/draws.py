@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from array import array
 from collections.abc import Mapping, Sequence
-from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
@@ -18,6 +16,7 @@ from halation.nodes import (
     Drawn,
     Edge,
     Filter,
+    HostProgram,
     Image,
     Kernel,
     Kind,
@@ -52,6 +51,7 @@ from ..ir import (
     ExternalProgram,
     Gather,
     HistoryRead,
+    HostCall,
     Memory,
     Op,
     Operand,
@@ -59,7 +59,6 @@ from ..ir import (
     PictureShape,
     PlannedObject,
     Raster,
-    Read,
     Reduce,
     Ref,
     UniformConstant,
@@ -69,6 +68,7 @@ from ..raster import CHANNELS
 from . import fourier, gaussian, padding, transforms
 from .blurs import BlurBuilder
 from .node_inputs import DrawnPicture, NodeInputs, NodeResources
+from .tables import make_table
 
 
 class Recorder:
@@ -301,16 +301,11 @@ class Recorder:
         self.remembered[name] = pixels.ref
 
     def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
-        rows = max(1, -(-len(numbers) // (4 * width)))
-        filled = numbers + (0.0,) * (4 * width * rows - len(numbers))
-        table = tuple(
-            tuple(filled[at : at + 4] for at in range(row, row + 4 * width, 4))
-            for row in range(0, len(filled), 4 * width)
-        )
-        shape = PictureShape((width, rows), 4, data=True)
-        picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
-        fingerprint = blake2b(array("d", filled).tobytes() + bytes(str(width), "ascii")).hexdigest()
-        return self._add_op(Read((shape,), self._owner, picture, fingerprint, half=False))
+        return self._add_op(make_table(self._owner, numbers, width))
+
+    def host(self, program: HostProgram, /, result: Socket | None = None, **pictures: Pixels) -> Drawn:
+        refs = tuple((name, self._find_pixels(item).ref) for name, item in pictures.items())
+        return self._add_op(HostCall((self._make_shape(result, self.size),), self._owner, program, refs))
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
         return self._resources.describe_render(path, named)

@@ -13,9 +13,9 @@ from ...errors import DeviceError, describe_owner
 from ...graph import Port
 from ..codegen.emit import EmittedProgram, emit
 from ..fusion.fuse import PassGroup
-from ..ir import LoweredProgram, Memory, Op, Ref, SourceOp
+from ..ir import HostCall, LoweredProgram, Memory, Op, Ref, SourceOp
 from ..library import Library
-from ..plan import Depth, Pass, Plan, Surface, Upload, texture_bytes, texture_format
+from ..plan import Depth, HostTask, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
 from .differences import find_changed_numbers
 from .fingerprints import Fingerprint, PassFingerprints, find_keys, update_keys
@@ -273,7 +273,15 @@ def _make_pass(
         tuple(dict.fromkeys(table for op in ops for table in op.tables)),
         next(filter(None, (op.mesh_drawn for op in ops)), None),
         _find_writers(ops, library),
+        _find_host_task(program, fused),
     )
+
+
+def _find_host_task(program: LoweredProgram, fused: PassGroup) -> HostTask | None:
+    root = program.ops[fused.root]
+    if not isinstance(root, HostCall):
+        return None
+    return HostTask(root.program, tuple((name, fused.reads.index(ref)) for name, ref in root.pictures))
 
 
 def _find_writers(ops: list[Op], library: Library) -> dict[str, str]:

@@ -12,13 +12,14 @@ import numpy as np
 from msgspec import Struct
 
 from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
-from ...errors import InputError, RenderError, describe_owner
+from ...errors import HalationError, InputError, RenderError, describe_owner
 from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
 from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
 from .array_pool import ArrayPool
 from .costs import PassCosts
 from .decoding import Array, DecodedPicture
+from .host_jobs import HostJob, HostJobs
 from .program_cache import ProgramCache
 from .progress_beacon import ProgressBeacon
 from .resource_cache import ResourceCache
@@ -34,6 +35,11 @@ a color transform of one node. So there is room for several graphs that are edit
 BAND_PIXELS = 2**21
 """The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between. A picture
 of 1920x1080 is still one piece."""
+
+
+_HOST_SECONDS = 0.5
+"""What a picture of a program on the processor is assumed to cost at least, where a run did not wait for it: Open Image
+Denoise takes as long for 960x540 on two cores."""
 
 
 class RunnerCounters(Struct):
@@ -58,10 +64,12 @@ class Executor:
         self._meshes = ResourceCache[Mesh, DeviceResource](MAX_MESHES)
         self._weights = ResourceCache[tuple[float, ...], DeviceResource](MAX_WEIGHT_BUFFERS)
         self._beacon = ProgressBeacon()
+        self._host_jobs = HostJobs()
 
     def close(self) -> None:
         """Give everything back."""
         self.closed = True
+        self._host_jobs.close()
         for resources in (self.textures, self.programs, self._tables, self._meshes, self._weights):
             resources.clear()
 
@@ -106,8 +114,48 @@ class Executor:
     def execute(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
         self._await_trial(plan, render_pass)
+        if render_pass.host is not None:
+            self._execute_on_host(plan, render_pass, lease)
+            return
         with self._watch(render_pass):
             self._execute(plan, render_pass, lease)
+
+    def begin_host_job(self, plan: Plan, render_pass: Pass) -> HostJob | None:
+        """Begin the work of a pass on the processor, whose textures are on the device; None where it is done."""
+        key = plan.surfaces[render_pass.targets[0]].key
+        if render_pass.host is None or key in self.textures:
+            return None
+        if job := self._host_jobs.find(key):
+            return job
+        numbers = {name: render_pass.textures[place] for name, place in render_pass.host.pictures}
+        pictures = {name: self.download(plan, number, ArrayPool()) for name, number in numbers.items()}
+        return self._host_jobs.start(key, render_pass.host.program, pictures)
+
+    def abandon_host_job(self, plan: Plan, render_pass: Pass) -> None:
+        """Say that nobody waits for the work of a pass on the processor any more."""
+        self._host_jobs.abandon(plan.surfaces[render_pass.targets[0]].key)
+
+    def _execute_on_host(self, plan: Plan, render_pass: Pass, lease: TextureLease) -> None:
+        """Wait for the work of a pass on the processor, and upload its picture."""
+        surface = plan.surfaces[render_pass.targets[0]]
+        if self.begin_host_job(plan, render_pass) is None:  # another run was quicker
+            lease.add(surface.key)
+            self.counters.skipped += 1
+            return
+        started = time.perf_counter()
+        try:
+            pixels = self._host_jobs.finish(surface.key)
+        except HalationError as error:
+            error.node = error.node or render_pass.nodes[-1]
+            raise type(error)(f"{describe_owner(error.node)}: {error}", node=error.node) from error
+        try:
+            texture = lease.create(surface)
+            texture.handle.write(_convert(pixels, surface.components, surface.depth))
+            texture.cost = max(time.perf_counter() - started, _HOST_SECONDS)
+        except BaseException:
+            lease.discard(surface.key)
+            raise
+        self.counters.passes += 1
 
     def is_tried(self, plan: Plan, render_pass: Pass) -> bool:
         """False while another process tries the program of a pass, which `execute` would wait for."""

@@ -41,7 +41,7 @@ class Run(ABC):
     @property
     @abstractmethod
     def is_ready(self) -> bool:
-        """False while the next step would wait for a file to be decoded, or for the trial of a program."""
+        """False while the next step would wait for a file, a trial of a program, or the processor."""
         ...
 
     def __iter__(self) -> Run:
@@ -109,7 +109,9 @@ class WholeRun(Run):
         if not ends and not self._executor.is_tried(self.plan, self.plan.passes[self._needed_passes[self.passes_done]]):
             return False
         numbers = self._requested if ends else self.plan.passes[self._needed_passes[self.passes_done]].textures
-        return all(self._is_uploaded(number) or self._decode_queue.is_ready(number) for number in numbers)
+        if not all(self._is_uploaded(number) or self._decode_queue.is_ready(number) for number in numbers):
+            return False
+        return ends or self._is_done_on_host()
 
     def __next__(self) -> Pass:
         if self.has_ended:
@@ -130,6 +132,8 @@ class WholeRun(Run):
             return
         self.has_ended = True
         self._decode_queue.cancel()
+        if self.passes_done < self.total:
+            self._executor.abandon_host_job(self.plan, self.plan.passes[self._needed_passes[self.passes_done]])
         if not self._executor.closed:
             self._lease.close()
             with self._executor.device.make_current():
@@ -151,6 +155,16 @@ class WholeRun(Run):
                 self._lease.release(key)
         self.passes_done += 1
         return render_pass
+
+    def _is_done_on_host(self) -> bool:
+        """False while the next pass works on the processor. Begins that work."""
+        render_pass = self.plan.passes[self._needed_passes[self.passes_done]]
+        if render_pass.host is None:
+            return True
+        with self._executor.device.make_current():
+            self._upload(render_pass.textures)
+            job = self._executor.begin_host_job(self.plan, render_pass)
+        return job is None or job.is_done
 
     def _finish(self) -> None:
         self._upload(self._requested)
