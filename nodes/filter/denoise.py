@@ -1,6 +1,6 @@
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, HostProgram, Image, Pixels, ProxyNote, Vector
+from .._declare import Doc, Draw, Drawn, Filter, HostProgram, Image, ProxyNote, Vector
 
 
 class Denoise(Filter):
@@ -29,7 +29,7 @@ class Denoise(Filter):
     hdr: Annotated[bool, Doc("The picture is scene light. Off: display colors from 0 to 1.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
-        pictures: dict[str, Pixels] = {"color": draw.point("denoise_color", self.image, hdr=self.hdr)}
+        pictures: dict[str, Any] = {"color": draw.point("denoise_color", self.image, hdr=self.hdr)}
         if draw.is_linked(self.albedo) or draw.is_linked(self.normal):
             pictures["albedo"] = draw.point("denoise_albedo", image=pictures["color"], albedo=self.albedo)
         if draw.is_linked(self.normal):

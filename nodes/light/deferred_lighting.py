@@ -1,6 +1,6 @@
 import math
 from collections.abc import Iterable, Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from .._declare import (
     MAX_LIGHTS,
@@ -179,13 +179,13 @@ class DeferredLighting(Filter):
         ambient = tuple(ambient_gain * self.ambient[3] * part for part in self.ambient[:3])
 
         ways = {"normal": normal, "place": place, "near": near, "coverage": coverage}
-        material = {
+        material: dict[str, Any] = {
             "mapped": draw.is_linked(self.material),
             "metal": self.metal,
             "roughness": self.roughness,
             "specular": self.specular,
         }
-        view = {"rays": rays, "seen": camera is not None, "eye": camera.eye if camera else (0.0,) * 3}
+        view: dict[str, Any] = {"rays": rays, "seen": camera is not None, "eye": camera.eye if camera else (0.0,) * 3}
 
         def lit(scattered: float, mirrored: float) -> Drawn:
             light = draw(
