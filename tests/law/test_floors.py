@@ -165,7 +165,8 @@ def test_no_module_is_part_of_a_cycle() -> None:
 
 def test_every_library_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    listed = [*project["dependencies"], *project["optional-dependencies"]["video"]]
+    extras = project["optional-dependencies"]
+    listed = [*project["dependencies"], *extras["video"], *extras["denoise"]]
     declared = {re.split(r"[^\w-]", line)[0].lower() for line in listed}
     providers = packages_distributions()
     ours = {"halation"}
