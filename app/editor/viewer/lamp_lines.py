@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from halation.nodes import Light, LightKind
 from imgui_bundle import imgui
+from msgspec.structs import replace
 
 from ..fields.colors import swatch
 from ..theme.palette import RGB
@@ -98,7 +99,7 @@ def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: L
 
 
 def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:
-    """Draw the range as a dashed circle, the radius of a sphere, and the cones of a spot."""
+    """Draw the range as a dashed circle, the radius of a sphere, the edges of an area, and the cones of a spot."""
     light, at = lamp.light, sight.place(lamp.at)
     unit_size = lamp.camera.focal[0] * sight.picture[0] * sight.zoom / sight.density / lamp.depth
     if light.reach > 0.0:
@@ -106,6 +107,9 @@ def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> No
     if light.kind is LightKind.SPHERE:
         lines.add_circle(at, light.size * unit_size, u32(BLACK, SHADE), 0, 3.0 * ui_scale())
         lines.add_circle(at, light.size * unit_size, u32(color), 0, 1.5 * ui_scale())
+    for edge in outline(light):
+        if points := _project_places(sight, lamp, edge):
+            draw_path(lines, points, color, 1.5, closed=True)
     for angle, width in ((light.outer, 1.5), (light.inner, 0.8)):
         rim = _project_places(sight, lamp, cone(lamp, angle)) if light.kind is LightKind.SPOT else []
         if not rim:
@@ -114,6 +118,28 @@ def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> No
         if angle == light.outer:
             for corner in sides(at, rim):
                 draw_path(lines, (at, corner), color, width)
+
+
+def outline(light: Light) -> list[list[Place]]:
+    """The edges of a rectangle, a disc or a tube in the world, as closed paths."""
+    along, across = replace(light, roll=math.radians(light.roll)).half_axes
+    corners = ((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0))
+    turns = [2.0 * math.pi * step / _STEPS for step in range(_STEPS)]
+    round_points = [(math.cos(turn), math.sin(turn)) for turn in turns]
+    if light.kind is LightKind.RECTANGLE:
+        return [[_add_axes(light.place, along, across, corner) for corner in corners]]
+    if light.kind is LightKind.DISC:
+        return [[_add_axes(light.place, along, across, point) for point in round_points]]
+    if light.kind is not LightKind.TUBE:
+        return []
+    deep = move_place((0.0, 0.0, 0.0), _cross(light.aim, unit(across)), light.size)
+    ends = [move_place(light.place, along, side) for side in (1.0, -1.0)]
+    sides = [[move_place(end, across, side) for end in ends] for side in (1.0, -1.0)]
+    return [*([_add_axes(end, across, deep, point) for point in round_points] for end in ends), *sides]
+
+
+def _add_axes(place: Place, along: Place, across: Place, parts: Point) -> Place:
+    return move_place(move_place(place, along, parts[0]), across, parts[1])
 
 
 def cone(lamp: Lamp, angle: float) -> list[Place]:

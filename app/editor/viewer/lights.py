@@ -33,6 +33,9 @@ _OVER = 0.05
 
 _DEFAULT_DEPTH = 5.0
 
+_AIMED = (LightKind.SPOT, LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE)
+"""The lights at a place that have a direction."""
+
 
 @dataclass(frozen=True)
 class Lamp:
@@ -51,9 +54,9 @@ class Lamp:
 
     @property
     def goal(self) -> Place | None:
-        """The target of a spot: as far away as its direction is long, but within view."""
+        """The target of a light with a direction: as far away as its direction is long, but within view."""
         length = math.hypot(*self.light.direction)
-        if self.light.kind is not LightKind.SPOT or not 0.0 < length < math.inf:
+        if self.light.kind not in _AIMED or not 0.0 < length < math.inf:
             return None
         far = max(1.0, _SHORTEST * self.depth / length)
         ahead = dot(self.camera.forward, self.light.direction) * far

@@ -14,7 +14,7 @@ from halation.authoring.session import Session
 from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
 from halation.editor.viewer.geometry import Sight
 from halation.editor.viewer.holding import MouseHold, aim
-from halation.editor.viewer.lamp_lines import cone, sides
+from halation.editor.viewer.lamp_lines import cone, outline, sides
 from halation.editor.viewer.lights import (
     Lamp,
     add_light,
@@ -173,6 +173,32 @@ def test_what_a_spot_shines_to_can_be_seen(direction: Any, depth: float) -> None
     assert lamp.aims is not None and lamp.goal is not None
     assert lamp.aims[1] == pytest.approx(depth) and math.dist(lamp.goal, light.place) >= 0.5
     assert Lamp(PORT, "lamp_1", POINT, CAMERA, (0.5, 0.5), 5.0, True).aims is None
+
+
+@pytest.mark.parametrize("kind", [LightKind.RECTANGLE, LightKind.DISC, LightKind.TUBE])
+def test_the_edges_of_areas_are_drawn_where_they_shine_from(kind: LightKind) -> None:
+    light = Light(kind, (1.0, 2.0, 3.0), (0.3, -1.0, -0.4), size=0.4, width=2.0, height=0.6, length=1.5, roll=25.0)
+    aim = np.array(light.direction) / np.linalg.norm(light.direction)
+    away = np.concatenate([np.subtract(edge, light.place) for edge in outline(light)])
+    along = away @ aim
+    if kind is LightKind.TUBE:
+        np.testing.assert_allclose(np.abs(along), 0.75, atol=1e-6)
+        np.testing.assert_allclose(np.linalg.norm(away - np.outer(along, aim), axis=1), 0.4, atol=1e-6)
+        return
+    np.testing.assert_allclose(along, 0.0, atol=1e-6)
+    lengths = np.linalg.norm(away, axis=1)
+    np.testing.assert_allclose(lengths, 0.4 if kind is LightKind.DISC else math.hypot(1.0, 0.3), atol=1e-6)
+    if kind is LightKind.RECTANGLE:
+        tilt = np.degrees(
+            np.arcsin((away[1] - away[0])[2] / 2.0 / np.linalg.norm(np.cross(aim, np.cross(aim, (0, 0, 1)))))
+        )
+        assert tilt == pytest.approx(25.0, abs=1e-4)
+
+
+def test_a_rectangle_is_turned_by_its_goal() -> None:
+    light = Light(LightKind.RECTANGLE, (1.0, 0.0, 0.0), (0.0, 0.0, -1.0))
+    lamp = Lamp(PORT, "lamp_1", light, CAMERA, (0.7, 0.5), 5.0, True)
+    assert lamp.goal == pytest.approx((1.0, 0.0, -1.0))
 
 
 def test_a_cone_is_as_wide_as_its_angle() -> None:
