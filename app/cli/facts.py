@@ -35,8 +35,8 @@ def default_text(value: Value) -> str:
     default = value.default
     if isinstance(default, Mapping):
         return ", ".join(cast("Mapping[str, object]", default)) or "none"
-    if isinstance(default, tuple) and value.type in ("curve", "ramp"):
-        word = {"curve": "point", "ramp": "stop"}[value.type]
+    if isinstance(default, tuple) and value.type in ("curve", "ramp", "spline"):
+        word = {"curve": "point", "ramp": "stop", "spline": "point"}[value.type]
         count = len(default) // value.length
         return f"{count} {word}{'' if count == 1 else 's'}"
     return format_value(default)
@@ -106,7 +106,9 @@ def _value_facts(value: Value) -> dict[str, Any]:
 
     facts: dict[str, Any] = {
         "type": value.type,
-        "default": value.default if value.items is None else describe_items(cast("ItemSet", value.default)),
+        "default": value.default
+        if value.items is None
+        else describe_items(value.items, cast("ItemSet", value.default)),
         "choices": list(value.choices),
         "unit": value.unit,
         "soft": _finite(value.low, value.high),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from halation.nodes import Scalar
+from halation.nodes import Scalar, Value, read_rows
 
 from ..errors import DocumentError
 from ..graph import Animation, Expression, Key, Keys
+from ..graph.scalars import describe_scalar
 from . import records
 from .records import Section, convert
 from .syntax import member, word
@@ -28,19 +29,19 @@ def read_animation(raw: Any, file: str, path: str) -> Animation:
     return Keys(keys, record.outside)
 
 
-def describe_animation(animation: Animation) -> Section:
-    """What `read_animation` reads."""
+def describe_animation(animation: Animation, value: Value | None) -> Section:
+    """What `read_animation` reads, for an animation of a declared value."""
     if isinstance(animation, Expression):
         return {"expression": animation.text}
     outside = {"outside": animation.outside} if animation.outside != "hold" else {}
-    return {"keys": [_describe_key(key) for key in animation.keys]} | outside
+    return {"keys": [_describe_key(key, value) for key in animation.keys]} | outside
 
 
 def _key(raw: Any, file: str, path: str) -> Key:
     record = convert(raw, records.KeyRecord, file, path)
     value = _plain(record.value)
     if value is None:
-        fault = f"expected a number, true, false or a list of numbers, got {word(record.value)}"
+        fault = f"expected a number, true, false, a list of numbers or a list of points, got {word(record.value)}"
         raise DocumentError(file, member(path, "value"), fault)
     length = 1 + (len(value) if isinstance(value, tuple) else 1)
     for side in ("left", "right"):
@@ -56,13 +57,15 @@ def _plain(raw: object) -> Scalar | None:
     if not isinstance(raw, list):
         return None
     parts = cast("list[object]", raw)
+    if parts and isinstance(parts[0], list):
+        return read_rows(parts)
     numbers = tuple(float(part) for part in parts if isinstance(part, int | float) and not isinstance(part, bool))
     return numbers if numbers and len(numbers) == len(parts) else None
 
 
-def _describe_key(key: Key) -> Section:
+def _describe_key(key: Key, value: Value | None) -> Section:
     frame = int(key.frame) if key.frame == int(key.frame) else key.frame
-    section: Section = {"frame": frame, "value": key.value}
+    section: Section = {"frame": frame, "value": describe_scalar(value, key.value) if value else key.value}
     if key.interpolation != "smooth":
         section["interpolation"] = key.interpolation
     return section | {side: handle for side, handle in (("left", key.left), ("right", key.right)) if handle}

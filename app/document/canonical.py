@@ -72,6 +72,8 @@ def _text(item: Any, indent: int, column: int, trail: Trail, depth: int) -> str:
         parts = enumerate(cast("list[Any]", item))
         texts = [_text(part, inner, inner, Trail(trail, place), depth + 1) for place, part in parts]
         is_code = trail.outer is not None and trail.key == "code" and len(texts) > 1
+        # Rows of a spline, which alone are tuples of tuples: a diff shows the points that moved.
+        is_code = is_code or (isinstance(item, tuple) and isinstance(item[0], tuple))
     else:
         opening, closing = "{", "}"
         mapping = cast("Mapping[str, Any]", item)

@@ -12,11 +12,12 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import msgspec
-from halation.nodes import MAX_POINTS, ItemKind, Items, ItemSet, Node, Value, is_length
+from halation.nodes import MAX_POINTS, POINT_LENGTH, ItemKind, Items, ItemSet, Node, Value, is_length
 
 from ..custom_nodes import Language
 from ..graph import INPUTS, OUTPUTS
 from ..graph.named_items import KIND, describe_items
+from ..graph.scalars import describe_scalar
 from . import records
 from .migrations import FORMAT
 
@@ -28,6 +29,8 @@ _PORT: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+$"}
 _NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
 _LENGTH_UNIT: Schema = {"type": "string", "pattern": r"^(px|height|px@[1-9]\d{0,4})$"}
 _NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
+_ROW: Schema = {**_NUMBERS, "minItems": 2, "maxItems": POINT_LENGTH}
+_SPLINE: Schema = {"type": "array", "items": _ROW, "minItems": 1}
 
 _DOCS = {
     "GraphRecord.halation": "The number of the format.",
@@ -106,11 +109,13 @@ def schema(types: Mapping[str, type[Node]]) -> Schema:
                     "anyOf": [
                         {"type": ["number", "boolean"]},
                         {**_NUMBERS, "minItems": 1},
+                        {"$ref": "#/$defs/spline"},
                     ]
                 },
             ),
             "curve": _points(2, range(2, MAX_POINTS + 1)),
             "ramp": _points(5, range(2, MAX_POINTS + 1)),
+            "spline": _SPLINE,
             **node_schemas,
         },
     }
@@ -198,15 +203,22 @@ def _value(value: Value) -> Schema:
             type_schema = {"type": "string"}
         case "color" | "vector" | "matrix":
             type_schema = {"type": "array", "items": number, "minItems": value.length, "maxItems": value.length}
-        case "curve" | "ramp":
+        case "curve" | "ramp" | "spline":
             type_schema = {"$ref": f"#/$defs/{value.type}"}
         case "items":
             assert value.items is not None
             type_schema = _items(value.items)
     unit = f"Unit: {value.unit}." if value.unit else ""
     doc = " ".join(part for part in (value.doc, unit) if part)
-    default = describe_items(value.default) if isinstance(value.default, ItemSet) else value.default
+    default = _describe_default(value)
     return {**type_schema, "default": default, **({"description": doc} if doc else {})}
+
+
+def _describe_default(value: Value) -> Any:
+    """The default of a value as a file holds it."""
+    if value.items is not None and isinstance(value.default, ItemSet):
+        return describe_items(value.items, value.default)
+    return describe_scalar(value, value.default)
 
 
 def _items(items: Items) -> Schema:

@@ -16,9 +16,10 @@ from halation.nodes import ItemSet, Plain, Value
 
 from ..custom_nodes import CustomNode
 from ..errors import GraphError, OutputError
-from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
+from ..graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, find_declaration, signature
 from ..graph.named_items import describe_items
 from ..graph.names import name_fault
+from ..graph.scalars import describe_scalar
 from ..graph.values import coerce, describe_type
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import Sandbox
@@ -93,7 +94,8 @@ def _graph(graph: Graph) -> Section:
         "nodes": entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
         "links": {str(target): str(source) for target, source in graph.links.items()},
         "animation": entries(
-            "animation", {str(port): describe_animation(item) for port, item in graph.animation.items()}
+            "animation",
+            {str(port): describe_animation(item, _find_value(graph, port)) for port, item in graph.animation.items()},
         ),
         "ui": graph.ui,
     }
@@ -150,8 +152,12 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     if isinstance(item, Group):
         body = {"path": item.path} if item.path else {"graph": _graph(item.graph)}
         declared = signature(item).values
-        converted = {name: _value(id, declared[name], plain) for name, plain in item.values.items() if name in declared}
-        values = {**unknown_values, **item.values, **converted, **_describe_items(id, graph, item.values)}
+        converted = {
+            name: describe_scalar(declared[name], _value(id, declared[name], plain))
+            for name, plain in item.values.items()
+            if name in declared
+        }
+        values = {**unknown_values, **item.values, **converted, **_describe_items(id, graph, declared, item.values)}
         return {"type": "group"} | body | muted | ({"values": values} if values else {})
     settings, units = item.settings, dict(item.length_units)
     set_values = {
@@ -162,7 +168,7 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     changed = {name: plain for name, plain in set_values.items() if name in units or plain != item.values[name].default}
     values = {**unknown_values, **changed}
     if item.item_values:
-        values |= _describe_items(id, graph, set_values)
+        values |= _describe_items(id, graph, item.values, set_values)
     type_facts = describe_code(item.code) if isinstance(item, CustomNode) else {"version": item.version}
     if item.required_package:
         type_facts["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.required_package)
@@ -170,13 +176,20 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     return {"type": item.id} | type_facts | muted | ({"values": values} if values else {}) | unit_facts
 
 
-def _describe_items(id: str, graph: Graph, values: Mapping[str, Plain]) -> Section:
+def _find_value(graph: Graph, port: Port) -> Value | None:
+    """The declaration of an animated value; None if there is none, as for a node whose package is missing."""
+    item = graph.nodes.get(port.node)
+    return None if item is None else find_declaration(item, port.socket)
+
+
+def _describe_items(id: str, graph: Graph, declared: Mapping[str, Value], values: Mapping[str, Plain]) -> Section:
     """Values with named items as a file holds them, also at their default: so each field differs on its own."""
     sections: Section = {}
     for name, items in values.items():
-        if isinstance(items, ItemSet):
+        kinds = declared[name].items if name in declared else None
+        if isinstance(items, ItemSet) and kinds:
             path = f"nodes.{id}.values.{name}"
-            objects = describe_items(items)
+            objects = describe_items(kinds, items)
             kept = {key: graph.extra.get(f"{path}.{key}", {}) for key in objects}
             sections[name] = {**graph.extra.get(path, {}), **{key: {**kept[key], **objects[key]} for key in objects}}
     return sections

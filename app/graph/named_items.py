@@ -14,7 +14,7 @@ from msgspec import structs
 
 from ..errors import GraphError
 from .names import did_you_mean, make_printable, name_fault
-from .scalars import coerce_scalar, describe_type, scalar_fault
+from .scalars import coerce_scalar, describe_scalar, describe_type, scalar_fault
 
 KIND = "kind"
 """The field that says what kind an item is of."""
@@ -265,9 +265,17 @@ def split_unknown(items: Items, objects: Mapping[str, Any]) -> tuple[dict[str, A
     return known, unknown
 
 
-def describe_items(items: ItemSet) -> dict[str, dict[str, Any]]:
+def describe_items(declared: Items, items: ItemSet) -> dict[str, dict[str, Any]]:
     """Named items as a file holds them: by name their kind and the fields that differ from its defaults."""
-    return {name: {KIND: item.kind, **item.fields} for name, item in items.items()}
+    return {name: {KIND: item.kind, **_describe_fields(declared, item)} for name, item in items.items()}
+
+
+def _describe_fields(declared: Items, item: NamedItem) -> dict[str, Any]:
+    kind = declared.by_name.get(item.kind)
+    return {
+        name: describe_scalar(kind.fields[name], plain) if kind and name in kind.fields else plain
+        for name, plain in item.fields.items()
+    }
 
 
 def check_new_item(items: Items, names: Collection[str], name: str) -> None:

@@ -11,6 +11,7 @@ from msgspec import Struct
 from .curves import MAX_POINTS
 from .items import ItemSet, NamedItem, Scalar
 from .sockets import glsl_type
+from .splines import POINT_LENGTH
 
 Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene", "K"]
 """The unit of a number.
@@ -106,6 +107,10 @@ class Curve(Struct, frozen=True):
     maximum: float = float("inf")
 
 
+class Spline(Struct, frozen=True):
+    """The value is a closed spline: seven numbers for each point, and in files a row. See `splines.py`."""
+
+
 class ColorRamp(Struct, frozen=True):
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, sorted by t: see `ramp_at`."""
 
@@ -182,10 +187,11 @@ TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], ColorRamp()]
+SplinePoints = Annotated[tuple[float, ...], Spline()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
 ValueType = Literal[
-    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "items", "path", "text"
+    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "spline", "items", "path", "text"
 ]
 Plain = Scalar | ItemSet
 """The types of values: JSON scalars, flat lists of numbers, and named items."""
@@ -201,7 +207,7 @@ class Value(Struct, frozen=True):
     type: ValueType
     default: Plain
     length: int = 1
-    """How many numbers: of a curve per point, of a ramp per stop."""
+    """How many numbers: of a curve or spline per point, of a ramp per stop."""
     choices: tuple[str, ...] = ()
     low: float = float("-inf")
     high: float = float("inf")
@@ -300,10 +306,12 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
 
 
 def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> dict[str, Any]:
-    """The type and length of a flat list of numbers; that of a curve is 2 per point, that of a ramp 5 per stop."""
+    """The type and length of a flat list of numbers: per point or stop where it can be of any length."""
     if Ellipsis not in parts:
         return {"type": "matrix" if len(parts) == 9 else "vector", "length": len(parts)}
     for note in notes:
         if isinstance(note, Curve | ColorRamp):
             return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
-    raise TypeError(f"value '{name}': a list of any length is a Curve or a ColorRamp")
+        if isinstance(note, Spline):
+            return {"type": "spline", "length": POINT_LENGTH}
+    raise TypeError(f"value '{name}': a list of any length is a Curve, a ColorRamp or a Spline")

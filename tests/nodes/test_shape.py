@@ -5,38 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.input.shape import Shape
+from polygons import Corners, measure_coverage
 
 WIDTH, HEIGHT = 64, 48
-Corners = np.ndarray
-"""The corners of a polygon, x and y in pixels."""
-
-
-def cut(corners: Corners, axis: int, limit: float, sense: float) -> Corners:
-    """The part of a polygon on one side of a line (Sutherland and Hodgman 1974)."""
-    if not len(corners):
-        return corners
-    following = np.roll(corners, -1, axis=0)
-    here, there = sense * (corners[:, axis] - limit), sense * (following[:, axis] - limit)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        crossing = corners + (following - corners) * (here / (here - there))[:, None]
-    both = np.stack([corners, crossing], axis=1)
-    return both[np.stack([here >= 0.0, (here >= 0.0) != (there >= 0.0)], axis=1)]
-
-
-def area(corners: Corners) -> float:
-    x, y = corners.T if len(corners) else np.zeros((2, 0))
-    return 0.5 * abs(float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))))
-
-
-def covered(corners: Corners) -> np.ndarray:
-    """How much of each pixel a polygon covers, in 64 bits."""
-    coverage = np.zeros((HEIGHT, WIDTH))
-    for row in range(HEIGHT):
-        band = cut(cut(corners, 1, row, 1.0), 1, row + 1.0, -1.0)
-        for column in range(WIDTH) if len(band) else ():
-            band = cut(band, 0, column, 1.0)
-            coverage[row, column] = area(cut(band, 0, column + 1.0, -1.0))
-    return coverage
+SIZE = (WIDTH, HEIGHT)
 
 
 def arc(center: tuple[float, float], radii: tuple[float, float], start: float, end: float, count: int = 500) -> Corners:
@@ -81,7 +53,7 @@ CASES = {
 @pytest.mark.parametrize("node", CASES.values(), ids=CASES)
 def test_coverage_equals_clipped_polygons(run, node):
     mask = run(node, size=(WIDTH, HEIGHT), output="mask")[..., 0]
-    np.testing.assert_allclose(mask, covered(trace(node)), atol=2e-3)
+    np.testing.assert_allclose(mask, measure_coverage(trace(node), SIZE), atol=2e-3)
     picture = run(node.with_values(color=(0.2, 0.4, 0.6, 0.8)), size=(WIDTH, HEIGHT))
     np.testing.assert_allclose(picture, mask[..., None] * (0.2, 0.4, 0.6, 0.8), atol=1e-6)
 

@@ -307,7 +307,9 @@ def _choose_rows(rows: list[NodeRow]) -> list[NodeRow]:
 
 def can_set_on_node(value: Value) -> bool:
     """False for values that only the inspector can edit."""
-    return value.type not in ("matrix", "curve", "ramp") and (value.type != "vector" or value.length <= MOST_PARTS)
+    return value.type not in ("matrix", "curve", "ramp", "spline") and (
+        value.type != "vector" or value.length <= MOST_PARTS
+    )
 
 
 def _is_wireable(graph: Graph, port: Port) -> bool:

@@ -80,7 +80,7 @@ def _paint_words(sketch: Sketch, rect: Rect, row: NodeRow, color: int) -> None:
         sketch.draw_triangle((x - 4, y - size / 2), (x + 4, y - size / 2), (x, y + size), sketch.ink.dim)
         right -= 14.0
     text = row.texts[0].text
-    if not text or kind in ("vector", "matrix", "curve", "ramp"):
+    if not text or kind in ("vector", "matrix", "curve", "ramp", "spline"):
         text, color = {"path": "no file", "text": ""}.get(kind, "in the inspector"), sketch.ink.faint
     room = right - rect[0] - PAD
     label = sketch.shorten(row.label, room * 0.5)

@@ -207,7 +207,7 @@ def describe_default(declaration: Value) -> str:
             return "on" if default else "off"
         case "choice" | "text" | "path":
             return str(default)
-        case "curve" | "ramp" | "items":
+        case "curve" | "ramp" | "spline" | "items":
             return ""
         case _:
             assert isinstance(default, tuple)

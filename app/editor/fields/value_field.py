@@ -53,6 +53,11 @@ def value_field(
             draw = text_field
         case "items":
             return None  # they have rows of their own in the inspector
+        case "spline":
+            count = len(value) // declaration.length if isinstance(value, tuple) else 0
+            imgui.align_text_to_frame_padding()
+            imgui.text_disabled(f"{count} point{'' if count == 1 else 's'}, moved in the viewer")
+            return None
     imgui.begin_group()
     edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)
     imgui.end_group()

@@ -11,6 +11,7 @@ from ...authoring.commands import ReplaceGraph, ResetValue, SetValue, SetValues
 from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, find_declaration, signature
 from ...graph.named_items import describe_items
+from ...graph.scalars import describe_scalar
 from ..fields.fields import Edit
 from ..fields.numbers import parse_number
 
@@ -80,9 +81,11 @@ def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
     )
 
 
-def as_text(value: Plain) -> str:
+def as_text(declaration: Value, value: Plain) -> str:
     """A value for the clipboard."""
-    return json.dumps(describe_items(value) if isinstance(value, ItemSet) else value)
+    if isinstance(value, ItemSet):
+        return json.dumps(describe_items(declaration.items, value) if declaration.items else {})
+    return json.dumps(describe_scalar(declaration, value))
 
 
 def from_text(text: str) -> Any:

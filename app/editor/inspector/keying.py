@@ -264,7 +264,9 @@ class Keying:
 def as_text(session: Session, port: Port) -> str:
     """The animation of a value for the clipboard."""
     animation = session.graph.animation.get(port)
-    return json.dumps({"animation": None if animation is None else describe_animation(animation)})
+    return json.dumps(
+        {"animation": None if animation is None else describe_animation(animation, session.graph.declaration(port))}
+    )
 
 
 def paste(session: Session, ports: Ports, text: str) -> None:

@@ -133,7 +133,7 @@ class ValueRows:
             _crosshair(rows, key)
         if control:
             self._mark(rows, port, control)
-        return released and declaration.type not in ("curve", "ramp", "items")
+        return released and declaration.type not in ("curve", "ramp", "spline", "items")
 
     def _draw_notes(self, rows: Rows, ports: Ports, declaration: Value, value: Plain) -> None:
         """Draw what belongs below a field: the file of a path, a color space, the selected light."""
@@ -283,7 +283,7 @@ class ValueRows:
             context.places[f"menu {label}"] = item_rect()
 
         entry(icons.ICON_FA_ROTATE_LEFT, "Reset", True, lambda: reset(session, ports))
-        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: context.clipboard.put(as_text(value)))
+        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: context.clipboard.put(as_text(declaration, value)))
         entry(
             icons.ICON_FA_PASTE,
             "Paste Value",
@@ -304,7 +304,7 @@ class ValueRows:
                 icons.ICON_FA_RULER, f"Unit: {unit}", True, partial(session.apply, ConvertLength(ports, unit, height))
             )
         if source is None and can_animate(session.graph, port):
-            self._keying.menu(rows, ports, as_text(value))
+            self._keying.menu(rows, ports, as_text(declaration, value))
         if source is not None:
             imgui.separator()
             entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(context, source))

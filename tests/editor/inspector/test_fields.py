@@ -10,6 +10,7 @@ from halation.editor.inspector.applying import apply, as_text, common, from_text
 from halation.editor.theme.palette import DARK
 from halation.errors import HalationError, UsageError
 from halation.graph import Graph, Port, Unknown
+from halation.nodes import Value
 from halation.resources.sandbox import UNRESTRICTED
 from toy_nodes import TOYS, Blend, Gain, Soften
 
@@ -118,7 +119,7 @@ class TestApplying:
 
     @pytest.mark.parametrize("plain", [1.5, 3, True, "soft light", (1.0, 2.0)])
     def test_values_pass_the_clipboard(self, plain):
-        assert from_text(as_text(plain)) == plain
+        assert from_text(as_text(Value("any", "float", 0.0), plain)) == plain
 
     def test_what_is_no_value(self):
         assert from_text(" plain words ") == "plain words"

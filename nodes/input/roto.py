@@ -1,0 +1,314 @@
+"""Rotoscope: named splines as one mask.
+
+The GLSL gets each curve in *spans* of eight straight segments, and for each tile of the picture the spans that matter
+there. So a pixel looks at a few segments only, however many points there are and however wide a feather is.
+"""
+
+import math
+from collections.abc import Mapping
+from itertools import groupby, pairwise
+from typing import Annotated, NamedTuple
+
+from .._declare import (
+    RGBA,
+    CubicCurve,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Image,
+    OutputSocket,
+    RotoMode,
+    RotoShape,
+    RotoShapeSet,
+    Size,
+    Vector,
+    curve_point,
+    list_curves,
+    name_roto_shapes,
+    roto_shapes_of,
+    split_points,
+)
+
+_TILE = 16
+_SEGMENTS = 8
+"""Segments of a span."""
+
+_BITS = 24
+"""Spans to a channel of a texel: as many as a float holds exactly."""
+
+_BLOCK = 16
+"""Spans side by side in the tables, so that no table is higher than a texture can be."""
+
+_FINE = 0.002
+"""How far in pixels a long segment may be from its curve: keeps coverage within 2e-3 of exact areas, as the polygon is
+on both sides of the curve, by two thirds of this at most."""
+
+_COARSE = 0.004
+"""How far a segment may be that is no longer than `_SHORT`: what is too much at its middle is missing at its ends."""
+
+_SHORT = 1.5
+_LONG = 12.0
+"""The longest segment in pixels: a span then lies in few tiles."""
+
+_MOST_SPANS = 64
+"""The most spans of one curve: 512 segments, as many as a quarter of a circle needs that is 3000 pixels high."""
+
+_LOOSE = 1.0 / 500.0
+"""How far a chord may be from its curve where it stands for the distance, as a part of the feather: 0.3 percent of
+coverage in the middle of the edge, where it changes most."""
+
+_LEAST_SLACK = 0.05
+"""The least such distance in pixels: a twentieth of a pixel is not seen in an edge of a few pixels."""
+
+_MODES = tuple(RotoMode)
+
+
+class _Path(NamedTuple):
+    """An outline in pixels: its curves with the feather of the points they start at, and the spans of each curve."""
+
+    outline: RotoShape
+    curves: tuple[CubicCurve, ...]
+    feathers: tuple[float, ...]
+    span_counts: tuple[int, ...]
+
+    @property
+    def feather(self) -> float:
+        """The width of its edge where that is widest."""
+        return self.outline.feather + max(self.feathers)
+
+    @property
+    def span_count(self) -> int:
+        return sum(self.span_counts)
+
+    @property
+    def channel_count(self) -> int:
+        return -(-self.span_count // _BITS)
+
+
+class Roto(Filter):
+    """Draw a mask by hand: closed splines by name, each added to those before it, cut from them, or kept inside them.
+
+    The mask is how much of each pixel the shapes cover, to 2e-3. Shapes are combined in the order of their names.
+    Points and tangents are fractions of the picture, so that shapes are the same at every size. A feather is measured
+    from the nearest point of the spline, and a wide one costs no more than a narrow one. Where a spline overlaps
+    itself, the pixels count once if both parts run the same way around.
+    """
+
+    aliases = (
+        "rotoscope", "rotopaint", "roto paint", "mask", "bezier", "spline", "b-spline", "garbage matte", "mask node",
+        "polygon mask", "draw mask", "hold-out", "power window", "pen tool", "vignette mask", "curve mask",
+    )  # fmt: skip
+
+    matte = Field(0.0, doc="A mask that the shapes are added to.")
+    shapes: Annotated[RotoShapeSet, Doc("Shapes by name, combined in the order of their names.")] = name_roto_shapes(
+        shape_1=RotoShape()
+    )
+    color: Annotated[RGBA, Doc("The color of the picture, premultiplied.")] = (1.0, 1.0, 1.0, 1.0)
+
+    out = OutputSocket(Image(doc="The color where the shapes are, transparent elsewhere."))
+    mask = OutputSocket(Field(doc="How much of each pixel the shapes cover, 0..1."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        shapes = self._list_active(draw)
+        mask = draw.point("roto_matte", self.matte, result=Field())
+        paths = [_trace_path(outline, draw.size) for outline in shapes]
+        for is_soft, run in groupby(paths, lambda path: path.feather > 0.0):
+            if is_soft:
+                for path in run:
+                    mask = self._draw_soft(draw, mask, path)
+            else:
+                mask = _draw_coverage(draw, mask, list(run))
+        return {"out": draw.point("roto_fill", mask=mask, color=self.color), "mask": mask}
+
+    def _list_active(self, draw: Draw) -> list[RotoShape]:
+        """The outlines that count at this frame. The frame is asked for only where a range depends on it."""
+        outlines = [outline for outline in roto_shapes_of(self.shapes) if outline.on]
+        if any(outline.lifetime == "range" for outline in outlines):
+            outlines = [outline for outline in outlines if outline.is_active(draw.frame)]
+        return outlines
+
+    def _draw_soft(self, draw: Draw, mask: Drawn, path: _Path) -> Drawn:
+        """One outline with a feather: its exact coverage says which side of the edge a pixel is on."""
+        outline = path.outline
+        nothing = draw("roto_nothing", size=(1, 1), result=Field())
+        cover = _draw_coverage(draw, nothing, [path._replace(outline=RotoShape())])
+        return draw.point(
+            "roto_soft", mask=mask, cover=cover, nearest=_draw_distance(draw, path), result=Field(),
+            mode=_MODES.index(outline.mode), feather=outline.feather, opacity=outline.opacity, invert=outline.invert,
+        )  # fmt: skip
+
+
+def _draw_coverage(draw: Draw, mask: Drawn, paths: list[_Path]) -> Drawn:
+    """Sort spans into tiles, sum what lies left of each tile, then cover pixels: see the GLSL."""
+    width, height = draw.size
+    across, down, count = -(-width // _TILE), -(-height // _TILE), len(paths)
+    channels = sum(path.channel_count for path in paths)
+    blocks, rows = -(-channels * _BITS // _BLOCK), -(-channels // 16)
+    groups = max(-(-path.channel_count // (4 * _BITS)) for path in paths)
+    spans = draw.table(_pack_spans(paths), _BLOCK)
+    curves = draw.table(_pack_curves(paths), 3 * _BLOCK)
+    shapes, owners = draw.table(_pack_shapes(paths), 2), draw.table(_pack_channels(paths), _BLOCK)
+    four = Vector(width=4)
+    points = draw("roto_points", spans=spans, curves=curves, size=(_BLOCK * _SEGMENTS, blocks), result=four)
+    boxes = draw("roto_boxes", spans=spans, points=points, size=(_BLOCK, blocks), result=four)
+    hulls = draw("roto_hulls", owners=owners, boxes=boxes, size=owners.size, result=four)
+    words = draw(
+        "roto_words", spans=spans, points=points, boxes=boxes, hulls=hulls, owners=owners,
+        size=(4 * across, rows * down), result=four, rows=rows, channels=channels,
+    )  # fmt: skip
+    digest = draw(
+        "roto_digest", words=words, shapes=shapes, size=(across * count * groups, down), result=four,
+        rows=rows, groups=groups, count=count,
+    )  # fmt: skip
+    steps = draw(
+        "roto_crossings", spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
+        size=(across * count, -(-height // 4)), result=four,
+        rows=rows, groups=groups, count=count,
+    )  # fmt: skip
+    backdrop = draw("roto_backdrop", steps=steps, size=steps.size, result=four, count=count)
+    levels = draw(
+        "roto_level", shapes=shapes, digest=digest, backdrop=backdrop, size=(across, down), result=four,
+        groups=groups, count=count,
+    )  # fmt: skip
+    return draw(
+        "roto_cover", mask=mask, spans=spans, points=points, shapes=shapes, boxes=boxes, words=words, digest=digest,
+        backdrop=backdrop, levels=levels,
+        overlap={"mask": 0}, result=Field(), rows=rows, groups=groups, count=count,
+        segments=_SEGMENTS,
+    )  # fmt: skip
+
+
+def _trace_path(outline: RotoShape, size: Size) -> _Path:
+    """An outline, moved as it says, in pixels."""
+    width, height = size
+    points = split_points(outline.points)
+    pivot_x, pivot_y = outline.pivot[0] * width, outline.pivot[1] * height
+    turn_x, turn_y = math.cos(outline.rotation), math.sin(outline.rotation)
+    scale_x, scale_y = outline.scale
+    left, top = pivot_x + outline.position[0] * width, pivot_y + outline.position[1] * height
+
+    def move(place: tuple[float, float]) -> tuple[float, float]:
+        x, y = (place[0] * width - pivot_x) * scale_x, (place[1] * height - pivot_y) * scale_y
+        return _limit(turn_x * x - turn_y * y + left), _limit(turn_y * x + turn_x * y + top)
+
+    moved = [(move(first), move(second), move(third)) for first, second, third, _ in list_curves(points)]
+    curves = tuple((*curve, after[0]) for curve, after in zip(moved, (*moved[1:], *moved[:1]), strict=True))
+    feathers = tuple(max(point[6], 0.0) * height for point in points)
+    return _Path(outline, curves, feathers, tuple(map(_count_spans, curves)))
+
+
+def _limit(place: float) -> float:
+    """A place that is exact enough in 32 bits, and the same within pictures: no picture is so large."""
+    return min(max(place, -1e6), 1e6)
+
+
+def _count_spans(curve: CubicCurve) -> int:
+    """How many spans a curve needs. Its bend bounds how far n segments are from it: 3 / 4 of the bend / n^2."""
+    length, bend = sum(math.dist(a, b) for a, b in pairwise(curve)), _measure_bend(curve)
+    segments = min(math.sqrt(0.75 * bend / _FINE), max(length / _SHORT, math.sqrt(0.75 * bend / _COARSE)))
+    return min(max(1, math.ceil(max(segments, length / _LONG) / _SEGMENTS)), _MOST_SPANS)
+
+
+def _measure_bend(curve: CubicCurve) -> float:
+    """The largest second difference of the control points."""
+    (ax, ay), (bx, by), (cx, cy), (dx, dy) = curve
+    return max(math.hypot(ax - 2 * bx + cx, ay - 2 * by + cy), math.hypot(bx - 2 * cx + dx, by - 2 * cy + dy))
+
+
+def _pack_curves(paths: list[_Path]) -> tuple[float, ...]:
+    """Three texels for each curve: its four points, and the feather at its start and its end."""
+    numbers = list[float]()
+    for path in paths:
+        feathers = (*path.feathers, path.feathers[0])
+        for curve, ends in zip(path.curves, pairwise(feathers), strict=True):
+            for point in curve:
+                numbers += point
+            numbers += (*ends, 0.0, 0.0)
+    return tuple(numbers)
+
+
+def _pack_spans(paths: list[_Path]) -> tuple[float, ...]:
+    """A texel for each span: its curve, which part of it the span is, of how many, and the span that follows.
+
+    The spans of each outline start with a new channel.
+    """
+    numbers, curve = list[float](), 0
+    for path in paths:
+        base = span = len(numbers) // 4
+        for count in path.span_counts:
+            for part in range(count):
+                span += 1
+                numbers += (curve, part, count, span)
+            curve += 1
+        numbers[-1] = base
+        numbers += [0.0] * (4 * (path.channel_count * _BITS - path.span_count))
+    return tuple(numbers)
+
+
+def _pack_shapes(paths: list[_Path]) -> tuple[float, ...]:
+    """Two texels for each outline.
+
+    The first channel, the channels, the spans, the mode. The opacity, whether it is inverted; the rest is free.
+    """
+    numbers, first = list[float](), 0
+    for path in paths:
+        outline = path.outline
+        numbers += (first, path.channel_count, path.span_count, _MODES.index(outline.mode))
+        numbers += (outline.opacity, float(outline.invert), 0.0, 0.0)
+        first += path.channel_count
+    return tuple(numbers)
+
+
+def _pack_channels(paths: list[_Path]) -> tuple[float, ...]:
+    """For each channel of the words the number of its outline, and how many spans it stands for."""
+    numbers = list[float]()
+    for place, path in enumerate(paths):
+        for start in range(0, path.span_count, _BITS):
+            numbers += (place, min(path.span_count - start, _BITS), 0.0, 0.0)
+    return tuple(numbers)
+
+
+# --- soft edges ----------------------------------------------------------------------------------------------------
+
+
+def _draw_distance(draw: Draw, path: _Path) -> Drawn:
+    """The distance from each pixel to an outline, and the feather there; chords stand for the curves."""
+    chords = _list_chords(path)
+    across, down = -(-draw.size[0] // _TILE), -(-draw.size[1] // _TILE)
+    count, channels = len(chords) // 8, -(-len(chords) // (8 * _BITS))
+    rows, groups = -(-channels // 16), -(-channels // (4 * _BITS))
+    table, four, reach = draw.table(chords, 2 * _BLOCK), Vector(width=4), 0.5 * path.feather
+    hulls = draw(
+        "roto_chord_hulls", chords=table, size=(_BLOCK, -(-channels // _BLOCK)), result=four, chord_count=count
+    )
+    nearest = draw(
+        "roto_nearest", chords=table, hulls=hulls, size=(across, down), result=Field(),
+        chord_count=count, channels=channels,
+    )  # fmt: skip
+    words = draw(
+        "roto_chord_words", chords=table, hulls=hulls, nearest=nearest, size=(4 * across, rows * down), result=four,
+        rows=rows, channels=channels, chord_count=count, reach=reach,
+    )  # fmt: skip
+    shape = draw.table((0.0, channels, count, 0.0), 1)
+    digest = draw(
+        "roto_digest", words=words, shapes=shape, size=(across * groups, down), result=four,
+        rows=rows, groups=groups, count=1,
+    )  # fmt: skip
+    return draw(
+        "roto_distance", chords=table, words=words, digest=digest, overlap={}, result=Vector(width=2),
+        rows=rows, groups=groups, parts=-(-channels // _BITS), reach=reach,
+    )  # fmt: skip
+
+
+def _list_chords(path: _Path) -> tuple[float, ...]:
+    """Two texels for each chord: its ends, and the feather there."""
+    numbers, slack = list[float](), max(_LOOSE * path.feather, _LEAST_SLACK)
+    for curve, ends in zip(path.curves, pairwise((*path.feathers, path.feathers[0])), strict=True):
+        count = max(1, math.ceil(math.sqrt(0.75 * _measure_bend(curve) / slack)))
+        places = (curve[0], *(curve_point(curve, number / count) for number in range(1, count)), curve[3])
+        for number, (start, end) in enumerate(pairwise(places)):
+            feathers = (ends[0] + (ends[1] - ends[0]) * t / count for t in (number, number + 1))
+            numbers += (*start, *end, *feathers, 0.0, 0.0)
+    return tuple(numbers)
