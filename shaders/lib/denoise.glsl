@@ -30,8 +30,10 @@ Denoised denoise_here(const vec4 rays[3]) {
 
 // How far a pixel is, in pixels of the blur along its longer side: reflections at grazing angles are narrower across.
 float denoise_away(Denoised here, ivec2 off) {
-    vec2 along = vec2(off);
-    return length(vec2(dot(along, here.up), here.squeeze * dot(along, vec2(-here.up.y, here.up.x))));
+    float along = dot(vec2(off), here.up), across = abs(dot(vec2(off), vec2(-here.up.y, here.up.x)));
+    // Half a pixel to either side belongs to every pixel. Without it columns of noise stay apart.
+    across += (here.squeeze - 1.0) * max(across - 0.5, 0.0);
+    return length(vec2(along, across));
 }
 
 // The weight of another pixel of the same surface; 0 outside of the picture and on other surfaces.
