@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from .graph import Graph
     from .inputs.provider import Binding
     from .resources.render_choices import Dither
+    from .scripting.client import ServiceConnection
 
-__all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
+__all__ = ["Graph", "HalationError", "__version__", "connect", "load", "render", "render_frames", "save", "write"]
 
 __version__ = VERSION
 
@@ -42,6 +43,18 @@ def load(path: str | Path) -> Graph:
     from .scripting.arguments import check_path
 
     return document.load(find_graph_or_preset(check_path("path", path)), sandbox=read_process_sandbox())
+
+
+def connect(socket: str | Path | None = None) -> ServiceConnection:
+    """A connection to a warm process that renders: the server at this socket, or one that is started for you.
+
+    `render`, `make_thumbnail` and `ask` of a connection send requests (docs/serve.md). Raises RenderError where no
+    server listens.
+    """
+    from .scripting.arguments import check_path
+    from .scripting.client import open_connection
+
+    return open_connection(None if socket is None else check_path("socket", socket))
 
 
 def save(graph: Graph, path: str | Path) -> None:

@@ -16,6 +16,12 @@ Anything else that escapes is a bug.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
+
 
 def describe_owner(path: str) -> str:
     """What a sentence calls the owner of a fault: "node 'glow'", "input 'beauty'" for `inputs.beauty`.
@@ -103,3 +109,14 @@ class RenderError(HalationError):
 
 class OutputError(RenderError):
     """A result cannot be written."""
+
+
+def rebuild_fault(facts: Mapping[str, Any]) -> HalationError:
+    """The error that another process has described by `kind`, `message` and `exit_code`, in the same class."""
+    kind = globals().get(str(facts.get("kind", "")), HalationError)
+    if not (isinstance(kind, type) and issubclass(kind, HalationError)):
+        kind = HalationError
+    fault = kind.__new__(kind)
+    HalationError.__init__(fault, str(facts.get("message", "another process has failed")))
+    fault.exit_code = int(facts.get("exit_code", 1))
+    return fault

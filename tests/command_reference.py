@@ -37,12 +37,12 @@ def fill_tables(page: str) -> str:
 
 
 def find_shared_options(commands: Mapping[str, Any]) -> dict[str, str]:
-    """The help of every option that several commands declare in the same way, by its flags."""
+    """The help of every argument and option that several commands declare in the same way, by its flags."""
     uses = Counter(
         (_flags(item), item.help)
         for command in commands.values()
         for item in command.params
-        if item.param_type_name == "option" and item.name != "help" and not set(_EVERYWHERE) & set(item.opts)
+        if item.name != "help" and not set(_EVERYWHERE) & set(item.opts)
     )
     return {flags: text for (flags, text), count in uses.items() if count >= _SHARED_BY}
 
@@ -52,7 +52,7 @@ def describe_command(name: str, command: Any, shared: Mapping[str, str]) -> str:
     arguments = [item for item in command.params if item.param_type_name == "argument"]
     options = [item for item in command.params if item.param_type_name == "option" and not item.hidden]
     usage = " ".join(["halation", name, *(_usage(item) for item in arguments), *_required_options(options)])
-    rows = [(f"`{_usage(item)}`", item.help or "") for item in arguments]
+    rows = [(_flags(item), item.help or "") for item in arguments if shared.get(_flags(item)) != item.help]
     own = [item for item in options if item.name != "help" and not set(_EVERYWHERE) & set(item.opts)]
     rows += [(_flags(item), item.help or "") for item in own if shared.get(_flags(item)) != item.help]
     common = [_flags(item).split()[0].strip(",") for item in own if shared.get(_flags(item)) == item.help]
@@ -78,6 +78,8 @@ def _required_options(options: list[Any]) -> Iterator[str]:
 
 
 def _flags(item: Any) -> str:
+    if item.param_type_name == "argument":
+        return f"`{_usage(item)}`"
     flags = ", ".join(f"`{flag}`" for flag in sorted(item.opts, key=len))
     argument = item.metavar or (item.name or "").upper()
     return flags if item.is_flag else f"{flags} `{argument}`".replace("|", "\\|")

@@ -176,6 +176,19 @@ def test_a_function_that_is_bound_may_render_too() -> None:
         assert render() == threads.submit(render).result(60) == 4.0
 
 
+def test_twenty_threads_render_pictures_of_their_own() -> None:
+    """Each has another value and another size, so that nothing is shared but the renderer."""
+
+    def render(number: int) -> tuple[float, tuple[int, ...]]:
+        picture = np.full((4 + number, 6, 4), 1.0 + number, np.float32)
+        image = hal.render(small_graph(), {"beauty": picture}, values={"light.stops": float(number % 3)})["image"]
+        return float(image[1, 2, 0]), image.shape
+
+    with ThreadPoolExecutor(20) as threads:
+        pictures = list(threads.map(render, range(100)))
+    assert pictures == [((1.0 + number) * 2.0 ** (number % 3), (4 + number, 6, 4)) for number in range(100)]
+
+
 def test_frames_go_from_thread_to_thread() -> None:
     with ThreadPoolExecutor(1) as one, ThreadPoolExecutor(1) as another:
         rendered = hal.render_frames(small_graph(), {"beauty": SMALL}, range(1, 5))

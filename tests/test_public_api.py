@@ -33,10 +33,11 @@ def graph() -> Graph:
 def test_names_are_frozen():
     """A name here is a promise: add to the list, never take away."""
     assert hal.__all__ == [
-        "Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write",
+        "Graph", "HalationError", "__version__", "connect", "load", "render", "render_frames", "save", "write",
     ]  # fmt: skip
     assert hal.Graph is Graph and hal.__version__ == version("halation")
     assert {name: str(inspect.signature(getattr(hal, name))).split(" -> ")[0] for name in hal.__all__[3:]} == {
+        "connect": "(socket: 'str | Path | None' = None)",
         "load": "(path: 'str | Path')",
         "render": "(graph: 'Graph', inputs: 'Mapping[str, Binding] | None' = None, *, "
         "values: 'Mapping[str, Any] | None' = None, node: 'str' = '', size: 'tuple[int, int] | None' = None, "

@@ -17,7 +17,7 @@ from .plugins import list_refused_plugins, print_refused_plugins
 
 if TYPE_CHECKING:
     from ..graph.rules import Rule
-    from ..lint.checking import CheckReport, Finding, GraphChecker
+    from ..lint.checking import CheckReport, GraphChecker
 
 _REFUSED = 3
 """The exit code of a warning under `--strict`: that of an invalid graph."""
@@ -131,21 +131,10 @@ def _exit_code(report: CheckReport, strict: bool) -> int:
 
 
 def _report_facts(report: CheckReport, strict: bool) -> dict[str, Any]:
-    def describe(finding: Finding) -> dict[str, Any]:
-        problem = finding.problem
-        return {
-            "rule": problem.rule.name,
-            "severity": problem.severity,
-            "line": finding.line,
-            "node": problem.node,
-            "socket": problem.socket,
-            "sentence": problem.sentence,
-        }
-
     return {
         "graph": report.file,
         "exit_code": _exit_code(report, strict),
-        "problems": [describe(finding) for finding in report.findings],
+        "problems": [finding.facts for finding in report.findings],
         **({"omitted": report.omitted} if report.omitted else {}),
     }
 

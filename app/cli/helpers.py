@@ -18,8 +18,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import errors
-from ..errors import HalationError
+from ..errors import HalationError, rebuild_fault
 from ..resources.interrupts import delay_interrupts
 from .outcome import print_note
 from .watchdog import CHECK_INTERVAL, Watchdog
@@ -182,7 +181,9 @@ class _HelperPool:
                 self._fault = helper.watchdog.explain_signal(-process.returncode)
                 self._stop()
             elif self._fault is None:
-                self._fault = _rebuild_fault(report.get("error", {}), process.returncode)
+                self._fault = rebuild_fault(
+                    {"message": f"a process was ended by {process.returncode}", **report.get("error", {})}
+                )
                 self._stop()
 
     def _handle_line(self, line: str) -> None:
@@ -212,12 +213,3 @@ def _divide_cores(helpers: int) -> dict[str, str]:
         return {}
     threads = str(max(1, (os.cpu_count() or 1) // helpers))
     return {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}
-
-
-def _rebuild_fault(error: Mapping[str, Any], code: int) -> HalationError:
-    """The error that a helper reported, as an instance of the same class of `errors`."""
-    kind = getattr(errors, str(error.get("kind", "")), HalationError)
-    fault: HalationError = kind.__new__(kind)
-    HalationError.__init__(fault, error.get("message", f"a process was ended by {code}"))
-    fault.exit_code = error.get("exit_code", 1)
-    return fault

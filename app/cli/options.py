@@ -49,6 +49,9 @@ Scale = Annotated[
         "--scale", metavar="X", help="Render a smaller proxy: 0.5 is half the size, and lengths in pixels shrink too."
     ),
 ]
+View = Annotated[
+    str, typer.Option(help="OpenColorIO view of PNG, JPEG, TIFF, WebP and DPX files; 'none' for plain sRGB.")
+]
 OneFrame = Annotated[int | None, typer.Option(help="Use this frame; by default the first frame of the graph.")]
 Frames = Annotated[
     str | None,

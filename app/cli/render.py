@@ -24,6 +24,7 @@ from .options import (
     Scale,
     Sets,
     SizeText,
+    View,
     read_standard_input,
 )
 from .watchdog import Timeout
@@ -64,9 +65,7 @@ def render(
     ] = 1,
     precision: Precision = None,
     memory: Memory = None,
-    view: Annotated[
-        str, typer.Option(help="OpenColorIO view of PNG, JPEG, TIFF, WebP and DPX files; 'none' for plain sRGB.")
-    ] = "",
+    view: View = "",
     display: Annotated[
         str, typer.Option(help="OpenColorIO display of these files; by default that of the config.")
     ] = "",

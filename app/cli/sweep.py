@@ -20,6 +20,7 @@ from .options import (
     Precision,
     Scale,
     SizeText,
+    View,
     open_graph,
     report_problems,
     resolve_inputs,
@@ -60,7 +61,7 @@ def sweep(
     show: Annotated[
         str, typer.Option("--show", metavar="NAME", help="Show this output of the graph; by default the first.")
     ] = "",
-    view: Annotated[str, typer.Option(help="OpenColorIO view of the pictures; 'none' for plain sRGB.")] = "",
+    view: View = "",
     cell: Annotated[
         int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")
     ] = 480,

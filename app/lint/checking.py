@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from halation.nodes import Node, catalogue
 from msgspec import Struct
@@ -50,6 +51,18 @@ class Finding(Struct, frozen=True):
     line: int
     problem: Problem
     code: int
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """The finding, ready for JSON."""
+        return {
+            "rule": self.problem.rule.name,
+            "severity": self.problem.severity,
+            "line": self.line,
+            "node": self.problem.node,
+            "socket": self.problem.socket,
+            "sentence": self.problem.sentence,
+        }
 
 
 class CheckReport(Struct, frozen=True):

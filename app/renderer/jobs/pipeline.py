@@ -164,6 +164,9 @@ class FramePipeline:
         except HalationError as fault:
             self._drop_frame(task, lease, fault)
             return None
+        except BaseException:  # an interrupt, or a caller that no longer wants the frame
+            lease.close()
+            raise
 
     def _drop_frame(self, task: FrameTask, lease: TextureLease, fault: HalationError) -> None:
         """Give up a frame and its item, and remove the files that it began."""

@@ -1,0 +1,288 @@
+"""`halation serve` and `hal.connect`: a warm process that answers other programs."""
+
+from __future__ import annotations
+
+import io
+import json
+import socket
+import stat
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import halation as hal
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from exr_files import write_exr
+from halation import document
+from halation.errors import RenderError
+from halation.resources.sandbox import UNRESTRICTED
+from halation.scripting.packed_arrays import pack_array, unpack_array
+
+POSIX = pytest.mark.skipif(not hasattr(socket, "AF_UNIX"), reason="this system has no local sockets")
+BLUR = {
+    "nodes": {"light": {"type": "exposure"}, "blur": {"type": "gaussian_blur"}},
+    "links": {"blur.image": "light.out", "outputs.image": "blur.out"},
+}
+ENDLESS = {
+    "nodes": {"light": {"type": "exposure"}, "trail": {"type": "frame_blend"}},
+    "links": {"trail.image": "light.out", "outputs.image": "trail.out"},
+    "settings": {"frames": [1, 90_000]},
+}
+"""Its last frame needs 90,000 frames before it, which take minutes."""
+
+
+@contextmanager
+def started(folder: Path, *words: str) -> Iterator[tuple[Path, subprocess.Popen[str]]]:
+    """A server at a socket."""
+    path = folder / "server"
+    command = [sys.executable, "-m", "halation.cli", "serve", "--socket", str(path), *words]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        line = process.stderr.readline()
+        assert line.endswith(f"ready at {path}\n"), line
+        try:
+            yield path, process
+        finally:
+            process.terminate()
+            process.wait(30)
+
+
+@pytest.fixture
+def server(tmp_path) -> Iterator[Path]:
+    with started(tmp_path, "--limit", "20", "--max-pixels", "1000000") as (path, _):
+        yield path
+
+
+class Wire:
+    """A client that speaks lines."""
+
+    def __init__(self, path: Path) -> None:
+        self.socket = socket.socket(socket.AF_UNIX)
+        self.socket.settimeout(60)
+        self.socket.connect(str(path))
+        self.replies = self.socket.makefile("rb")
+
+    def send(self, *requests: object) -> None:
+        for request in requests:
+            line = request if isinstance(request, bytes) else json.dumps(request).encode()
+            self.socket.sendall(line + b"\n")
+
+    def read(self) -> dict:
+        return json.loads(self.replies.readline())
+
+    def close(self) -> None:
+        self.replies.close()
+        self.socket.close()
+
+
+@pytest.fixture
+def wire(server) -> Iterator[Wire]:
+    wire = Wire(server)
+    yield wire
+    wire.close()
+
+
+@POSIX
+def test_pixels_are_those_of_render(server, graphs):
+    path, values = graphs(**BLUR), {"blur.sigma": 3.0, "light.stops": 1.5}
+    with hal.connect(server) as connection:
+        for options in ({}, {"size": (24, 16)}, {"scale": 0.5}, {"node": "light"}, {"precision": "float"}):
+            pictures = connection.render(path, values=values, **options)
+            wanted = hal.render(hal.load(path), values=values, **options)
+            assert set(pictures) == set(wanted)
+            for name, picture in pictures.items():
+                np.testing.assert_array_equal(picture, wanted[name])
+
+
+@POSIX
+def test_arrays_graphs_and_presets_are_sent(server, graphs):
+    graph, picture = hal.load(graphs(**BLUR)), np.random.default_rng(1).random((9, 14, 4), np.float32)
+    with hal.connect(server) as connection:
+        for whole in (graph, "dreamy_glow"):
+            loaded = hal.load(whole) if isinstance(whole, str) else whole
+            name = next(iter(loaded.inputs))
+            received = connection.render(whole, {name: picture})["image"]
+            np.testing.assert_array_equal(received, hal.render(loaded, {name: picture})["image"])
+
+
+@POSIX
+def test_files_are_those_of_the_command(server, cli, graphs, tmp_path):
+    path = graphs(**BLUR)
+    with hal.connect(server) as connection:
+        assert connection.render(path, output=tmp_path / "served.png", values={"light.stops": 0.5}) == {}
+    assert cli("render", path, "-o", tmp_path / "single.png", "--set", "light.stops=0.5").code == 0
+    assert (tmp_path / "served.png").read_bytes() == (tmp_path / "single.png").read_bytes()
+
+
+@POSIX
+def test_a_thumbnail_is_a_small_picture_of_the_render(server, graphs, tmp_path):
+    path = graphs(**BLUR)
+    with hal.connect(server) as connection:
+        (tmp_path / "small.png").write_bytes(connection.make_thumbnail(path, width=12, view="none"))
+    small = oiio.ImageBuf(str(tmp_path / "small.png")).get_pixels(oiio.FLOAT)
+    assert small.shape[:2] == (8, 12)
+    light = np.where(small <= 0.04045, small / 12.92, ((small + 0.055) / 1.055) ** 2.4)[..., :3]
+    full = hal.render(hal.load(path))["image"][..., :3].reshape(8, 4, 12, 4, 3).mean((1, 3))
+    assert np.abs(light - np.clip(full, 0.0, 1.0)).mean() < 0.02
+
+
+@POSIX
+def test_explain_and_check_say_what_the_commands_say(server, cli, graphs):
+    path = graphs(nodes={"light": {"type": "exposure", "values": {"stopps": 1.0}}})
+    with hal.connect(server) as connection:
+        plan = connection.ask("explain", graphs("plain.json", **BLUR))["plan"]
+        problems = connection.ask("check", path)["problems"]
+        inside = connection.ask("check", document.loads(path.read_text(), sandbox=UNRESTRICTED))["problems"]
+    wanted = cli("explain", graphs("plain.json", **BLUR), "--json").json
+    assert len(plan["passes"]) == len(wanted["passes"]) and plan["outputs"] == wanted["outputs"]
+    assert problems == cli("check", path, "--json").json["graphs"][0]["problems"]
+    assert {problem["rule"] for problem in problems} >= {"unknown-key"} and inside
+
+
+WRONG = (
+    (b"{", "UsageError", "the line is not a request"),
+    (b"[1, 2]", "UsageError", "the line is not a request"),
+    ({"do": "dance", "id": 4}, "UsageError", "the line is not a request"),
+    ({"do": "render", "id": 4}, "UsageError", "name a graph file or a preset"),
+    ({"do": "render", "id": 4, "graph": "none.json"}, "DocumentError", "there is no such file"),
+    ({"do": "render", "id": 4, "graph": {"halation": 1, "nodes": 3}}, "DocumentError", "nodes"),
+    ({"do": "render", "id": 4, "graph": "PATH", "scale": 2.0}, "UsageError", "above 0 and up to 1"),
+    ({"do": "render", "id": 4, "graph": "PATH", "size": [4000, 4000]}, "UsageError", "more than the 1,000,000"),
+    ({"do": "render", "id": 4, "graph": "PATH", "set": {"no.value": 1}}, "GraphError", "no"),
+    ({"do": "render", "id": 4, "graph": "PATH", "input": {"beauty": {"shape": [1]}}}, "UsageError", "not an array"),
+    ({"do": "thumbnail", "id": 4, "graph": "PATH", "width": 9000}, "UsageError", "1 to 2048 pixels"),
+    ({"do": "render", "id": 4, "graph": "PATH", "output": {"": "no/such/a.png"}}, "OutputError", "create it first"),
+)
+
+
+@POSIX
+def test_what_is_wrong_is_said_and_the_server_goes_on(wire, graphs):
+    path = str(graphs())
+    for request, kind, words in WRONG:
+        if isinstance(request, dict) and request.get("graph") == "PATH":
+            request = {**request, "graph": path}
+        wire.send(request, {"do": "check", "id": "after", "graph": path})
+        replies = {reply["id"]: reply for reply in (wire.read(), wire.read())}
+        error = replies[4 if isinstance(request, dict) else None]["error"]
+        assert error["kind"] == kind and words in error["message"] and "\n" not in error["message"], request
+        assert "problems" in replies["after"]
+
+
+@POSIX
+def test_a_request_that_takes_too_long_is_ended(tmp_path, graphs):
+    with started(tmp_path, "--limit", "2") as (path, _), hal.connect(path) as connection:
+        with pytest.raises(RenderError, match=r"takes more than 2 seconds: render a smaller picture"):
+            connection.render(graphs(**ENDLESS), frame=90_000)
+        assert connection.render(graphs(**ENDLESS), frame=1)["image"].shape == (32, 48, 4)
+
+
+@POSIX
+def test_a_request_is_cancelled(wire, graphs):
+    path = str(graphs(**ENDLESS))
+    wire.send(
+        {"do": "render", "id": "long", "graph": path, "frame": 90_000},
+        {"do": "check", "id": "waits", "graph": path},
+        {"do": "cancel", "request": "waits"},
+        {"do": "cancel", "request": "long"},
+        {"do": "check", "id": "last", "graph": path},
+    )
+    replies = [wire.read() for _ in range(3)]
+    assert {reply["id"] for reply in replies if reply.get("cancelled")} == {"long", "waits"}
+    assert "problems" in replies[-1]
+
+
+@POSIX
+def test_a_client_that_goes_away_cancels_its_work(server, graphs):
+    gone = Wire(server)
+    path = str(graphs(**ENDLESS))
+    gone.send(*({"do": "render", "id": number, "graph": path, "frame": 90_000} for number in range(50)))
+    gone.close()
+    stays = Wire(server)
+    stays.send({"do": "check", "id": 1, "graph": path})
+    assert "problems" in stays.read()  # fifty requests of twenty seconds would be longer than it waits
+    stays.close()
+
+
+@POSIX
+def test_many_clients_get_their_own_replies(server, graphs):
+    path = str(graphs())
+    wires = [Wire(server) for _ in range(8)]
+    for number, wire in enumerate(wires):
+        wire.send(*({"do": "render", "id": f"{number}.{turn}", "graph": path, "set": {"light.stops": number}}
+                    for turn in range(3)))  # fmt: skip
+    for number, wire in enumerate(wires):
+        for turn in range(3):
+            reply = wire.read()
+            assert reply["id"] == f"{number}.{turn}"
+            assert unpack_array("image", reply["pictures"]["image"])[0, 0, 1] == 0.25 * 2.0**number
+        wire.close()
+
+
+@POSIX
+def test_nothing_outside_of_the_root_is_read(tmp_path, graphs):
+    (tmp_path / "fence").mkdir()
+    outside = graphs()
+    inside = graphs("fence/inside.json", inputs={"beauty": {"type": "Image", "file": "../shot.exr"}})
+    with started(tmp_path / "fence", "--root", str(tmp_path / "fence")) as (path, _), hal.connect(path) as connection:
+        for graph in (outside, inside):
+            with pytest.raises(hal.HalationError, match="lies outside of"):
+                connection.render(graph)
+        picture = write_exr(
+            tmp_path / "fence" / "a.exr", {"Combined": np.ones((4, 4, 4), np.float32)}, {"Combined": "half"}
+        )
+        assert connection.render(inside, {"beauty": picture})["image"].shape == (4, 4, 4)
+        with pytest.raises(hal.HalationError, match="lies outside of"):
+            connection.render(inside, {"beauty": picture}, output=tmp_path / "out.exr")
+
+
+@POSIX
+def test_only_the_user_connects_and_one_server_listens(tmp_path):
+    with started(tmp_path) as (path, _):
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600
+        command = [sys.executable, "-m", "halation.cli", "serve", "--socket", str(path)]
+        refused = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+        assert refused.returncode == 1 and "another process listens here" in refused.stderr
+    with started(tmp_path) as (path, process):
+        process.kill()
+        process.wait(30)
+        assert path.is_socket()
+        with pytest.raises(RenderError, match="start one with halation serve"):
+            while True:  # the process that rendered ends a moment after the one that was killed
+                hal.connect(path).close()
+    with started(tmp_path) as (path, process):  # what a killed server has left is replaced
+        process.terminate()
+        assert process.wait(30) == 0 and not path.exists()
+
+
+def test_lines_on_standard_input_are_answered_on_standard_output(graphs):
+    path = str(graphs())
+    requests = [{"do": "check", "id": 1, "graph": path}, {"do": "render", "id": 2, "graph": path}]
+    result = subprocess.run(
+        [sys.executable, "-m", "halation.cli", "serve"],
+        input="\n".join(map(json.dumps, requests)).encode(),
+        capture_output=True,
+        check=True,
+        timeout=120,
+    )
+    first, second = map(json.loads, result.stdout.splitlines())
+    assert first["problems"] == [] or first["id"] == 1
+    assert unpack_array("image", second["pictures"]["image"]).shape == (32, 48, 4)
+
+
+def test_a_process_of_its_own_ends_with_the_connection(graphs):
+    with hal.connect() as connection:
+        assert connection.render(graphs())["image"].shape == (32, 48, 4)
+    with pytest.raises(RenderError, match="has ended the connection"):
+        connection.render(graphs())
+
+
+def test_an_array_comes_back_as_it_was_sent():
+    for dtype in (np.float16, np.float32):
+        array = np.random.default_rng(2).normal(size=(3, 5, 4)).astype(dtype)
+        packed = json.load(io.StringIO(json.dumps(pack_array(array[:, ::-1]))))
+        received = unpack_array("a", packed)
+        assert received.dtype == dtype and (received == array[:, ::-1]).all()
